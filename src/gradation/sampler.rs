@@ -11,6 +11,9 @@ const ALL_WORDS: u128 = 1 << 64;
 /// Buckets of the guide table; a word's top bits are its bucket.
 const BUCKETS: usize = 256;
 
+/// Words whose diameters are drawn together.
+const AT_ONCE: usize = 64;
+
 /// Keeps 40 bits of the mantissa.
 const COARSE: u64 = !0 << 12;
 
@@ -42,10 +45,7 @@ impl Segment {
     /// than the f32 it ends in.
     #[inline(always)]
     fn diameter(&self, v: f64) -> f32 {
-        let y = self.y_b + (v - self.v_b) * self.slope;
-        let d = inverse_cube_root(f64::from_bits(y.to_bits() & COARSE));
-        let d = if d > self.a { d } else { self.a };
-        (if d < self.b { d } else { self.b }) as f32
+        root_within(self.y_at(v), [self.a, self.b])
     }
 
     /// `v` at the diameter `d`, not rounded to f32.
@@ -59,6 +59,8 @@ impl Segment {
         }
     }
 
+    /// `D^-3` at `v`.
+    #[inline(always)]
     fn y_at(&self, v: f64) -> f64 {
         self.y_b + (v - self.v_b) * self.slope
     }
@@ -69,6 +71,14 @@ impl Segment {
         let t = width * self.slope / y;
         if t > 0.0 { width / y * (libm::log1p(t) / t) } else { width / y }
     }
+}
+
+/// `y^(-1/3)` from 40 bits of the mantissa of `y`, at least `a` and at most `b`.
+#[inline(always)]
+fn root_within(y: f64, [a, b]: [f64; 2]) -> f32 {
+    let d = inverse_cube_root(f64::from_bits(y.to_bits() & COARSE));
+    let d = if d > a { d } else { a };
+    (if d < b { d } else { b }) as f32
 }
 
 /// Draws diameters of a [`Gradation`] by number: the inverse of its distribution.
@@ -153,8 +163,7 @@ impl SizeSampler {
         self.segments[self.segment(start, v)].diameter(v)
     }
 
-    /// [`SizeSampler::diameter`] of every word; vector code where the gradation is one segment, as wide
-    /// as the caller is compiled for.
+    /// [`SizeSampler::diameter`] of every word, in vector code as wide as the caller is compiled for.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -166,9 +175,25 @@ impl SizeSampler {
                 *out = segment.diameter(coarser_share(word));
             }
         } else {
-            for (out, &word) in out.iter_mut().zip(words) {
-                *out = self.diameter(word);
+            for (words, out) in words.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
+                self.fill_some(words, out);
             }
+        }
+    }
+
+    /// The same of at most [`AT_ONCE`] words: what hangs on the segment is looked up one by one, the roots
+    /// are taken together.
+    #[inline(always)]
+    fn fill_some(&self, words: &[u64], out: &mut [f32]) {
+        let (mut y, mut least, mut most) = ([0.0; AT_ONCE], [0.0; AT_ONCE], [0.0; AT_ONCE]);
+        for (at, &word) in words.iter().enumerate() {
+            let v = coarser_share(word);
+            let start = self.guide[(word >> 56) as usize] as usize;
+            let segment = &self.segments[self.segment(start, v)];
+            (y[at], least[at], most[at]) = (segment.y_at(v), segment.a, segment.b);
+        }
+        for (((out, &y), &a), &b) in out.iter_mut().zip(&y).zip(&least).zip(&most) {
+            *out = root_within(y, [a, b]);
         }
     }
 

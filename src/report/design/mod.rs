@@ -171,6 +171,12 @@ fn between(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> Str
     format!("{} to {}", end(low), end(high))
 }
 
+/// The same in brackets, where there are networks enough for a band.
+fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
+    let is_known = low.is_some() || high.is_some();
+    if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
+}
+
 fn said(heading: &str, sentences: &[String], confidence: Confidence) -> Markup {
     html! {
         @if !sentences.is_empty() {
@@ -188,10 +194,10 @@ fn boundaries(design: &Design) -> Markup {
         html! {
             @match boundary {
                 Some(boundary) => {
-                    b { (ratio(boundary.median)) } " (" (between(boundary.low, boundary.high, ratio)) ")"
+                    b { (ratio(boundary.median)) } (in_band(boundary.low, boundary.high, ratio))
                     @for range in [&boundary.d15f_mm, &boundary.d85b_mm].into_iter().flatten() {
-                        br; (significant(range.median)) " mm ("
-                        (between(range.low, range.high, significant)) ")"
+                        br; (significant(range.median)) " mm"
+                        (in_band(range.low, range.high, significant))
                     }
                 },
                 None => "no number",

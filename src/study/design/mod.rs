@@ -20,12 +20,14 @@ mod plan;
 mod practice;
 mod row;
 mod search;
+mod spared;
 mod specified;
 mod steadiness;
 mod summary;
 #[cfg(test)]
 mod tests;
 
+use std::ops::RangeInclusive;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -48,6 +50,7 @@ use crate::scene::{BaseGradation, D85};
 use plan::{Wanted, wanted};
 use row::Row;
 use search::{BRACKETS, Done, Hint, METHOD, NARROWEST, Start};
+use spared::{holding_less, is_spared};
 use specified::{NO_BASE_MM, no_base, write_tables};
 
 /// Finds the boundaries and writes `design.csv` and, last, `design.json`.
@@ -259,14 +262,32 @@ fn searched(
         done.iter().find(|done| (done.row, done.network) == (row, 1)).map(|first| Hint::of(&first.found))
     };
     // The first network of each row says where to look on the others.
-    let whole_row = |row: usize| -> Result<(), RunError> {
-        let (first, others): (Vec<u64>, Vec<u64>) =
-            (1..=rows[row].networks()).filter(|n| !was_done.contains(&(row, *n))).partition(|n| *n == 1);
-        first.into_iter().try_for_each(|network| one((row, network), Hint::default()))?;
-        let hint = hint_of(row).unwrap_or_default();
-        others.into_par_iter().try_for_each(|network| one((row, network), hint))
+    let left = |row: usize, networks: RangeInclusive<u64>| -> Vec<u64> {
+        networks.filter(|network| !was_done.contains(&(row, *network))).collect()
     };
-    let ended = (0..rows.len()).into_par_iter().try_for_each(whole_row);
+    let first = |row: usize| -> Result<(), RunError> {
+        let network = 1..=rows[row].networks().min(1);
+        left(row, network).into_iter().try_for_each(|network| one((row, network), Hint::default()))
+    };
+    let others = |row: usize| -> Result<(), RunError> {
+        let hint = hint_of(row).unwrap_or_default();
+        let networks = left(row, 2..=rows[row].networks());
+        networks.into_par_iter().try_for_each(|network| one((row, network), hint))
+    };
+    // And whether the others are needed.
+    let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
+    let is_spared = |row: usize| {
+        let done = done.lock().expect("no search panics while it keeps");
+        is_spared(&done, row, &less[row])
+    };
+    let begun = (0..rows.len()).into_par_iter().try_for_each(|row| {
+        first(row)?;
+        if less[row].is_empty() { others(row) } else { Ok(()) }
+    });
+    let ended = begun.and_then(|()| {
+        let may_be = (0..rows.len()).into_par_iter().filter(|&row| !less[row].is_empty());
+        may_be.filter(|&row| !is_spared(row)).try_for_each(others)
+    });
     let mut done = done.into_inner().expect("no search panics while it keeps");
     if let Err(error) = ended {
         return Err(match error.exit() {

@@ -382,10 +382,19 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let of_pan = of_first.as_ref().and_then(|_| of_pan(row));
     let of_boundary: Vec<Finding> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
     let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
-    let note = |findings: &[Finding]| {
-        let said: Vec<String> = findings.iter().map(Finding::with_to_do).collect();
+    let note = |findings: &[Finding], spared: Option<String>| {
+        let said: Vec<String> = findings.iter().map(Finding::with_to_do).chain(spared).collect();
         (!said.is_empty()).then(|| said.join(" "))
     };
+    let spared = (done.len() as u64) < row.networks();
+    let spared = spared.then(|| {
+        format!(
+            "{} of {} networks was searched: this end holds clearly more than the other and cannot set the \
+             answer.",
+            done.len(),
+            row.networks()
+        )
+    });
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
     let of = DesignRow {
         density: row.wanted.density.clone(),
@@ -397,10 +406,10 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         },
         grains_per_void: row.case.grains_per_void,
         no_erosion,
-        no_erosion_note: note(&of_boundary),
+        no_erosion_note: note(&of_boundary, spared),
         holds_to,
         continuing,
-        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>()),
+        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>(), None),
         unsteady: unsteady.map(|[held, eroding]| finding::unsteady(held, eroding, "").sentence()),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done

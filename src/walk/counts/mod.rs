@@ -205,6 +205,9 @@ impl<'a> PassiveWalk<'a> {
             }
             Passive::Expected(expected) => {
                 let trap = Trap::renew(&mut self.trap, network, state);
+                if expected.surely_moves(&trap.leads_out) {
+                    return false;
+                }
                 let (mut free, mut trapped) = (0.0, 0.0);
                 for (&n, &out) in expected.moving.iter().zip(&trap.leads_out) {
                     if out { free += n } else { trapped += n }

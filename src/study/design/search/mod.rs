@@ -43,7 +43,7 @@ use trials::{STOP, Search, between, ratio_at, tried_below};
 pub(super) use trials::{Trial, Walker};
 
 /// Names this search: networks that another has found are not continued with.
-pub(super) const METHOD: &str = "design search 7";
+pub(super) const METHOD: &str = "design search 8";
 
 /// What a bracket may be.
 pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];

@@ -1,5 +1,5 @@
 //! The step of the expectation on the cubic lattice: layer by layer, each void from the three that lead
-//! there, so that whole rows are moved at once.
+//! there, so that many rows are moved at once.
 
 use super::numbers::{Expected, NOTHING, retain};
 use crate::walk::Isa;
@@ -9,6 +9,10 @@ use crate::walk::counts::shares::Shares;
 /// Columns in which moves are summed: part of the definition of their sum, whatever the instructions.
 const LANES: usize = 8;
 
+/// Voids that are moved at once, in whole rows: what leaves them stays in the first cache, and short rows
+/// make long loops.
+const AT_ONCE: usize = 1024;
+
 /// The shares of the lattice's exits, and room for a layer.
 pub(super) struct LatticeFlow {
     /// Voids along x and y.
@@ -17,10 +21,11 @@ pub(super) struct LatticeFlow {
     shares: [Vec<f64>; 2],
     /// Voids without an open exit, ascending.
     dead_ends: Vec<u32>,
-    /// By void of a row: what leaves it along x, along y, and along y from the row before.
-    rows: [Vec<f64>; 3],
-    /// By void of a layer: what leaves the layer above it along z; of a row that is done, what leaves it.
-    above: Vec<f64>,
+    /// By void of the rows that are moved at once: what arrives in it along x, and along y. Behind them a
+    /// place for what leaves the last void along x, and a row for what leaves the last row along y.
+    arriving: [Vec<f64>; 2],
+    /// By void of a layer: what leaves the layer above it along z, and what leaves it.
+    along_z: [Vec<f64>; 2],
     /// Instructions that it uses.
     pub isa: Isa,
 }
@@ -28,15 +33,16 @@ pub(super) struct LatticeFlow {
 impl LatticeFlow {
     pub fn new(shape: [u32; 3], shares: &Shares) -> Self {
         let across = [shape[0] as usize, shape[1] as usize];
-        let row = || vec![0.0; across[0]];
+        let rows = rows_at_once(across) * across[0];
+        let layer = || vec![0.0; across[0] * across[1]];
         let voids = shares.probability().len() / 3;
         let of = |exit: usize| shares.probability()[exit..].iter().step_by(3).map(|&p| as_unit(p)).collect();
         Self {
             across,
             shares: [of(0), of(1)],
             dead_ends: (0..voids).filter(|&void| !shares.leads_on(void)).map(|void| void as u32).collect(),
-            rows: [row(), row(), row()],
-            above: vec![0.0; across[0] * across[1]],
+            arriving: [vec![0.0; rows + 1], vec![0.0; rows + across[0]]],
+            along_z: [layer(), layer()],
             isa: Isa::chosen(),
         }
     }
@@ -72,15 +78,16 @@ impl LatticeFlow {
             Isa::Avx2 => unsafe { with_avx2(self, moving, next) },
             _ => self.layers(moving, next),
         };
-        self.above.iter().for_each(|n| sums.eroded += n);
+        self.along_z[0].iter().for_each(|n| sums.eroded += n);
     }
 
-    /// Moves layer by layer, and row by row; what leaves the last layer is in `above` then. Returns how many
-    /// moved.
+    /// Moves layer by layer, and some rows at once; what leaves the last layer is first in `along_z` then.
+    /// Returns how many moved.
     #[inline(always)]
     fn layers(&mut self, moving: &[f64], next: &mut [f64]) -> f64 {
         let [nx, ny] = self.across;
-        let Self { shares: [first, second], rows: [x, y, y_before], above, .. } = self;
+        let at_once = rows_at_once(self.across) * nx;
+        let Self { shares: [first, second], arriving: [x, y], along_z: [above, below], .. } = self;
         let plane = nx * ny;
         let mut lanes = [0.0; LANES];
         above.fill(0.0);
@@ -94,23 +101,38 @@ impl LatticeFlow {
                 continue;
             }
             nothing_above = nothing_here;
-            let last = plane - nx..plane;
-            leave(&here[last.clone()], [&first[last.clone()], &second[last]], [x, y_before]);
-            for row in 0..ny {
-                let voids = row * nx..(row + 1) * nx;
-                let here = &here[voids.clone()];
-                lanes = summed(here, lanes);
-                leave(here, [&first[voids.clone()], &second[voids.clone()]], [x, y]);
-                let (next, above) = (&mut next[voids.clone()], &mut above[voids]);
-                arrive(next, above, (x, y_before), row == 0);
-                for (((above, &n), x), y) in above.iter_mut().zip(here).zip(x.iter()).zip(y.iter()) {
-                    *above = some(n) - x - y;
-                }
-                std::mem::swap(y, y_before);
+            // A loop, as a fold would be a call without the wide instructions.
+            for row in here.chunks_exact(nx) {
+                lanes = summed(lanes, row);
             }
+            // The last row leads to the first.
+            let last = plane - nx..plane;
+            let leaving = (&mut x[1..][..nx], &mut y[..nx], &mut below[last.clone()]);
+            leave(&here[last.clone()], [&first[last.clone()], &second[last]], leaving);
+            for begin in (0..plane).step_by(at_once) {
+                let voids = begin..plane.min(begin + at_once);
+                let n = voids.len();
+                let leaving = (&mut x[1..][..n], &mut y[nx..][..n], &mut below[voids.clone()]);
+                leave(&here[voids.clone()], [&first[voids.clone()], &second[voids.clone()]], leaving);
+                // The last void of each row leads to its first.
+                for row in (0..n).step_by(nx) {
+                    x[row] = x[row + nx];
+                }
+                let (next, above) = (&mut next[voids.clone()], &above[voids]);
+                let by_y = if begin == 0 { nx } else { 0 };
+                arrive(&mut next[..by_y], &above[..by_y], [&x[..by_y], &y[..by_y]]);
+                arrive(&mut next[by_y..], &above[by_y..], [&y[by_y..n], &x[by_y..n]]);
+                y.copy_within(n..n + nx, 0);
+            }
+            std::mem::swap(above, below);
         }
         lanes.iter().sum()
     }
+}
+
+/// Rows of a layer that are moved at once.
+fn rows_at_once([nx, ny]: [usize; 2]) -> usize {
+    (AT_ONCE / nx).clamp(1, ny)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -133,36 +155,39 @@ fn some(n: f64) -> f64 {
 
 /// Adds a row to sums in columns.
 #[inline(always)]
-fn summed(row: &[f64], mut lanes: [f64; LANES]) -> [f64; LANES] {
+fn summed(mut lanes: [f64; LANES], row: &[f64]) -> [f64; LANES] {
     let (whole, rest) = row.as_chunks::<LANES>();
     for some in whole {
         lanes = std::array::from_fn(|lane| lanes[lane] + some[lane]);
     }
-    rest.iter().zip(&mut lanes).for_each(|(n, lane)| *lane += n);
+    // In registers where it is half as many.
+    let (half, rest) = rest.as_chunks::<{ LANES / 2 }>();
+    for some in half {
+        lanes = std::array::from_fn(|lane| lanes[lane] + some.get(lane).copied().unwrap_or(0.0));
+    }
+    let behind = half.len() * (LANES / 2);
+    rest.iter().zip(&mut lanes[behind..]).for_each(|(n, lane)| *lane += n);
     lanes
 }
 
-/// What leaves a row's voids along x and y. The last open exit is certain: along z goes what is left.
+/// What leaves voids along x, along y and along z. The last open exit is certain: along z goes what is left.
 #[inline(always)]
-fn leave(here: &[f64], [first, second]: [&[f64]; 2], [x, y]: [&mut [f64]; 2]) {
+fn leave(here: &[f64], [first, second]: [&[f64]; 2], (x, y, z): (&mut [f64], &mut [f64], &mut [f64])) {
     let shares = first.iter().zip(second);
-    for ((&n, (first, second)), (x, y)) in here.iter().zip(shares).zip(x.iter_mut().zip(y)) {
+    let leaving = x.iter_mut().zip(y).zip(z);
+    for ((&n, (first, second)), ((x, y), z)) in here.iter().zip(shares).zip(leaving) {
         let n = some(n);
-        *x = n * first;
-        *y = (n - *x) * second;
+        let along_x = n * first;
+        let along_y = (n - along_x) * second;
+        (*x, *y, *z) = (along_x, along_y, n - along_x - along_y);
     }
 }
 
-/// Adds up what arrives in a row: from above, from the row before, and from the void before, the last void of
-/// the row before the first. In the order of the voids that it comes from, as on any network,
-/// but for a single row.
+/// Adds up what arrives in voids: from above, and then along x and y in the order of the voids that it comes
+/// from, as on any network, but for a single row.
 #[inline(always)]
-fn arrive(row: &mut [f64], above: &[f64], (x, y): (&[f64], &[f64]), is_first: bool) {
-    let sum = |above: f64, x: f64, y: f64| if is_first { above + x + y } else { above + y + x };
-    let last = row.len() - 1;
-    row[0] = sum(above[0], x[last], y[0]);
-    let behind = x[..last].iter().zip(&y[1..]);
-    for ((to, above), (x, y)) in row[1..].iter_mut().zip(&above[1..]).zip(behind) {
-        *to = sum(*above, *x, *y);
+fn arrive(voids: &mut [f64], above: &[f64], [first, second]: [&[f64]; 2]) {
+    for ((to, above), (first, second)) in voids.iter_mut().zip(above).zip(first.iter().zip(second)) {
+        *to = above + first + second;
     }
 }

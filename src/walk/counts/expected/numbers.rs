@@ -61,6 +61,17 @@ impl Expected {
         network.start().iter().for_each(|&void| self.moving[void as usize] += each);
     }
 
+    /// Whether a whole particle and more is expected to move in voids that lead out: seen from the last
+    /// voids on, where the last ones are, so that few have to be looked at.
+    pub(in crate::walk::counts) fn surely_moves(&self, leads_out: &[bool]) -> bool {
+        let free = self.moving.iter().zip(leads_out).rev().filter(|(_, leads_out)| **leads_out);
+        let mut sum = 0.0;
+        free.map(|(n, _)| n).any(|n| {
+            sum += n;
+            sum > 1.0
+        })
+    }
+
     /// Renews the whole numbers that the state counts, and gives those before and after. `holding` are the
     /// voids that retain something, ascending. With `trapped`, what moves beside so many trapped particles is
     /// less than half a particle, and is counted as come to rest.
