@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Prints what arches and openings beside particles cost: processor time by that of the same scene without them, in Markdown.
+
+    scripts/peers/mechanisms.py [--binary target/release/voidwalk] [--particles 2000000 200000000] [--turns 5]
+
+Scenes follow one another in each turn; whole processes, one thread, medians. Another mechanism lets other particles pass, so that the
+number of moves differs: time by move is given beside the time of the scene.
+"""
+
+import argparse
+import json
+import os
+import tempfile
+from pathlib import Path
+from statistics import median
+
+from growth import measured, run
+
+#: Engine, and what a base particle meets.
+SCENES = [
+    ("particles", "closed, no arches", []),
+    ("particles", "openings", ["walk.blocked=open"]),
+    ("particles", "arches, zuriguel-2005", ["walk.arching=zuriguel-2005"]),
+    ("particles", "arches, marin-2018", ["walk.arching=marin-2018"]),
+    ("particles", "arches, critical-3", ["walk.arching=critical-3"]),
+    ("counts", "closed, no arches", []),
+    ("counts", "arches, marin-2018", ["walk.arching=marin-2018"]),
+    ("expected", "closed, no arches", []),
+    ("expected", "arches, marin-2018", ["walk.arching=marin-2018"]),
+]
+
+
+def walked(binary, engine, settings, particles):
+    with tempfile.TemporaryDirectory() as folder:
+        command = run([f"engine={engine}", f"base.n_base={particles}", *settings])
+        seconds, _ = measured(command(binary, f"{folder}/out"), os.environ)
+        outcome = json.loads(Path(folder, "out/outcome.json").read_text())
+    of_run = outcome["replicates"][0]["runs"][0]
+    return seconds, of_run["particle_moves"], of_run["eroded_mass_fraction"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--binary", default="target/release/voidwalk")
+    parser.add_argument("--particles", nargs="*", type=int, default=[2_000_000, 200_000_000])
+    parser.add_argument("--turns", type=int, default=5)
+    options = parser.parse_args()
+    print("| particles | engine | mechanism | processor s | by that without | thousand million moves | ns a move | eroded |")
+    print("|---|---|---|---|---|---|---|---|")
+    for particles in options.particles:
+        turns = [[walked(options.binary, engine, settings, particles) for engine, _, settings in SCENES] for _ in range(options.turns)]
+        without = {}
+        for (engine, mechanism, _), rows in zip(SCENES, zip(*turns)):
+            seconds, (_, moves, eroded) = median(row[0] for row in rows), rows[0]
+            without.setdefault(engine, seconds)
+            ns = 1e9 * seconds / moves if moves else float("nan")
+            print(
+                f"| {particles:,} | {engine} | {mechanism} | {seconds:.2f} | {seconds / without[engine]:.2f} "
+                f"| {moves / 1e9:.2f} | {ns:.1f} | {100 * eroded:.1f} % |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Prints how long a user waits for `judge`, `design` and `compare` of real pairs, from two sheets to the page, in Markdown.
+
+    scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5]
+
+The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
+refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
+programs follow one another. VOIDWALK_ISA chooses the instructions. `compare` takes the soil and the first three of the six filters.
+"""
+
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from statistics import median
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
+from real_pairs import FILTERS, table  # noqa: E402
+
+
+def commands(folder):
+    base, of_filter = folder / "base.csv", folder / "filter.csv"
+    others = [folder / f"other-{k}.csv" for k in range(3)]
+    return {
+        "judge --quick": ["judge", base, of_filter, "--quick"],
+        "judge": ["judge", base, of_filter],
+        "design": ["design", base, "--filter", of_filter],
+        "compare, three filters": ["compare", "--base", base, *others, "--quick"],
+    }
+
+
+def timed(binary, words, out):
+    began = time.monotonic()
+    done = subprocess.run([str(part) for part in [binary, *words, "--quiet", "--out", out]], capture_output=True, text=True)
+    seconds = time.monotonic() - began
+    if done.returncode == 2 and "exchanged" in done.stderr:
+        return None
+    if done.returncode != 0:
+        raise SystemExit(f"{words}: exit code {done.returncode}: {done.stderr[-500:]}")
+    return seconds
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("soils", type=Path)
+    parser.add_argument("--binary", default="target/release/voidwalk")
+    parser.add_argument("--before")
+    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--pairs", type=int, default=12)
+    parser.add_argument("--seed", type=int, default=5)
+    parser.add_argument("--only", nargs="*", default=[])
+    options = parser.parse_args()
+    soils = [soil for soil in json.loads(options.soils.read_text()) if len(soil["points_mm_percent"]) >= 6]
+    draw = random.Random(options.seed)
+    pairs = [(draw.choice(soils), list(FILTERS)[k % len(FILTERS)]) for k in range(options.pairs)]
+    binaries = [binary for binary in (options.before, options.binary) if binary]
+    found = {}
+    with tempfile.TemporaryDirectory() as work:
+        for number, (soil, name) in enumerate(pairs):
+            folder = Path(work, f"{number}")
+            folder.mkdir()
+            table(folder / "base.csv", soil["points_mm_percent"])
+            table(folder / "filter.csv", FILTERS[name])
+            for k, other in enumerate(list(FILTERS)[:3]):
+                table(folder / f"other-{k}.csv", FILTERS[other])
+            for command, words in commands(folder).items():
+                if options.only and command not in options.only:
+                    continue
+                turns = []
+                for turn in range(options.turns):
+                    turns.append([timed(binary, words, folder / f"{command}-{turn}-{at}") for at, binary in enumerate(binaries)])
+                if None not in turns[0]:
+                    seconds = [median(turn[at] for turn in turns) for at in range(len(binaries))]
+                    found.setdefault(command, []).append((soil["id"], name, seconds))
+                    print(f"{command}, soil {soil['id']}, {name}: {seconds}", file=sys.stderr, flush=True)
+    print(f"Instructions: {os.environ.get('VOIDWALK_ISA', 'the widest of the machine')}.\n")
+    heads = ["before", "now"][-len(binaries):]
+    print("| command | pairs | " + " | ".join(f"{head}: median s (least to most)" for head in heads) + " |")
+    print("|---|---|" + "---|" * len(heads))
+    for command, rows in found.items():
+        cells = []
+        for at in range(len(binaries)):
+            seconds = [row[2][at] for row in rows]
+            cells.append(f"{median(seconds):.2f} ({min(seconds):.2f} to {max(seconds):.2f})")
+        print(f"| {command} | {len(rows)} of {options.pairs} | " + " | ".join(cells) + " |")
+    print("\n| soil, filter | " + " | ".join(found) + " |\n|---|" + "---|" * len(found))
+    by_pair = {}
+    for command, rows in found.items():
+        for soil, name, seconds in rows:
+            by_pair.setdefault((soil, name), {})[command] = ", ".join(f"{s:.2f}" for s in seconds)
+    for (soil, name), cells in by_pair.items():
+        print(f"| {soil}, {name} | " + " | ".join(cells.get(command, "refused") for command in found) + " |")
+
+
+if __name__ == "__main__":
+    main()
