@@ -472,9 +472,12 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let said = guess.reasons.iter().find(|reason| reason.contains("is a guess from circles"));
     assert!(said.unwrap().contains("both ends are walked, too"), "{said:?}");
     // An end that is asked for itself is found once, with the same bits.
-    let asked = rows(&of("all", &["estimate=0", "estimate=1"]));
+    let all = of("all", &["estimate=0", "estimate=1"]);
+    let asked = rows(&all);
     assert_eq!(asked.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["estimate 0", "estimate 1"]);
-    assert_eq!((asked[0].1.to_bits(), asked[1].1.to_bits()), (found[2].1.to_bits(), found[1].1.to_bits()));
+    assert_eq!(all.boundaries[0].networks, guess.boundaries[2].networks);
+    // The finer end holds clearly more, so that it is searched on its first network.
+    assert_eq!(all.boundaries[1].networks[..1], guess.boundaries[1].networks[..]);
 }
 
 /// A filter of unknown density is loose, dense or between: its ends are searched, and the worse one counts.
@@ -491,17 +494,33 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     assert_eq!(dense.end_of.as_deref(), Some("unknown"));
     assert!(unknown.searched().starts_with("loose, constrictions "), "{}", unknown.searched());
     assert!(unknown.held().unwrap() < dense.held().unwrap());
-    // The dense end holds clearly more: its first network is enough.
-    assert_eq!((unknown.networks.len(), dense.networks.len()), (2, 1));
-    assert!(dense.held().unwrap() >= 1.25 * unknown.networks[0].no_erosion.unwrap());
-    let note = dense.no_erosion_note.as_ref().unwrap();
-    assert!(note.contains("1 of 2 networks was searched"), "{note}");
+    assert_eq!(unknown.networks.len(), 2);
     assert!(unknown.band.is_some() && dense.band.is_none());
     assert_eq!(design.least_held().unwrap().0, unknown);
     let table = std::fs::read_to_string(folder.path().join("out/design.csv")).unwrap();
     let density = |line: &str| line.trim_start_matches('"').starts_with("loose") as u8;
     assert!(table.lines().skip(1).all(|line| density(line) == 1 || line.contains("dense, constrictions")));
     assert!(table.lines().skip(1).any(|line| density(line) == 1), "{table}");
+}
+
+/// Where the first network of an end holds clearly more than that of the worse end, the others would say no
+/// more; the worse end is searched as ever.
+#[test]
+fn an_end_that_holds_clearly_more_is_searched_on_one_network() {
+    let folder = tempfile::tempdir().unwrap();
+    let stone = [(1.18, 2.5), (2.36, 5.0), (4.75, 20.0), (9.5, 92.5), (12.5, 100.0)];
+    let filter = of_base(folder.path(), "stone.csv", &stone);
+    let options = DesignOptions {
+        filter: Some(filter.display().to_string()),
+        ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2"])
+    };
+    let design = found(&options);
+    let [unknown, dense] = &design.boundaries[..] else { panic!("{:?}", design.boundaries) };
+    assert_eq!((unknown.networks.len(), dense.networks.len()), (2, 1));
+    let first = |row: &DesignRow| row.networks[0].no_erosion.unwrap();
+    assert!(first(dense) >= 1.25 * first(unknown), "{} {}", first(dense), first(unknown));
+    let note = dense.no_erosion_note.as_ref().unwrap();
+    assert!(note.contains("1 of 2 networks was searched"), "{note}");
 }
 
 /// An end that another row has, too, stays a row of its own, and is searched once.
