@@ -5,26 +5,22 @@ use std::path::{Path, PathBuf};
 
 use super::args::RulesArgs;
 use super::compare::{show, walked};
-use super::print::{counted, plain, shown, to_stdout};
+use super::print::{plain, shown, to_stdout};
 use super::run::command_line;
 use super::values::with_options;
 use crate::campaign::CampaignOptions;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::outcome::comparison::Comparison;
 use crate::outcome::table::{Columns, Shown};
-use crate::outcome::three;
 use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;
 use crate::study::compare::{self, ComparePlan, Compared};
-use crate::verdict::batch::{columns, governing, may_govern, more_with_that_limit};
+use crate::verdict::batch::{NAMED, columns, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
 
 /// Why several filters are refused.
 pub(super) const SEVERAL_FILTERS: &str =
     "several filters go with --each, which takes every soil of the base by itself";
-
-/// Samples that govern and are named, to be walked in full.
-const NAMED: usize = 3;
 
 impl RulesArgs {
     /// What the scenes of the walks are given besides the soils.
@@ -145,46 +141,9 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     text
 }
 
-/// How many samples a filter retains, and which govern. Of an envelope the curves are named.
+/// How many samples a filter retains, and which govern.
 pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter) -> String {
-    let BatchFilter { name, curves, .. } = filter;
-    let samples = rows.iter().filter(|row| row.filter == *name).count();
-    let count = |met: Option<bool>| rows.iter().filter(|row| row.filter == *name && row.met == met).count();
-    let [met, not_met, none] = [Some(true), Some(false), None].map(count);
-    let mut text = format!(
-        "{}: of {} {met} met, {not_met} not met, {none} without a result\n",
-        plain(name),
-        counted(samples as u64, "sample", "samples")
-    );
-    if curves.len() > 1 {
-        let _ = writeln!(
-            text,
-            "  an envelope of {} curves ({}): retention by the coarsest, drainage by the finest",
-            curves.len(),
-            plain(&curves.join(", "))
-        );
-    }
-    let strictest = governing(rows, name, NAMED);
-    if let [first, others @ ..] = &strictest[..] {
-        let limit = |row: &BatchRow| {
-            let at_most = if row.limit_at_most { " at most" } else { "" };
-            format!("{}: D15F up to {} mm{at_most}", plain(&row.sample), three(row.limit_mm.unwrap_or(0.0)))
-        };
-        let _ = writeln!(text, "  governing sample {} ({})", limit(first), first.rule);
-        for row in others {
-            let _ = writeln!(text, "  then {} ({})", limit(row), row.rule);
-        }
-        let more = more_with_that_limit(rows, name, &strictest);
-        if more > 0 {
-            let _ = writeln!(text, "  and {more} more with the same limit");
-        }
-    }
-    let open = may_govern(rows, name);
-    if !open.is_empty() {
-        let names: Vec<String> = open.iter().map(|row| plain(&row.sample)).collect();
-        let _ = writeln!(text, "  may govern, as its limit is not known: {}", names.join(", "));
-    }
-    text
+    filter.in_words(rows).iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
 }
 
 /// The command that walks the samples that govern, or that nothing was walked.

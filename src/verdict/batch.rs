@@ -11,6 +11,9 @@ use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// Samples that govern a filter and are named, to be walked in full.
+pub const NAMED: usize = 3;
+
 /// What practice says of one sample and one filter. Sizes are in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::BatchRow;
+use super::batch::{BatchRow, NAMED, governing, may_govern, more_with_that_limit};
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
+use crate::outcome::three;
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +20,44 @@ pub struct BatchFilter {
     pub curves: Vec<String>,
     /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
     pub d15f_mm: Option<f64>,
+}
+
+impl BatchFilter {
+    /// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
+    pub fn in_words(&self, rows: &[BatchRow]) -> Vec<String> {
+        let Self { name, curves, .. } = self;
+        let of_filter = || rows.iter().filter(|row| row.filter == *name);
+        let count = |met: Option<bool>| of_filter().filter(|row| row.met == met).count();
+        let [met, not_met, none] = [Some(true), Some(false), None].map(count);
+        let samples = of_filter().count();
+        let one_or_more = if samples == 1 { "sample" } else { "samples" };
+        let mut said = vec![format!(
+            "{name}: of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result"
+        )];
+        if curves.len() > 1 {
+            said.push(format!(
+                "an envelope of {} curves ({}): retention by the coarsest, drainage by the finest",
+                curves.len(),
+                curves.join(", ")
+            ));
+        }
+        let strictest = governing(rows, name, NAMED);
+        for (at, row) in strictest.iter().enumerate() {
+            let what = if at == 0 { "governing sample" } else { "then" };
+            let at_most = if row.limit_at_most { " at most" } else { "" };
+            let limit = three(row.limit_mm.unwrap_or(0.0));
+            said.push(format!("{what} {}: D15F up to {limit} mm{at_most} ({})", row.sample, row.rule));
+        }
+        let more = more_with_that_limit(rows, name, &strictest);
+        if more > 0 {
+            said.push(format!("and {more} more with the same limit"));
+        }
+        let open: Vec<&str> = may_govern(rows, name).into_iter().map(|row| row.sample.as_str()).collect();
+        if !open.is_empty() {
+            said.push(format!("may govern, as its limit is not known: {}", open.join(", ")));
+        }
+        said
+    }
 }
 
 /// What practice says of every sample and filter, filter by filter.

@@ -66,7 +66,10 @@ impl BatchPlan {
     fn work(&self, cases: &[PreparedCase]) -> String {
         let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
         let all: Vec<String> = cases.iter().map(of_case).collect();
-        let rows: Vec<_> = self.rows.iter().map(|row| (&row.rules, row.governs, &row.not_walked)).collect();
+        let of_row = |(row, case): (&WalkedRow, &String)| {
+            (row.rules.clone(), row.governs, row.not_walked.clone(), self.in_full.contains(case))
+        };
+        let rows: Vec<_> = self.rows.iter().zip(&self.cases).map(of_row).collect();
         let text = format!("{} {rows:?} {:?} {:?} {all:?}", shown(&self.samples), self.filters, self.notes);
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }

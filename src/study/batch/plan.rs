@@ -9,11 +9,8 @@ use crate::campaign::{self, CampaignOptions, CampaignPlan};
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
-use crate::verdict::batch::governing;
+use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
-
-/// Samples of a filter that govern it, and are walked in full.
-const GOVERN: usize = 3;
 
 /// Voids across the lattice of a first look, as `voidwalk design` searches.
 const ACROSS: u64 = 20;
@@ -122,7 +119,7 @@ impl BatchPlan {
             let why = |row: &WalkedRow| {
                 format!("{} and {}: {}", row.rules.sample, row.rules.filter, row.not_walked)
             };
-            let reasons: Vec<String> = self.rows.iter().take(GOVERN).map(why).collect();
+            let reasons: Vec<String> = self.rows.iter().take(NAMED).map(why).collect();
             let problem = format!("no pair of a sample and a filter can be walked\n{}", reasons.join("\n"));
             return Err(RunError::Refused(problem));
         }
@@ -138,7 +135,7 @@ impl BatchPlan {
 /// The rows of a table, with those that govern.
 fn governed(table: &BatchTable) -> Vec<WalkedRow> {
     let of_filters: Vec<Vec<&BatchRow>> =
-        table.filters.iter().map(|filter| governing(&table.rows, &filter.name, GOVERN)).collect();
+        table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
     let rank = |row: &BatchRow| {
         let of_filter = |named: &Vec<&BatchRow>| named.iter().position(|other| std::ptr::eq(*other, row));
         of_filters.iter().find_map(of_filter).map(|at| at as u64 + 1)
