@@ -28,7 +28,7 @@ impl RulesArgs {
     /// # Errors
     /// A setting is given by an option of its own and by --set, too.
     fn changes(&self) -> Result<Vec<String>, RunError> {
-        Ok(with_options(&self.settings, of_soils(self.dispersive, self.joint_mm))?)
+        with_options(&self.settings, of_soils(self.dispersive, self.joint_mm))
     }
 }
 

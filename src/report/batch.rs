@@ -6,8 +6,12 @@ use maud::{Markup, Render, html};
 
 use super::cases;
 use super::error::ReportError;
-use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
+use super::figures::{
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, ORANGE, PURPLE, Point, Rule, Shape, VERMILLION,
+    positive_range, shorten,
+};
 use super::files::json;
+use super::names::soil_name;
 use super::numbers::{interval_in_percent, significant, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
@@ -22,8 +26,15 @@ const RECORD: &str = "batch.json";
 /// Rows of the page's table; all are in `batch.csv`.
 const LISTED: usize = 2000;
 
-/// Filters whose D15F is drawn.
-const DRAWN: usize = 8;
+/// Lines of the filters whose D15F is drawn.
+const LINES: [(Colour, Dash); 6] = [
+    (BLACK, Dash::Dashed),
+    (VERMILLION, Dash::Dotted),
+    (GREEN, Dash::Dashed),
+    (PURPLE, Dash::Dotted),
+    (ORANGE, Dash::Dashed),
+    (BLACK, Dash::Dotted),
+];
 
 /// Writes `batch.html` and `figures/*.svg` into the folder of a batch.
 ///
@@ -43,12 +54,18 @@ fn name(name: &str) -> String {
     clean(&shorten(name, 60))
 }
 
+/// What a filter is called here: the soil, or its whole path where that is the name of another, too.
+fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
+    let is_shared = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter)).count() > 1;
+    name(if is_shared { filter } else { soil_name(filter) })
+}
+
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
-        "Samples " b { bdi { (name(&batch.samples)) } } ", "
+        "Samples " b { bdi { (name(soil_name(&batch.samples))) } } ", "
         @if batch.filters.len() == 1 { "filter " } @else { "filters " }
         @for (at, filter) in batch.filters.iter().enumerate() {
-            @if at > 0 { ", " } b { bdi { (name(&filter.name)) } }
+            @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }
         }
     };
     let first = html! { div.first {
@@ -58,9 +75,9 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         }))
     } };
     let made = html! { p {
-        "voidwalk " (clean(&batch.version)) ", seed " (batch.seed) " for every walk. Each walk has a folder of \
-         its own with its report; " code { "batch.json" } " holds this page’s numbers, " code { "batch.csv" }
-        " its table with further columns."
+        "voidwalk " (clean(&batch.version)) ", seed " (batch.seed) " for every walk. Each walk has a folder \
+         of its own with its report; " code { "batch.json" } " holds this page’s numbers, "
+        code { "batch.csv" } " its table with further columns."
     } };
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
         .words(&first)
@@ -90,7 +107,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
     let open: Vec<String> =
         may_govern(&rules, &filter.name).into_iter().map(|row| name(&row.sample)).collect();
     html! {
-        p.practice { bdi { (name(&filter.name)) } ", D15F "
+        p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
             li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
@@ -101,8 +118,8 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
             @for row in &govern { li { (governs(folder, row)) } }
             @if !open.is_empty() { li { "May govern, as its limit is not known: " (open.join(", ")) "." } }
             @if filter.curves.len() > 1 {
-                li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage by \
-                    the finest." }
+                li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
+                    by the finest." }
             }
         }
     }
@@ -135,16 +152,19 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
         .class("cases")
         .columns(WalkedRow::columns(), |row| row)
         .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
+        .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);
     html! {
         (table.render())
         @if batch.rows.len() > LISTED { p.small { "The rest is in batch.csv." } }
         p.small {
-            "Limit: the strictest D15F by which the filter retains the sample. Governs: 1 for the sample with \
-             the least limit of its filter. Class by walk: with a link to the page of the walk; in full, or a \
-             first look of fewer replicates on a narrower lattice. Below a number its 95 % interval over the \
-             replicates; the threshold between the classes is " (threshold(batch.threshold)) ". Probability \
-             of no erosion: that a test would show none, by what the walk is worth for soils of this kind."
+            "Limit: the strictest D15F by which the filter retains the sample. Governs: 1 for the sample \
+             with the least limit of its filter. Class by walk: with a link to the page of the walk; in \
+             full, or a first look of fewer replicates on a narrower lattice. Below a number its 95 % \
+             interval over the replicates; the threshold between the classes is "
+            (threshold(batch.threshold))
+            ". Probability of no erosion: that a test would show none, by what the walk is worth for soils of \
+             this kind."
         }
     }
 }
@@ -163,7 +183,8 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     if rows.is_empty() {
         return None;
     }
-    let filters = || batch.filters.iter().take(DRAWN).filter_map(|filter| Some((filter, filter.d15f_mm?)));
+    let filters =
+        || batch.filters.iter().take(LINES.len()).filter_map(|filter| Some((filter, filter.d15f_mm?)));
     let (low, high) = positive_range(rows.iter().map(|row| d85b(row)));
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
     let all = rows.iter().map(|row| limit(row)).chain(filters().map(|(_, mm)| mm));
@@ -171,9 +192,9 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     let y = Axis::log("Limit of D15F (mm)", low / 1.2, high * 1.2);
     let what = "Strictest limit of D15F of each sample against its D85B, with the D15F of each filter";
     let mut figure = Figure::new("Limits of the samples", what, "", x, y).names_above();
-    for (filter, mm) in filters() {
-        let label = format!("D15F of {}", shorten(&filter.name, 24));
-        figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label(&label));
+    for ((filter, mm), (colour, dash)) in filters().zip(LINES) {
+        let label = format!("D15F of {}", shorten(&filter_name(batch, &filter.name), 24));
+        figure.add(Rule::new(Across::Y, mm, colour).dash(dash).label(&label));
     }
     let point = |row: &&WalkedRow| {
         let shape = if row.governs == Some(1) { Shape::Square } else { Shape::Circle };
@@ -183,8 +204,8 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     let of = |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
     figure.add_points("sample", of(false));
     figure.add_points("governs a filter", of(true));
-    let caption = "Strictest limit of D15F of each sample. A filter retains the samples that lie above the line \
-                   of its D15F. Hollow: the limit is at most this.";
+    let caption = "Strictest limit of D15F of each sample. A filter retains the samples that lie above the \
+                   line of its D15F. Hollow: the limit is at most this.";
     Some(Drawn::new("batch-limits", figure, caption))
 }
 
@@ -216,7 +237,7 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
     let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
     let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
     let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Left of 1 the \
-                   rules of retention are met. Below the dashed line the walk erodes less than the threshold. \
-                   The class also takes the second run.";
+                   rules of retention are met. Below the dashed line the walk erodes less than the \
+                   threshold. The class also takes the second run.";
     Some(Drawn::new("batch-eroded", figure, caption))
 }

@@ -16,6 +16,9 @@ function el(name, attributes = {}, ...children) {
   return made;
 }
 
+/** What scrolls by itself, by keys as well. */
+const scrolling = (label, ...children) => el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, ...children);
+
 function show(node, text) {
   node.textContent = text || "";
   node.hidden = !text;
@@ -217,7 +220,7 @@ async function showPair() {
     .filter(([, key]) => key).map(([role, key]) => [role, soilOf(key).soil]);
   const row = (name, of, long) => el("tr", { class: long ? "long" : null }, el("th", {}, name), ...shown.map(([, soil]) => el("td", { class: "n" }, of(soil))));
   $("#sizes").replaceChildren(
-    el("thead", {}, el("tr", {}, el("th", {}), ...shown.map(([role, soil]) => el("th", { class: "n" }, role, el("br"), soil.name)))),
+    el("thead", {}, el("tr", {}, el("th", {}, "Soil"), ...shown.map(([role, soil]) => el("th", { class: "n" }, role, el("br"), soil.name)))),
     el("tbody", {}, ...SIZES.map(([name, field]) => row(`${name}, mm`, (soil) => number(soil[field]))),
       row("Cu", (soil) => number(soil.cu)), row("Cc", (soil) => number(soil.cc)),
       row("fines, %", (soil) => number(soil.fines_percent)),
@@ -350,7 +353,7 @@ function showRules(pair) {
     ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
     ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
     ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rows(role))));
-  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("div", { class: "scroll" }, table)));
+  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }
 
@@ -572,7 +575,7 @@ function boundariesOf(done) {
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
-    el("div", { class: "scroll" }, el("table", { class: "boundaries" },
+    scrolling("the boundaries", el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
       : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
@@ -599,7 +602,7 @@ function verdictOf(job) {
   const done = job.result;
   if (job.kind === "design") return boundariesOf(done);
   if (job.kind === "compare") {
-    return [el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {},
+    return [scrolling("the cases", el("table", {}, el("thead", {}, el("tr", {},
       ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
       el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
