@@ -163,8 +163,8 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              full, or a first look of fewer replicates on a narrower lattice. Below a number its 95 % \
              interval over the replicates; the threshold between the classes is "
             (threshold(batch.threshold))
-            ". Probability of no erosion: that a test would show none, by what the walk is worth for soils of \
-             this kind."
+            ". Probability of no erosion: that a test would show none, by what the walk is worth for soils \
+             of this kind."
         }
     }
 }
