@@ -86,6 +86,7 @@ WORKS = {
         ["compare", "--filter", "filter.csv", "base.csv", "other.csv", "--out", "r", "-q", *TABLES],
         ["r"],
     ),
+    "batch": (["judge", "base.csv", "filter.csv", "other.csv", "--each", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
     "constrictions": (["constrictions", "grains.csv", "--out", "r"], None, ["r"]),
     "constrictions-overwrite": (
         ["constrictions", "grains.csv", "--out", "r", "--overwrite"], ["constrictions", "fewer.csv", "--out", "r"], ["r"]
@@ -130,8 +131,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "case.json")
-PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "batch.json", "case.json")
+PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html", "batch.html")
 
 
 class Find(Exception):
@@ -529,6 +530,7 @@ class Trial:
             "pack": ["pack", "pack.toml", "--out", "r", "-q"],
             "campaign": ["campaign", "plan.toml", "--out", "r", "-q"],
             "compare": ["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES],
+            "batch": ["judge", "base.csv", "filter.csv", "--each", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
             "precision": ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
@@ -539,6 +541,7 @@ class Trial:
         if self.is_campaign and not os.path.isdir(os.path.join(self.out, "cases")):
             return False
         own = next(word for word in WORKS[self.command][0] if word != "python").replace("judge", "run")
+        own = "batch" if self.command == "batch" else own
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}

@@ -18,6 +18,6 @@ pub mod run_cases;
 pub use cases::{CasePart, FailedCase};
 pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
 pub use plan::CampaignPlan;
-pub use run::{CampaignOptions, FinishedCampaign, check, collect, make_packing, names, run};
+pub use run::{CampaignOptions, FinishedCampaign, check, collect, make_packing, names, run, unsound};
 pub(crate) use run::{ReadyCases, Walk, look, run_around};
 pub use run_cases::{CampaignCallbacks, CaseEvent};

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
 use super::changed;
 use super::ledger;
@@ -145,22 +147,41 @@ pub fn run(
 /// # Errors
 /// The cases that are wrong, or that do not fit the memory.
 pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunError> {
+    let failed = unsound(plan, options)?;
+    if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
+}
+
+/// The cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
+///
+/// # Errors
+/// Cases that are sound and do not fit the memory.
+pub fn unsound(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Vec<FailedCase>, RunError> {
     let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
-    let sound = |planned: &PlannedCase| -> Result<(), RunError> {
-        let (_, mut case) = Draft::new(planned.scene.clone())?;
-        case.place(&limits, workers, &options.out)?;
-        have_networks(&case)
+    // What is wrong with a case, and whether it is that it has no room.
+    let wrong = |planned: &PlannedCase| -> Option<(bool, FailedCase)> {
+        let failed = |has_no_room: bool, problem: RunError| {
+            (has_no_room, FailedCase { case: planned.name.clone(), problem: problem.to_string() })
+        };
+        let mut case = match Draft::new(planned.scene.clone()) {
+            Ok((_, case)) => case,
+            Err(problem) => return Some(failed(false, problem)),
+        };
+        match case.place(&limits, workers, &options.out) {
+            Err(problem) => Some(failed(true, problem.into())),
+            Ok(_) => Some(failed(false, have_networks(&case).err()?)),
+        }
     };
-    let wrong = |planned: &PlannedCase| {
-        let problem = sound(planned).err()?.to_string();
-        Some(FailedCase { case: planned.name.clone(), problem })
-    };
-    let failed: Vec<FailedCase> = pool.install(|| wanted.into_iter().filter_map(wrong).collect());
-    if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
+    let all: Vec<(bool, FailedCase)> = pool.install(|| wanted.into_par_iter().filter_map(wrong).collect());
+    let (no_room, wrong): (Vec<_>, Vec<_>) = all.into_iter().partition(|(has_no_room, _)| *has_no_room);
+    let cases = |of: Vec<(bool, FailedCase)>| of.into_iter().map(|(_, case)| case).collect::<Vec<_>>();
+    match no_room.is_empty() {
+        true => Ok(cases(wrong)),
+        false => Err(RunError::Refused(named(&cases(no_room)))),
+    }
 }
 
 /// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` where one

@@ -306,10 +306,22 @@ pub struct TableArgs {
 /// Which two soils are judged, and where the answer goes.
 #[derive(Debug, Args)]
 pub struct JudgeArgs {
-    /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
+    /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils. With --each also a
+    /// folder of tables
     pub base: PathBuf,
-    /// The filter, in the same form
-    pub filter: PathBuf,
+    /// The filter, in the same form. With --each one or several filters
+    #[arg(required = true, value_name = "FILTER")]
+    pub filters: Vec<PathBuf>,
+    /// Take every soil of BASE as a sample of its own: a first look at each, the three samples that govern
+    /// each filter in full, one table in --out [default: voidwalk-batch]. The same command continues what
+    /// was stopped or killed; a folder with other samples or filters is refused. With --quick nothing is
+    /// walked in full
+    #[arg(long, conflicts_with = "authority")]
+    #[cfg_attr(feature = "xlsx", arg(conflicts_with = "xlsx"))]
+    pub each: bool,
+    /// With --each: walk the three samples that govern each filter, and no other
+    #[arg(long, requires = "each", conflicts_with = "quick")]
+    pub governing: bool,
     /// How the two become a scene.
     #[command(flatten)]
     pub tables: TableArgs,

@@ -11,8 +11,7 @@ use super::run::command_line;
 use super::start::START;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::campaign::{
-    self, CampaignCallbacks, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions,
-    WrittenJobs,
+    self, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions, WrittenJobs,
 };
 use crate::outcome::ledger::{self, LedgerLine, confidences, of_earlier_versions};
 use crate::outcome::record::{Confidence, Verdict};
@@ -74,16 +73,7 @@ fn walk(
     options: &CampaignOptions,
 ) -> Result<FinishedCampaign, RunError> {
     let progress = CaseProgress::new(args.walk.quiet, Allocation::here().is_some());
-    followed(args.walk.quiet, |run| {
-        let callbacks = CampaignCallbacks {
-            run: *run,
-            on_cases: &|total, done| progress.begin(total, done),
-            on_case: &|case, event| progress.tell(case, event),
-        };
-        let finished = campaign::run(plan, options, &callbacks);
-        progress.end();
-        finished
-    })
+    progress.followed(|callbacks| campaign::run(plan, options, callbacks))
 }
 
 fn words(lines: &[LedgerLine], out: &Path) -> String {

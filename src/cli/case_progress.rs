@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 use indicatif::ProgressBar;
 
 use super::print::{plain, to_stderr};
-use super::progress::bar_on_terminal;
-use crate::campaign::CaseEvent;
+use super::progress::{bar_on_terminal, followed};
+use crate::campaign::{CampaignCallbacks, CaseEvent};
+use crate::run::RunError;
 
 /// Plain lines come at most this often, outside of a cluster's job.
 const BETWEEN_LINES: Duration = Duration::from_secs(2);
@@ -36,6 +37,26 @@ struct Lines {
 impl CaseProgress {
     pub fn new(quiet: bool, each: bool) -> Self {
         Self { quiet, each, shown: OnceLock::new() }
+    }
+
+    /// Follows the work on cases, until it ends.
+    ///
+    /// # Errors
+    /// Those of the work.
+    pub fn followed<R>(
+        &self,
+        work: impl FnOnce(&CampaignCallbacks) -> Result<R, RunError>,
+    ) -> Result<R, RunError> {
+        followed(self.quiet, |run| {
+            let callbacks = CampaignCallbacks {
+                run: *run,
+                on_cases: &|total, done| self.begin(total, done),
+                on_case: &|case, event| self.tell(case, event),
+            };
+            let done = work(&callbacks);
+            self.end();
+            done
+        })
     }
 
     /// So many cases there are, and so many of them are done.

@@ -1,14 +1,14 @@
 //! `voidwalk compare`: filters on one base, bases on one filter, or scenes, side by side.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use super::args::CompareArgs;
+use super::args::{CompareArgs, SettingArgs, WalkArgs};
 use super::case_progress::CaseProgress;
 use super::exit::accept;
 use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
-use super::progress::followed;
 use super::run::command_line;
-use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
+use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
 use crate::run::RunError;
 use crate::store::format;
@@ -29,70 +29,52 @@ impl CompareArgs {
 
 /// Walks the cases, and compares them.
 pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
-    walked(args, &planned(args)?)
+    let quiet = args.walk.quiet;
+    let plan = ComparePlan::new(&args.compared(), &args.tables.options()?)?;
+    let options = campaign_options(&args.out, &args.tables.set, &args.walk);
+    let comparison = walked(&plan, &options, args.overwrite, quiet)?;
+    if args.tables.set.json {
+        to_stdout(&json(format::COMPARISON, &comparison)?);
+    } else if !quiet {
+        show(&plan, &comparison, &args.out);
+    }
+    let cases = comparison.cases.iter().map(|case| (case.name.as_str(), case.verdict, case.confidence));
+    accept(args.accept.fail_on, cases)
 }
 
-/// What is compared.
-///
-/// # Errors
-/// A case that is wrong.
-pub(super) fn planned(args: &CompareArgs) -> Result<ComparePlan, RunError> {
-    ComparePlan::new(&args.compared(), &args.tables.options()?)
-}
-
-/// The comparison that the folder holds already, as [`compare::found`] says.
-///
-/// # Errors
-/// The same.
-pub(super) fn found(args: &CompareArgs, plan: &ComparePlan) -> Result<Option<Comparison>, RunError> {
-    compare::found(plan, &options(args))
-}
-
-fn options(args: &CompareArgs) -> CampaignOptions {
+/// How cases are walked that options of the command line describe.
+pub(super) fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CampaignOptions {
     CampaignOptions {
-        out: args.out.clone(),
+        out: out.to_owned(),
         part: CasePart::All,
-        packings: Some(args.tables.set.packings.clone()),
-        memory: args.tables.set.memory,
-        threads: args.walk.threads,
-        checkpoint_interval: args.walk.checkpoint_every.unwrap_or_default(),
+        packings: Some(set.packings.clone()),
+        memory: set.memory,
+        threads: walk.threads,
+        checkpoint_interval: walk.checkpoint_every.unwrap_or_default(),
         command: command_line(),
     }
 }
 
 /// Walks the cases of a plan, and compares them.
-pub(super) fn walked(args: &CompareArgs, plan: &ComparePlan) -> Result<(), RunError> {
-    let quiet = args.walk.quiet;
+pub(super) fn walked(
+    plan: &ComparePlan,
+    options: &CampaignOptions,
+    overwrite: bool,
+    quiet: bool,
+) -> Result<Comparison, RunError> {
     if plan.seeds_differed && !quiet {
         to_stderr(&format!("the scenes' seeds differ; all are walked with seed {}\n", plan.seed));
     }
-    let options = options(args);
     let progress = CaseProgress::new(quiet, false);
-    let comparison = followed(quiet, |run| {
-        let callbacks = CampaignCallbacks {
-            run: *run,
-            on_cases: &|total, done| progress.begin(total, done),
-            on_case: &|case, event| progress.tell(case, event),
-        };
-        let done = compare::run(plan, &options, args.overwrite, &callbacks);
-        progress.end();
-        done
-    })?;
-    show(args, plan, &comparison)
+    progress.followed(|callbacks| compare::run(plan, options, overwrite, callbacks))
 }
 
-/// Prints a comparison, and says whether it is accepted.
-pub(super) fn show(args: &CompareArgs, plan: &ComparePlan, comparison: &Comparison) -> Result<(), RunError> {
-    if args.tables.set.json {
-        to_stdout(&json(format::COMPARISON, comparison)?);
-    } else if !args.walk.quiet {
-        let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
-        to_stdout(&constrictions.collect::<String>());
-        to_stdout(&words(comparison));
-        to_stdout(&format!("report: {}\n", shown(&args.out.join("compare.html"))));
-    }
-    let cases = comparison.cases.iter().map(|case| (case.name.as_str(), case.verdict, case.confidence));
-    accept(args.accept.fail_on, cases)
+/// Prints a comparison that lies in this folder.
+pub(super) fn show(plan: &ComparePlan, comparison: &Comparison, out: &Path) {
+    let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
+    to_stdout(&constrictions.collect::<String>());
+    to_stdout(&words(comparison));
+    to_stdout(&format!("report: {}\n", shown(&out.join("compare.html"))));
 }
 
 fn words(comparison: &Comparison) -> String {

@@ -1,6 +1,8 @@
 //! `voidwalk judge`: two sieve tables in, the whole answer out.
 
 use super::args::{JudgeArgs, TableArgs};
+use super::batch::{SEVERAL_FILTERS, of_soils};
+use super::judge_each::judge_each;
 use super::print::{plain, shown, to_stdout};
 use super::progress::followed;
 use super::run::show;
@@ -15,11 +17,9 @@ impl TableArgs {
     /// # Errors
     /// A setting is given by an option of its own and by --set, too.
     pub fn options(&self) -> Result<TableOptions, RunError> {
-        let options = [
-            ("--dispersive", self.dispersive.then(|| "base.dispersive=true".to_owned())),
-            ("--authority", self.authority.map(|by| format!("about.authority={}", by.word()))),
-            ("--joint-mm", self.joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
-        ];
+        let [dispersive, joint] = of_soils(self.dispersive, self.joint_mm);
+        let authority = self.authority.map(|by| format!("about.authority={}", by.word()));
+        let options = [dispersive, ("--authority", authority), joint];
         let changes = with_options(&self.set.settings()?, options)?;
         let (as_sampled, as_given) = (self.as_sampled, self.as_given);
         Ok(TableOptions {
@@ -35,14 +35,19 @@ impl TableArgs {
 
 /// Judges a base and a filter.
 pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
+    let filter = match &args.filters[..] {
+        _ if args.each => return judge_each(args),
+        [filter] => filter,
+        _ => return Err(RunError::refused(SEVERAL_FILTERS)),
+    };
     let (tables, quiet) = (&args.tables, args.results.walk.quiet);
-    let scene = Scene::of_tables(&args.base, &args.filter, &tables.options()?)?;
+    let scene = Scene::of_tables(&args.base, filter, &tables.options()?)?;
     let words = scene.constrictions_in_words();
     let options = args.results.options(&tables.set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
     let in_words = !tables.set.json && !quiet;
     if in_words {
-        to_stdout(&format!("base {}, filter {}\n", shown(&args.base), shown(&args.filter)));
+        to_stdout(&format!("base {}, filter {}\n", shown(&args.base), shown(filter)));
         to_stdout(&format!("{}\n", plain(&words)));
     }
     show(&run, tables.set.json, quiet)?;

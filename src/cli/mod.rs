@@ -16,6 +16,7 @@ mod export;
 mod groups;
 mod init;
 mod judge;
+mod judge_each;
 mod mistakes;
 mod pack;
 mod percolation;

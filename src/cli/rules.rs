@@ -1,7 +1,7 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
-use super::batch::each;
+use super::batch::{SEVERAL_FILTERS, each};
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::record::{AppliedRule, RuleRole};
@@ -23,10 +23,7 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let filter = match &args.filters[..] {
         _ if args.each => return each(args, options),
         [filter] => filter,
-        _ => {
-            let problem = "several filters go with --each, which takes every soil of the base by itself";
-            return Err(RunError::Refused(problem.into()));
-        }
+        _ => return Err(RunError::refused(SEVERAL_FILTERS)),
     };
     let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
     let filters = curves_in_file(filter, None).map_err(RunError::refused)?;

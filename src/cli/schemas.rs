@@ -17,7 +17,7 @@ use crate::outcome::record::{Manifest, Outcome};
 use crate::run::{Check, Reproduced};
 use crate::scene::SceneReference;
 use crate::store::format::{self, Format};
-use crate::verdict::PairRules;
+use crate::verdict::{PairRules, WalkedBatch};
 
 /// Writes the schemas anew where this variable is set.
 const UPDATE: &str = "VOIDWALK_UPDATE_SCHEMAS";
@@ -30,6 +30,7 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::DESIGN, of::<Design>()),
         (format::SPECIFICATION, of::<Specification>()),
         (format::COMPARISON, of::<Comparison>()),
+        (format::BATCH, of::<WalkedBatch>()),
         (format::CAMPAIGN, of::<Campaign>()),
         (format::CASE, of::<LedgerLine>()),
         (format::PACKING, of::<PackingRecord>()),

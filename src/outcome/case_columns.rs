@@ -13,7 +13,7 @@ type Thickness = (Option<f64>, bool, Option<u64>);
 
 impl<'a, T: 'a> Columns<'a, T> {
     /// How far a verdict can be relied on; on a page, `reason` says below it why no further.
-    pub(super) fn confidence(
+    pub(crate) fn confidence(
         self,
         of: fn(&T) -> Option<Confidence>,
         reason: fn(&T) -> Option<String>,
@@ -37,7 +37,7 @@ impl<'a, T: 'a> Columns<'a, T> {
     }
 
     /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
-    pub(super) fn ratios(self, decimals: usize, of: fn(&T) -> (Ratios, Option<BaseSize>)) -> Self {
+    pub(crate) fn ratios(self, decimals: usize, of: fn(&T) -> (Ratios, Option<BaseSize>)) -> Self {
         let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
         self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
             .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words())))
@@ -50,7 +50,7 @@ impl<'a, T: 'a> Columns<'a, T> {
 
     /// Mass eroded in the first run and in the second, with its interval and, on a page, its range where the
     /// constriction curve is a range.
-    pub(super) fn eroded(self, of: fn(&T, usize) -> Eroded) -> Self {
+    pub(crate) fn eroded(self, of: fn(&T, usize) -> Eroded) -> Self {
         let cell = move |row: &T, run| {
             let (statistic, range) = of(row, run);
             let curve = |[low, high]: [f64; 2]| format!("curve: {} to {}", percent(low), percent(high));

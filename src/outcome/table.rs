@@ -167,6 +167,37 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
+    /// With the columns of the same rows that were described elsewhere.
+    pub fn and(mut self, more: Self) -> Self {
+        self.0.extend(more.0);
+        self
+    }
+
+    /// A page shows the columns of these names alone.
+    pub fn only(mut self, names: &[&str]) -> Self {
+        let others = self.0.iter_mut().filter(|column| !names.contains(&column.names[0].as_str()));
+        others.for_each(|column| column.page.heading.clear());
+        self
+    }
+
+    /// The same columns of rows of which these are a part.
+    pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
+    where
+        T: 'a,
+    {
+        let column = |column: Column<'a, T>| {
+            let (cells, PageColumn { name, heading, is_number, cell }) = (column.cells, column.page);
+            let cell: OfRow<'a, W, Shown> = Box::new(move |row| cell(part(row)));
+            Column {
+                names: column.names,
+                cells: Box::new(move |row: &W| cells(part(row))),
+                page: PageColumn { name, heading, is_number, cell },
+                place: column.place,
+            }
+        };
+        Columns(self.0.into_iter().map(column).collect())
+    }
+
     fn last(&mut self) -> &mut Column<'a, T> {
         self.0.last_mut().expect("a column comes before what is said of it")
     }
@@ -375,5 +406,15 @@ mod tests {
         let [known, unknown] = rows.map(|row| cell(&row));
         assert_eq!((&*known.text, &*known.below[0]), ("25.0\u{202f}%", "20.0 to 30.0\u{202f}%"));
         assert_eq!(unknown, "–".shown());
+    }
+
+    #[test]
+    fn columns_of_a_part_stand_beside_those_of_the_whole() {
+        let part = Columns::default().column("a", |row: &u64| *row).headed("A").column("b", |row| 2 * row);
+        let whole = part.headed("B").of_part(|row: &(u64, bool)| &row.0);
+        let whole = whole.and(Columns::default().column("c", |row: &(u64, bool)| row.1).headed("C"));
+        assert_eq!(whole.csv(&[(3, true)]), b"a,b,c\n3,6,true\n");
+        let shown: Vec<String> = whole.only(&["b", "c"]).of_page().map(|column| column.heading).collect();
+        assert_eq!(shown, ["B", "C"]);
     }
 }

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
+use super::cases::AtRatio;
 use super::error::ReportError;
-use super::figures::{Across, Axis, BLACK, Dash, Figure, Point, Rule, Shape};
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule};
 use super::files::{json, json_of, lines, lines_of};
 use super::numbers::{duration, interval, interval_in_percent, whole};
-use super::run_figures::verdict_colour;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -20,9 +20,6 @@ use crate::outcome::verdict::THRESHOLD;
 
 /// Cases drawn one by one; all are in the table.
 const DRAWN: usize = 120;
-
-/// Symbols of the classes, in the order of [`Verdict::ALL`].
-const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape::Triangle];
 
 /// Writes `report.html` and `figures/*.svg` into the folder of a campaign.
 ///
@@ -64,10 +61,9 @@ fn largest_eroded(line: &LedgerLine) -> Option<Statistic> {
     line.runs.first().and_then(|run| run.largest_eroded_over_d15f)
 }
 
-/// A quantity of each case against the ratio of the filter rules: one symbol a case, by class.
+/// A quantity of each case against the ratio of the filter rules.
 fn against_ratio(
-    title: &str,
-    what: &str,
+    words: [&str; 2],
     y: Axis,
     rules: Vec<Rule>,
     ledger: &[LedgerLine],
@@ -77,17 +73,12 @@ fn against_ratio(
     let (low, high) = ratios.fold((f64::MAX, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
     let margin = 0.05 * (high - low).max(0.2 * high);
     let x = Axis::linear("D15F / D85B (–)", low - margin, high + margin);
-    let mut figure = Figure::new(title, what, "", x, y).names_above();
-    rules.into_iter().for_each(|rule| figure.add(rule));
-    for (class, shape) in Verdict::ALL.into_iter().zip(SHAPES) {
-        let points = ledger.iter().filter(|line| line.verdict == class).filter_map(|line| {
-            let (value, interval) = of(line)?;
-            let point = Point::new(line.ratios.d15f_over_d85b, value, verdict_colour(class), shape);
-            Some(point.y_interval(interval))
-        });
-        figure.add_points(class.words(), points);
-    }
-    figure
+    let symbol = |line: &LedgerLine| {
+        let (value, interval) = of(line)?;
+        Some(AtRatio { ratio: line.ratios.d15f_over_d85b, class: line.verdict, value, interval })
+    };
+    let symbols: Vec<AtRatio> = ledger.iter().filter_map(symbol).collect();
+    cases::against_ratio(words, (x, y), rules, &symbols)
 }
 
 /// Eroded mass of the first run.
@@ -100,7 +91,7 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     if ratios().any(|r| r < 4.0) && ratios().any(|r| r > 4.0) {
         rules.push(Rule::new(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
     }
-    let figure = against_ratio("Erosion against the filter ratio", what, y, rules, ledger, |line| {
+    let figure = against_ratio(["Erosion against the filter ratio", what], y, rules, ledger, |line| {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))
     });
     let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval \
@@ -128,7 +119,7 @@ fn largest(ledger: &[LedgerLine]) -> Drawn {
         ledger.iter().filter_map(largest_eroded).map(|s| s.high.unwrap_or(s.mean)).fold(0.2, f64::max);
     let y = Axis::linear("Largest eroded particle / D15F, first run (–)", 0.0, 1.05 * highest);
     let what = "Largest eroded particle over D15F against D15F/D85B, one symbol a case";
-    let figure = against_ratio("Largest eroded particle", what, y, Vec::new(), ledger, of);
+    let figure = against_ratio(["Largest eroded particle", what], y, Vec::new(), ledger, of);
     let caption = "Largest particle that left the filter in the first run, over D15F.";
     Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
 }

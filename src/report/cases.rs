@@ -6,9 +6,40 @@ use maud::{Markup, html};
 
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::numbers::interval_in_percent;
-use super::run_figures::run_name;
+use super::run_figures::{run_name, verdict_colour};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::text::is_plain_part;
+
+/// Symbols of the classes, in the order of [`Verdict::ALL`].
+const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape::Triangle];
+
+/// A case in a figure: where it stands along x by a ratio, and along y by a value with its interval.
+pub(super) struct AtRatio {
+    pub ratio: f64,
+    pub class: Verdict,
+    pub value: f64,
+    pub interval: Option<(f64, f64)>,
+}
+
+/// One symbol a case, by class, over rules; the words are title and description.
+pub(super) fn against_ratio(
+    [title, what]: [&str; 2],
+    (x, y): (Axis, Axis),
+    rules: Vec<Rule>,
+    cases: &[AtRatio],
+) -> Figure {
+    let mut figure = Figure::new(title, what, "", x, y).names_above();
+    rules.into_iter().for_each(|rule| figure.add(rule));
+    for (class, shape) in Verdict::ALL.into_iter().zip(SHAPES) {
+        let of_class = cases.iter().filter(|case| case.class == class);
+        let point = |case: &AtRatio| {
+            let point = Point::new(case.ratio, case.value, verdict_colour(class), shape);
+            point.y_interval(case.interval)
+        };
+        figure.add_points(class.words(), of_class.map(point));
+    }
+    figure
+}
 
 /// The class, with a link to the case's own page, where there is one: nowhere else than in a folder inside
 /// that of all cases.

@@ -4,7 +4,8 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time; [`write_comparison()`] that of several cases side by side, [`write_design()`] that of a
+//! against run time; [`write_comparison()`] that of several cases side by side, [`write_batch()`]
+//! that of many samples against filters, [`write_design()`] that of a
 //! design and [`write_specification()`] that of a specification by practice alone. They write
 //! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
@@ -30,6 +31,7 @@
 //! warnings, figures, the rules of practice, tables, and how to run it again.
 
 mod appendix;
+mod batch;
 mod boundaries;
 mod by_void;
 mod campaign;
@@ -68,6 +70,7 @@ mod workbook;
 mod written;
 
 pub use crate::outcome::numbers;
+pub use batch::write_batch;
 pub use campaign::{campaign_page, write_campaign};
 pub use comparison::write_comparison;
 pub use design::write_design;

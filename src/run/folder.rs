@@ -48,6 +48,8 @@ pub enum FolderKind {
     Precision,
     /// Several cases side by side.
     Comparison,
+    /// Many samples against filters.
+    Batch,
     /// How coarse a filter may be.
     Design,
     /// The specification of a filter by practice alone.
@@ -60,13 +62,14 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
         Self::Percolation,
         Self::Precision,
         Self::Comparison,
+        Self::Batch,
         Self::Design,
         Self::Specification,
         Self::Serve,
@@ -82,6 +85,7 @@ impl FolderKind {
             Self::Percolation => "percolation study",
             Self::Precision => "precision study",
             Self::Comparison => "comparison",
+            Self::Batch => "batch",
             Self::Design => "design",
             Self::Specification => "specification",
             Self::Serve => "page's sheets and jobs",
@@ -98,6 +102,7 @@ impl FolderKind {
             Self::Percolation => format::PERCOLATION,
             Self::Precision => format::PRECISION,
             Self::Comparison => format::COMPARISON,
+            Self::Batch => format::BATCH,
             Self::Design => format::DESIGN,
             Self::Specification => format::SPECIFICATION,
             Self::Serve => format::SERVE,
@@ -115,6 +120,11 @@ impl FolderKind {
         !matches!(self, Self::Constrictions | Self::Serve)
     }
 
+    /// Whether it holds cases that continue by themselves, each in a run folder of its own.
+    pub(crate) fn has_cases(self) -> bool {
+        matches!(self, Self::Comparison | Self::Batch)
+    }
+
     /// What else marks such a folder, finished or not.
     fn marks(self) -> &'static [&'static str] {
         match self {
@@ -124,6 +134,7 @@ impl FolderKind {
             Self::Percolation => &LATTICES,
             Self::Precision => &STUDY,
             Self::Comparison => &["walks"],
+            Self::Batch => &["pairs"],
             Self::Design => &DESIGN,
             // Versions that wrote no record had them.
             Self::Serve => &["sheets"],
@@ -186,6 +197,7 @@ impl FolderKind {
             ],
             // Its cases stay, as all that a campaign holds.
             Self::Comparison => &["compare.json", "compare.html", "compare.csv", "compare_pairs.csv"],
+            Self::Batch => &["batch.json", "batch.html", "batch.csv"],
             Self::Design => &[
                 "design.json",
                 "design.html",
@@ -240,6 +252,7 @@ impl FolderKind {
                 "triangulation",
             ],
             Self::Comparison => &["compared-runs", "compared-differences"],
+            Self::Batch => &["batch-limits", "batch-eroded"],
             Self::Design => &["design", "specification"],
             Self::Specification => &["specification"],
             Self::Campaign | Self::Serve | Self::Constrictions => &[],

@@ -109,7 +109,7 @@ fn check_kind(folder: &Path) -> Result<(), RunError> {
             refuse("this run is not finished; continue it with voidwalk resume".into())
         }
         Some(FolderKind::Run) => Ok(()),
-        Some(FolderKind::Campaign | FolderKind::Comparison) => refuse(
+        Some(FolderKind::Campaign | FolderKind::Comparison | FolderKind::Batch) => refuse(
             "holds several cases; name the folder of one of them: each case is a run of its own".into(),
         ),
         Some(other) => refuse(format!(

@@ -18,6 +18,7 @@ mod job_file;
 mod jobs;
 mod live;
 mod routes;
+mod samples;
 mod sheets;
 
 use std::net::{Ipv4Addr, TcpListener, TcpStream};

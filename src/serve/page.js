@@ -16,6 +16,9 @@ function el(name, attributes = {}, ...children) {
   return made;
 }
 
+/** What scrolls by itself, by keys as well. */
+const scrolling = (label, ...children) => el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, ...children);
+
 function show(node, text) {
   node.textContent = text || "";
   node.hidden = !text;
@@ -51,7 +54,7 @@ async function ask(path, body, type) {
   return said;
 }
 
-const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "" };
+const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "", samples: "" };
 
 // --- What is taken: kept in the address, so that a page that is loaded again has it.
 
@@ -85,13 +88,42 @@ async function add(box, name, content) {
   show(problem, "");
   try {
     if (content.size > state.largest * 2 ** 20) throw new Error(`${name}: too large: at most ${state.largest} MB`);
-    const sheet = await ask(`api/sheet?name=${encodeURIComponent(name)}`, content, "application/octet-stream");
-    if (!state.sheets.some((one) => one.id === sheet.id)) state.sheets.push(sheet);
+    const sheet = await keep(name, content);
     const pasted = $("details", box);
     if (pasted) pasted.open = false;
     take(box.dataset.role, sheet.soils.length > 1 ? `${sheet.id}#${sheet.soils[0].name}` : String(sheet.id));
   } catch (error) {
     show(problem, error.message);
+  }
+}
+
+/** A sheet that the program has read and keeps. */
+async function keep(name, content) {
+  const sheet = await ask(`api/sheet?name=${encodeURIComponent(name)}`, content, "application/octet-stream");
+  if (!state.sheets.some((one) => one.id === sheet.id)) state.sheets.push(sheet);
+  return sheet;
+}
+
+/** Takes example sheets, each added once. */
+async function tryExample(button) {
+  const { base, filter, more } = button.dataset;
+  show($("#try-problem"), "");
+  try {
+    const key = async (name) => {
+      let sheet = state.sheets.find((one) => one.name === name);
+      if (!sheet) {
+        const answer = await fetch("examples/" + name, { cache: "no-store", credentials: "same-origin" });
+        if (!answer.ok) throw new Error("there is no such example");
+        sheet = await keep(name, await answer.blob());
+      }
+      return sheet.soils.length > 1 ? `${sheet.id}#${sheet.soils[0].name}` : String(sheet.id);
+    };
+    [state.base, state.filter, state.more] = [await key(base), await key(filter), more ? [await key(more)] : []];
+    remember();
+    showSheets();
+    showPair();
+  } catch (error) {
+    show($("#try-problem"), error.message);
   }
 }
 
@@ -130,6 +162,8 @@ function setUpSheets() {
     if (paste) paste.addEventListener("click", () => add(box, `${role}.csv`, new Blob([$("textarea", box).value])));
     $(".which select", box).addEventListener("change", (event) => take(role, event.target.value));
   }
+  for (const button of $$("#try button")) button.addEventListener("click", () => tryExample(button));
+  for (const as of $$("input[name=as]")) as.addEventListener("change", showPair);
   for (const field of ["#dispersive", "#joint", "#as-given"]) $(field).addEventListener("change", showPair);
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
 }
@@ -178,6 +212,7 @@ async function showPair() {
   if ($("#joint").value.trim()) query.set("joint_mm", $("#joint").value.trim());
   if ($("#as-given").checked) query.set("as_given", "1");
   $("#soil-options").hidden = !state.base;
+  showSamples(query);
   if (!any || state.seen === String(query)) return;
   state.seen = String(query);
   showCurves(query);
@@ -185,7 +220,7 @@ async function showPair() {
     .filter(([, key]) => key).map(([role, key]) => [role, soilOf(key).soil]);
   const row = (name, of, long) => el("tr", { class: long ? "long" : null }, el("th", {}, name), ...shown.map(([, soil]) => el("td", { class: "n" }, of(soil))));
   $("#sizes").replaceChildren(
-    el("thead", {}, el("tr", {}, el("th", {}), ...shown.map(([role, soil]) => el("th", { class: "n" }, role, el("br"), soil.name)))),
+    el("thead", {}, el("tr", {}, el("th", {}, "Soil"), ...shown.map(([role, soil]) => el("th", { class: "n" }, role, el("br"), soil.name)))),
     el("tbody", {}, ...SIZES.map(([name, field]) => row(`${name}, mm`, (soil) => number(soil[field]))),
       row("Cu", (soil) => number(soil.cu)), row("Cc", (soil) => number(soil.cc)),
       row("fines, %", (soil) => number(soil.fines_percent)),
@@ -199,6 +234,37 @@ async function showPair() {
   } catch (error) {
     $("#rules").replaceChildren();
     show($("#rules-problem"), error.message);
+  }
+}
+
+/** The rules on every soil of the sheet of the base, where it has several. */
+async function showSamples(query) {
+  const sheet = state.sheets.find((one) => state.base.startsWith(`${one.id}#`));
+  const into = $("#samples");
+  into.hidden = !(sheet && state.filter);
+  const asked = new URLSearchParams(query);
+  asked.delete("more");
+  const more = $("input[name=as]:checked").value === "filters" ? state.more : [];
+  asked.set("base", sheet ? String(sheet.id) : "");
+  asked.set("filter", [state.filter, ...more].join("\n"));
+  if (into.hidden || state.samples === String(asked)) return;
+  state.samples = String(asked);
+  show($("#samples-problem"), "");
+  $("#samples-csv").href = "samples.csv?" + asked;
+  try {
+    const table = await ask("api/samples?" + asked);
+    if (state.samples !== String(asked)) return;
+    $("#samples-said").replaceChildren(...table.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")),
+      ...(table.notes.length ? [list(table.notes)] : []));
+    const kind = (at) => ({ class: table.numbers[at] ? "n" : null });
+    const marked = (text) => (text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
+    $("#samples-table").replaceChildren(
+      el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", kind(at), text)))),
+      el("tbody", {}, ...table.rows.map((row) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
+        table.headings[at] === "Result" ? marked(text) : text))))));
+  } catch (error) {
+    for (const part of ["#samples-said", "#samples-table"]) $(part).replaceChildren();
+    show($("#samples-problem"), error.message);
   }
 }
 
@@ -287,7 +353,7 @@ function showRules(pair) {
     ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
     ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
     ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rows(role))));
-  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("div", { class: "scroll" }, table)));
+  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }
 
@@ -509,7 +575,7 @@ function boundariesOf(done) {
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
-    el("div", { class: "scroll" }, el("table", { class: "boundaries" },
+    scrolling("the boundaries", el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
       : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
@@ -536,7 +602,7 @@ function verdictOf(job) {
   const done = job.result;
   if (job.kind === "design") return boundariesOf(done);
   if (job.kind === "compare") {
-    return [el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {},
+    return [scrolling("the cases", el("table", {}, el("thead", {}, el("tr", {},
       ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
       el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
@@ -628,6 +694,7 @@ async function poll() {
     show($("#again"), said.folder);
     show($("#largest"), String(said.largest_mb));
     state.largest = said.largest_mb;
+    $("#template").hidden = !said.has_template;
     state.jobs = said.jobs;
     if (said.sheets) {
       state.sheets = said.sheets;

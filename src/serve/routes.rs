@@ -14,13 +14,14 @@ use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
 use super::jobs::{JobQueue, Work};
+use super::samples::SampleTable;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{Gradation, curves_in_file, soils_in_file};
 use crate::report;
 use crate::run::error::Exit;
-use crate::run::{self, PrepareOptions, RunError};
+use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
@@ -155,8 +156,19 @@ impl Routes {
             "api/form" => Ok(Answer::json(200, &form())),
             "api/rules" => self.rules(request),
             "api/curves.svg" => self.curves(request),
+            "api/samples" => Ok(Answer::json(200, &self.samples(request)?.json())),
+            "samples.csv" => {
+                let answer = Answer::new(200, "text/csv; charset=utf-8", self.samples(request)?.csv());
+                Ok(Answer { download: Some("voidwalk-samples.csv".into()), ..answer })
+            }
+            #[cfg(feature = "xlsx")]
+            "voidwalk-soils.xlsx" => {
+                let answer = Answer::new(200, "application/octet-stream", report::soil_template());
+                Ok(Answer { download: Some(path.into()), ..answer })
+            }
             _ => match path.split_once('/') {
                 Some(("files", file)) => self.file(file),
+                Some(("examples", name)) => example(name),
                 Some(("zip", folder)) => self.zip(folder),
                 _ => Err((404, "there is no such page".into())),
             },
@@ -250,6 +262,7 @@ impl Routes {
             "version": env!("CARGO_PKG_VERSION"),
             "folder": folder.display().to_string(),
             "largest_mb": BODY >> 20,
+            "has_template": cfg!(feature = "xlsx"),
             "sheets": if has_all { Value::Null } else { json!(sheets) },
             "jobs": self.jobs.snapshot(|words| self.sheets.as_named(words)),
         })
@@ -292,15 +305,17 @@ impl Routes {
             let path = self.path(&request.parameter(name).unwrap_or_default())?;
             curves_in_file(&path, None).map_err(RunError::refused).map_err(wrong)
         };
-        let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
-        let joint_mm = request.parameter("joint_mm");
-        let joint_mm = joint_mm.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()?;
-        let is_ticked = |name: &str| request.parameter(name).is_some();
-        let options =
-            PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") };
+        let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
         Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
+    }
+
+    /// The rules of practice on every sample of a sheet.
+    fn samples(&self, request: &Request) -> Result<SampleTable, Problem> {
+        let [base, filters] = ["base", "filter"].map(|name| request.parameter(name).unwrap_or_default());
+        let filters: Vec<&str> = filters.split('\n').filter(|name| !name.is_empty()).collect();
+        SampleTable::new(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
     }
 
     /// The sieve curves of the sheets that are named, in one drawing, and what the library knows of the
@@ -369,6 +384,22 @@ impl Routes {
         let answer = packed.map_err(|error| (500, error.to_string()))?;
         Ok(Answer { download: Some(format!("voidwalk-{name}.zip")), ..answer })
     }
+}
+
+/// What is said of two soils besides their sheets.
+fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
+    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
+    let joint_mm = request.parameter("joint_mm");
+    let joint_mm = joint_mm.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()?;
+    let is_ticked = |name: &str| request.parameter(name).is_some();
+    Ok(PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") })
+}
+
+/// A sheet to try the page with.
+fn example(name: &str) -> Result<Answer, Problem> {
+    let found = EXAMPLE_FILES.iter().find(|file| file.name == name);
+    let file = found.ok_or_else(|| (404, "there is no such example".to_owned()))?;
+    Ok(Answer::new(200, "text/plain; charset=utf-8", file.text))
 }
 
 /// Whether a job's folder is there itself, and no link to one elsewhere.

@@ -50,6 +50,8 @@ formats! {
     SPECIFICATION = "specification" / 1, "specification.json";
     /// Several cases side by side.
     COMPARISON = "comparison" / 1, "compare.json";
+    /// Many samples against filters.
+    BATCH = "batch" / 1, "batch.json";
     /// A campaign, with its `ledger.jsonl` and `cases.csv`.
     CAMPAIGN = "campaign" / 1, "campaign.json";
     /// One case of a campaign.

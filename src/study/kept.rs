@@ -2,8 +2,8 @@
 //!
 //! It is a checkpoint of the folder ([`crate::store::checkpoint`]): section `found`, a record, under a hash
 //! of everything that the study follows from. What was under way is begun again; what it says follows from
-//! its seed alone, so the whole is that of a study that nobody stopped. A comparison keeps no such file: its
-//! cases are run folders, each of which continues by itself.
+//! its seed alone, so the whole is that of a study that nobody stopped. A comparison or a batch keeps no such
+//! file: its cases are run folders, each of which continues by itself.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -43,7 +43,7 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                 true => None,
                 false => kept.newest(callbacks)?,
             };
-            let has_cases = kind == FolderKind::Comparison;
+            let has_cases = kind.has_cases();
             // Of a corrupt mark, or one of an earlier version, nothing is known.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
                 return Err(RunError::Refused(format!(

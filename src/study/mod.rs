@@ -1,8 +1,11 @@
-//! Studies: several cases side by side, how coarse a filter may be; and of the model itself, error against
-//! run time and the percolation threshold of lattices.
+//! Studies: several cases side by side, many samples against filters, how coarse a filter may be; and of the
+//! model itself, error against run time and the percolation threshold of lattices.
 
+pub mod batch;
 pub mod compare;
 pub mod design;
+mod file_names;
 mod kept;
+mod of_cases;
 pub mod percolation;
 pub mod precision;

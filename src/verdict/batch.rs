@@ -8,10 +8,15 @@ use crate::outcome::design::band::retention;
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, authority};
 use crate::outcome::table::Columns;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// Samples that govern a filter and are named, to be walked in full.
+pub const NAMED: usize = 3;
+
 /// What practice says of one sample and one filter. Sizes are in mm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BatchRow {
     /// The sample.
     pub sample: String,
@@ -40,9 +45,12 @@ pub struct BatchRow {
     /// Whether the filter keeps every rule of retention; `None` where that is not known.
     pub met: Option<bool>,
     /// The class by the tests of Foster and Fell, in words.
-    pub tests: &'static str,
+    pub tests: String,
     /// What else speaks against the filter, or why nothing was applied.
     pub note: String,
+    /// Whether the two look exchanged, and nothing was applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_refused: bool,
 }
 
 impl BatchRow {
@@ -82,13 +90,14 @@ impl BatchRow {
             limit_at_most: false,
             rule: String::new(),
             met: None,
-            tests: "",
+            tests: String::new(),
             note: String::new(),
+            is_refused: false,
         };
         let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
         let doubt = mistake.map(|of| of.sentence);
         if is_refused {
-            return Self { note: doubt.unwrap_or_default(), ..row };
+            return Self { note: doubt.unwrap_or_default(), is_refused, ..row };
         }
         let rules = &pair.rules;
         // A D15F that lies in a finest tail has the limits in mm all the same.
@@ -116,7 +125,7 @@ impl BatchRow {
             limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
             rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
             met,
-            tests: tested_words(tested(rules)),
+            tests: tested_words(tested(rules)).into(),
             note,
             ..row
         }
@@ -176,10 +185,11 @@ pub fn columns<'a>() -> Columns<'a, BatchRow> {
         .headed("Whose limit")
         .column("result", |row: &BatchRow| row.result().to_owned())
         .headed("Result")
-        .column("tests", |row: &BatchRow| row.tests.to_owned())
+        .column("tests", |row: &BatchRow| row.tests.clone())
         .headed("Tests (Foster and Fell)")
         .column("note", |row: &BatchRow| row.note.clone())
         .headed("Note")
+        .place(9)
 }
 
 /// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them; of
@@ -243,7 +253,7 @@ mod tests {
         let d15f = filter.d(15.0).unwrap();
         assert_eq!(rows[0].d15f_mm, Some(d15f));
         assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
-        assert_eq!((rows[0].met, rows[0].tests), (Some(true), "no erosion"));
+        assert_eq!((rows[0].met, rows[0].tests.as_str()), (Some(true), "no erosion"));
         assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
         // Fines that nobody sieved: a limit at most, and no result for a filter within it.
         assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);

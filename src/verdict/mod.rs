@@ -12,13 +12,15 @@
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
-//! - [`batch`] is what practice says of many samples, a row each.
+//! - [`batch`] is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
+//!   and [`WalkedBatch`] is them with what their walks say.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
 //! - [`words`] are what a class means.
 
 mod answer;
 mod band;
 pub mod batch;
+mod batch_table;
 pub mod beside;
 pub mod by_authority;
 mod conclusion;
@@ -34,6 +36,7 @@ mod quantity;
 mod rule_notes;
 mod specification;
 mod thickness;
+mod walked_batch;
 pub mod walks;
 pub mod words;
 
@@ -42,6 +45,7 @@ use crate::outcome::design::band::Band;
 
 pub use answer::{Judgement, judge, rank};
 pub use batch::BatchRow;
+pub use batch_table::{BatchFilter, BatchTable};
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
@@ -49,3 +53,4 @@ pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRu
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
 pub use specification::SpecificationOptions;
+pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

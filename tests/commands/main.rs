@@ -1,6 +1,7 @@
 //! The commands as a user meets them: what they print and write, refuse, stop, and continue.
 
 mod arches;
+mod batch;
 mod broad;
 mod campaign;
 mod check_and_run;

@@ -266,6 +266,69 @@ fn a_filters_constrictions_are_drawn_as_soon_as_its_sheet_is_there() {
     assert!(!drawn("api/curves.svg?base=1").contains("constrictions"));
 }
 
+/// What is there to try the page with is what `voidwalk examples` and `voidwalk soil --template` write.
+#[test]
+fn examples_and_the_template_are_those_of_the_command_line() {
+    let served = serve();
+    done(&call(served.root(), &["examples", "try"]));
+    for name in ["base.csv", "filter.csv", "filter-fine.csv", "borrow-area.ags"] {
+        let (status, _, text) = served.get(&format!("examples/{name}"));
+        assert_eq!((status, text), (200, fs::read(served.root().join("try").join(name)).unwrap()), "{name}");
+    }
+    for name in ["none.csv", "../try/base.csv", "", "%2e%2e/base.csv"] {
+        assert_eq!(served.get(&format!("examples/{name}")).0, 404, "{name}");
+    }
+    assert_eq!(served.json("api/state")["has_template"], cfg!(feature = "xlsx"));
+    #[cfg(feature = "xlsx")]
+    {
+        done(&call(served.root(), &["soil", "--template", "t.xlsx"]));
+        let (status, head, template) = served.get("voidwalk-soils.xlsx");
+        assert!(status == 200 && head.contains("filename=\"voidwalk-soils.xlsx\""), "{head}");
+        assert!(template == fs::read(served.root().join("t.xlsx")).unwrap());
+        let (status, sheet) = served.post("api/sheet?name=t.xlsx", &template);
+        assert!(status == 200 && sheet["soils"].as_array().unwrap().len() == 2, "{sheet}");
+    }
+}
+
+/// The table of the page and its file are those of `voidwalk rules --each`, and name no folder.
+#[test]
+fn every_sample_of_a_sheet_has_its_rules() {
+    let served = serve();
+    done(&call(served.root(), &["examples", "try"]));
+    let text = |name: &str| fs::read_to_string(served.root().join("try").join(name)).unwrap();
+    for name in ["borrow-area.ags", "filter.csv", "filter-fine.csv"] {
+        assert_eq!(served.sheet(name, &text(name)).0, 200);
+    }
+    // Of whichever soil is taken, its whole sheet counts; further filters are behind a line's end.
+    let query = "base=1%23BH1&filter=2%0A3";
+    let words = ["rules", "borrow-area.ags", "filter.csv", "filter-fine.csv", "--each", "--csv", "../t.csv"];
+    let told = call(&served.root().join("try"), &words);
+    done(&told);
+    let (status, head, csv) = served.get(&format!("samples.csv?{query}"));
+    assert!(status == 200 && head.contains("voidwalk-samples.csv"), "{head}");
+    assert_eq!(String::from_utf8(csv).unwrap(), fs::read_to_string(served.root().join("t.csv")).unwrap());
+    let table = served.json(&format!("api/samples?{query}"));
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &table["headings"][0]), (12, &Value::from("Sample")));
+    let told = String::from_utf8(told.stdout).unwrap();
+    for (at, sentences) in table["filters"].as_array().unwrap().iter().enumerate() {
+        let first = sentences[0].as_str().unwrap();
+        assert!(
+            told.contains(&format!("{first}\n")) && first.starts_with(["filter.csv", "filter-fine.csv"][at])
+        );
+        assert!(told.contains(sentences[1].as_str().unwrap()), "{sentences}");
+    }
+    assert!(!table.to_string().contains("sheets"), "{table}");
+    for wrong in ["base=1", "base=9&filter=2", "base=1&filter=9", "base=1&filter=2&joint_mm=wide"] {
+        let (status, _, said) = served.get(&format!("api/samples?{wrong}"));
+        assert_eq!(status, 422, "{wrong}: {}", String::from_utf8_lossy(&said));
+    }
+    let seven = ["2"; 7].join("%0A");
+    assert_eq!(served.get(&format!("api/samples?base=1&filter={seven}")).0, 422);
+    // Stricter where the soils are dispersive.
+    assert_eq!(served.get(&format!("api/samples?{query}&dispersive=1&joint_mm=2")).0, 200);
+}
+
 #[test]
 fn a_hundred_at_once_are_answered() {
     let served = serve();

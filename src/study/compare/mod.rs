@@ -6,19 +6,15 @@
 
 mod plan;
 
-use std::path::Path;
-
 pub use plan::{ComparePlan, Compared};
 
-use super::kept;
+use super::of_cases::{StudyOfCases, outcome};
 use crate::campaign::cases::PreparedCase;
-use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign, ReadyCases, Walk};
+use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
-use crate::outcome::record::Outcome;
-use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, claim, shown};
-use crate::run::unfinished::Unfinished;
-use crate::store::{Folder, read_whole};
+use crate::run::error::RunError;
+use crate::run::folder::FolderKind;
+use crate::store::Folder;
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -43,31 +39,13 @@ pub fn run(
     overwrite: bool,
     callbacks: &CampaignCallbacks,
 ) -> Result<Comparison, RunError> {
-    let kind = FolderKind::Comparison;
-    let of_campaign = CampaignOptions { out: options.out.join(WALKS), ..options.clone() };
-    let stopped = |error: RunError| match error.exit() {
-        Exit::Stopped => RunError::Stopped(format!(
-            "progress saved; continue with the same command on {}",
-            shown(&options.out)
-        )),
-        _ => error,
-    };
-    campaign::check(&plan.campaign, &of_campaign)?;
-    let folder = claim(&options.out, kind, overwrite)?;
-    // What is there stays until every case is known to have what it needs.
-    let study = |cases: ReadyCases, walk: Walk| {
-        let place = (&folder, kind, overwrite);
-        kept::study(place, plan.work(cases?), &callbacks.run, |_, _: Option<()>| {
-            let walked = walk()?;
-            walked.problem().map_or(Ok(()), Err)?;
-            let comparison = plan.compared(&folder, &walked)?;
-            folder.write(CASES, &ComparedCase::columns().csv(&comparison.cases))?;
-            folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
-            Ok(comparison)
-        })
-    };
-    let of_campaign = CampaignOptions { out: folder.path().join(WALKS), ..of_campaign };
-    campaign::run_around(&plan.campaign, &of_campaign, callbacks, study).map_err(stopped)
+    campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
+    plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, _, walked| {
+        let comparison = plan.compared(folder, walked)?;
+        folder.write(CASES, &ComparedCase::columns().csv(&comparison.cases))?;
+        folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
+        Ok(comparison)
+    })
 }
 
 /// The comparison that the folder holds already, where it is this very one; `None` where [`run`] without
@@ -76,41 +54,18 @@ pub fn run(
 /// # Errors
 /// A case that is wrong, and a folder that holds anything else, another comparison too.
 pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Comparison>, RunError> {
-    let kind = FolderKind::Comparison;
-    let of_campaign = CampaignOptions { out: options.out.join(WALKS), ..options.clone() };
-    campaign::check(&plan.campaign, &of_campaign)?;
-    if options.out.symlink_metadata().is_err() {
-        return Ok(None);
-    }
-    let folder = claim(&options.out, kind, true)?;
-    let other = || {
-        let problem = "holds another comparison; name another folder, or remove that one";
-        Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
+    campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
+    let is_this = |there: &Comparison, _: &[PreparedCase]| {
+        there.of == plan.of && there.cases.iter().map(|case| case.name.as_str()).eq(plan.names())
     };
-    if kind.is_finished(folder.path())? {
-        let is_walked = |cases: Option<&[PreparedCase]>| {
-            cases.is_some_and(|all| all.iter().all(|case| case.line(&of_campaign.out).is_some()))
-        };
-        let is_walked = campaign::look(&plan.campaign, &of_campaign, is_walked)?;
-        let bytes = folder.read(kind.record())?;
-        let there = bytes.and_then(|bytes| serde_json::from_slice::<Comparison>(&bytes).ok());
-        let there = there.filter(|there| there.of == plan.of && is_walked);
-        let there = there.filter(|there| there.cases.iter().map(|case| case.name.as_str()).eq(plan.names()));
-        return there.map_or_else(other, |there| Ok(Some(there)));
-    }
-    match Unfinished::read(&folder)? {
-        Some(begun) => {
-            // Where a packing was taken away it is made again, and other work is refused then.
-            let is_this =
-                |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.work(all) == begun.work);
-            let is_this = campaign::look(&plan.campaign, &of_campaign, is_this)?;
-            if is_this { Ok(None) } else { other() }
-        }
-        None => Ok(None),
-    }
+    plan.study(&|cases| plan.work(cases)).found(options, is_this)
 }
 
 impl ComparePlan {
+    fn study<'a>(&'a self, work: &'a dyn Fn(&[PreparedCase]) -> String) -> StudyOfCases<'a> {
+        StudyOfCases { kind: FolderKind::Comparison, walks: WALKS, campaign: &self.campaign, work }
+    }
+
     /// Everything that the results follow from.
     fn work(&self, cases: &[PreparedCase]) -> String {
         let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
@@ -138,12 +93,4 @@ impl ComparePlan {
         }
         Ok(comparison)
     }
-}
-
-/// The outcome of a case that is done.
-fn outcome(case: &Path) -> Result<Outcome, RunError> {
-    let path = case.join(FolderKind::Run.record());
-    let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
-    let bytes = read_whole(&path).map_err(|error| failed(&error))?;
-    serde_json::from_slice(&bytes).map_err(|error| failed(&error))
 }

@@ -1,10 +1,10 @@
 //! What is compared, as the cases of a campaign that share one seed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use super::super::file_names::{names, refuse_twice};
 use crate::campaign::CampaignPlan;
 use crate::campaign::plan::PlannedCase;
-use crate::gradation::file_and_soil;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
@@ -67,10 +67,7 @@ impl ComparePlan {
                 CASES.end()
             )));
         }
-        let real: Vec<PathBuf> = files.iter().map(|file| real(file)).collect();
-        if let Some(twice) = (1..files.len()).find(|&at| real[..at].contains(&real[at])) {
-            return Err(RunError::Refused(format!("{} is named twice", shown(&files[twice]))));
-        }
+        refuse_twice(files)?;
         let mut cases = Vec::new();
         for (name, file) in names(files).into_iter().zip(files) {
             let scene = match compared {
@@ -106,74 +103,9 @@ impl ComparePlan {
     }
 }
 
-/// A table's file as the disk knows it, with the soil's name where one is given; a file that is not there is
-/// told apart by its name alone.
-fn real(file: &Path) -> PathBuf {
-    let (path, soil) = file_and_soil(file);
-    let path = path.canonicalize().unwrap_or(path);
-    match soil {
-        Some(soil) => format!("{}#{soil}", path.display()).into(),
-        None => path,
-    }
-}
-
-/// Short names, no two the same: the file's without its ending, with the soil's where it is one of several;
-/// the whole path where two would be the same, and in front of that its number where even those are.
-fn names(files: &[PathBuf]) -> Vec<String> {
-    let mut names: Vec<String> = files.iter().map(|file| short_name(file)).collect();
-    // A longer name can be another's short one.
-    for _ in files {
-        let again = shared(&names);
-        again.into_iter().for_each(|at| names[at] = shown(&files[at]));
-    }
-    // They are names of folders, too.
-    let hidden = |name: &String| name.is_empty() || name.starts_with('.');
-    for (at, name) in names.iter_mut().enumerate().filter(|(_, name)| hidden(name)) {
-        *name = format!("{} {name}", at + 1);
-    }
-    // Those with a number in front differ from each other: this ends.
-    loop {
-        let again = shared(&names);
-        if again.is_empty() {
-            return names;
-        }
-        again.into_iter().for_each(|at| names[at] = format!("{} {}", at + 1, names[at]));
-    }
-}
-
-/// Where names stand that are not alone; large and small letters are the same to some disks.
-fn shared(names: &[String]) -> Vec<usize> {
-    let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
-    (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
-}
-
-fn short_name(file: &Path) -> String {
-    let (path, soil) = file_and_soil(file);
-    let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
-    match soil {
-        None => stem,
-        Some(soil) => format!("{stem}: {soil}"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn named(files: &[&str]) -> Vec<String> {
-        names(&files.iter().map(PathBuf::from).collect::<Vec<_>>())
-    }
-
-    #[test]
-    fn names_are_short_where_they_are_alone() {
-        assert_eq!(named(&["a/f.csv", "g.csv", "s.xlsx#Filter A"]), ["f", "g", "s: Filter A"]);
-        assert_eq!(named(&["a/f.csv", "b/f.csv"]), ["a/f.csv", "b/f.csv"]);
-        assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);
-        assert_eq!(named(&["a/F.csv", "b/f.csv"]), ["a/F.csv", "b/f.csv"]);
-        assert_eq!(named(&["a/2 .f.csv", ".f"]), ["1 2 .f", "2 2 .f"]);
-        // None is the name of a folder that is there already.
-        assert_eq!(named(&["...csv", ".f"]), ["1 ..", "2 .f"]);
-    }
 
     #[test]
     fn one_file_under_two_names_is_named_twice() {
@@ -187,7 +119,6 @@ mod tests {
             let said = ComparePlan::new(&twice, &TableOptions::default()).unwrap_err().to_string();
             assert!(said.contains("is named twice"), "{said}");
         }
-        assert_ne!(real(&name("f.csv#A")), real(&name("f.csv#B")));
     }
 
     #[test]

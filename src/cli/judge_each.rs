@@ -1,0 +1,81 @@
+//! `voidwalk judge --each`: many samples against one or several filters, walked, in one table.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::args::JudgeArgs;
+use super::batch::{aligned, in_notes, of_filter};
+use super::case_progress::CaseProgress;
+use super::compare::campaign_options;
+use super::exit::accept;
+use super::print::{json, plain, shown, to_stdout};
+use crate::outcome::record::Verdict;
+use crate::run::RunError;
+use crate::store::format;
+use crate::study::batch::{self, BatchPlan, BatchWalks};
+use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
+
+/// Folder of a batch for which no other is named.
+const OUT: &str = "voidwalk-batch";
+
+/// Judges every sample and every filter.
+pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
+    let (tables, results) = (&args.tables, &args.results);
+    let quiet = results.walk.quiet;
+    let out = results.out.as_deref().unwrap_or(Path::new(OUT));
+    let options = campaign_options(out, &tables.set, &results.walk);
+    let walks = match (args.governing, tables.quick) {
+        (true, _) => BatchWalks::GoverningAlone,
+        (false, true) => BatchWalks::FirstLook,
+        (false, false) => BatchWalks::GoverningInFull,
+    };
+    let rules =
+        PairOptions { dispersive: tables.dispersive, joint_mm: tables.joint_mm, as_given: tables.as_given };
+    let of_scenes = tables.options()?;
+    let plan = BatchPlan::new(&args.base, &args.filters, &of_scenes, rules, walks, &options)?;
+    let found = if results.overwrite { None } else { batch::found(&plan, &options)? };
+    let batch = match found {
+        Some(found) => found,
+        None => {
+            let progress = CaseProgress::new(quiet, false);
+            progress.followed(|callbacks| batch::run(&plan, &options, results.overwrite, callbacks))?
+        }
+    };
+    if tables.set.json {
+        to_stdout(&json(format::BATCH, &batch)?);
+    } else if !quiet {
+        to_stdout(&words(&batch, &plan.constrictions_in_words(), out));
+    }
+    let names: Vec<String> = batch.rows.iter().map(name).collect();
+    let walked = batch.rows.iter().zip(&names).filter_map(|(row, name)| {
+        let walk = row.walk.as_ref()?;
+        Some((name.as_str(), walk.verdict, walk.confidence))
+    });
+    accept(results.accept.fail_on, walked)
+}
+
+fn name(row: &WalkedRow) -> String {
+    format!("{} in {}", row.rules.sample, row.rules.filter)
+}
+
+fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
+    let mut text = aligned(WalkedRow::columns(), &batch.rows) + &in_notes(&batch.notes);
+    let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
+    for filter in &batch.filters {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\n{}", of_filter(&rules, filter));
+        let classes = batch.classes(&filter.name);
+        let counted = Verdict::ALL.into_iter().zip(classes).filter(|(_, count)| *count > 0);
+        let counted: Vec<String> =
+            counted.map(|(class, count)| format!("{count} {}", class.words())).collect();
+        let walked: usize = classes.iter().sum();
+        let said = if walked == 0 { "none".into() } else { format!("{walked}: {}", counted.join(", ")) };
+        let _ = writeln!(text, "  walked {said}");
+    }
+    let _ = writeln!(text, "\n{}", plain(constrictions));
+    let _ = writeln!(text, "{}", left_out_in_brief(&batch.model_leaves_out));
+    let _ = writeln!(text, "table: {}", shown(&out.join("batch.csv")));
+    let _ = writeln!(text, "report: {}", shown(&out.join("batch.html")));
+    text
+}

@@ -1,0 +1,243 @@
+//! The page of a batch, from `batch.json` alone.
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::cases;
+use super::error::ReportError;
+use super::figures::{
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, ORANGE, PURPLE, Point, Rule, Shape, VERMILLION,
+    positive_range, shorten,
+};
+use super::files::json;
+use super::names::soil_name;
+use super::numbers::{interval_in_percent, significant, threshold};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out};
+use super::table::Table;
+use super::written::Written;
+use crate::outcome::record::Verdict;
+use crate::verdict::batch::may_govern;
+use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
+
+const RECORD: &str = "batch.json";
+
+/// Rows of the page's table; all are in `batch.csv`.
+const LISTED: usize = 2000;
+
+/// Lines of the filters whose D15F is drawn.
+const LINES: [(Colour, Dash); 6] = [
+    (BLACK, Dash::Dashed),
+    (VERMILLION, Dash::Dotted),
+    (GREEN, Dash::Dashed),
+    (PURPLE, Dash::Dotted),
+    (ORANGE, Dash::Dashed),
+    (BLACK, Dash::Dotted),
+];
+
+/// Writes `batch.html` and `figures/*.svg` into the folder of a batch.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_batch(folder: &Path) -> Result<Written, ReportError> {
+    let path = folder.join(RECORD);
+    let batch: WalkedBatch = json(&path)?;
+    if batch.rows.is_empty() {
+        let (field, value, allowed) = ("rows".into(), "empty".into(), "one or more".into());
+        return Err(ReportError::Value { path, field, value, allowed });
+    }
+    page(folder, &batch).write(folder, "batch.html", &citation())
+}
+
+fn name(name: &str) -> String {
+    clean(&shorten(name, 60))
+}
+
+/// What a filter is called here: the soil, or its whole path where that is the name of another, too.
+fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
+    let is_shared = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter)).count() > 1;
+    name(if is_shared { filter } else { soil_name(filter) })
+}
+
+fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
+    let names = html! {
+        "Samples " b { bdi { (name(soil_name(&batch.samples))) } } ", "
+        @if batch.filters.len() == 1 { "filter " } @else { "filters " }
+        @for (at, filter) in batch.filters.iter().enumerate() {
+            @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }
+        }
+    };
+    let first = html! { div.first {
+        section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
+        (leaves_out(&batch.model_leaves_out, &html! {
+            p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
+        }))
+    } };
+    let made = html! { p {
+        "voidwalk " (clean(&batch.version)) ", seed " (batch.seed) " for every walk. Each walk has a folder \
+         of its own with its report; " code { "batch.json" } " holds this page’s numbers, "
+        code { "batch.csv" } " its table with further columns."
+    } };
+    Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
+        .words(&first)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures([limits(batch), eroded(batch)].into_iter().flatten())
+        .section("Samples", &table(folder, batch))
+        .section("Notes on the files", &notes(batch))
+        .section("How this was made", &made)
+}
+
+/// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
+fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
+    let rows = || batch.of_filter(&filter.name);
+    let count = |met: Option<bool>| rows().filter(|row| row.rules.met == met).count();
+    let classes = batch.classes(&filter.name);
+    let walked: usize = classes.iter().sum();
+    let classes: Vec<String> = Verdict::ALL
+        .into_iter()
+        .zip(classes)
+        .filter(|(_, count)| *count > 0)
+        .map(|(class, count)| format!("{count} {}", class.words()))
+        .collect();
+    let mut govern: Vec<&WalkedRow> = rows().filter(|row| row.governs.is_some()).collect();
+    govern.sort_by_key(|row| row.governs);
+    let rules: Vec<BatchRow> = rows().map(|row| row.rules.clone()).collect();
+    let open: Vec<String> =
+        may_govern(&rules, &filter.name).into_iter().map(|row| name(&row.sample)).collect();
+    html! {
+        p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
+            (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
+        ul {
+            li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
+                (count(Some(false))) " not met, " (count(None)) " without a result." }
+            li { b { "Walk" } ": "
+                @if walked == 0 { "nothing was walked." }
+                @else { (walked) " walked: " (classes.join(", ")) "." } }
+            @for row in &govern { li { (governs(folder, row)) } }
+            @if !open.is_empty() { li { "May govern, as its limit is not known: " (open.join(", ")) "." } }
+            @if filter.curves.len() > 1 {
+                li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
+                    by the finest." }
+            }
+        }
+    }
+}
+
+/// A sample that governs: its limit, and what its walk says.
+fn governs(folder: &Path, row: &WalkedRow) -> Markup {
+    let rules = &row.rules;
+    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)));
+    html! {
+        @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
+        bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
+        @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
+        @if let Some(walk) = &row.walk {
+            "; " (cases::class(walk.verdict, folder, &walk.folder)) " by the walk"
+            @if let Some(of) = walk.probability_in_words() { ", probability of no erosion " (of) }
+        }
+        "."
+    }
+}
+
+fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
+    let class = |row: &WalkedRow| match &row.walk {
+        Some(walk) => html! {
+            (cases::class(walk.verdict, folder, &walk.folder)) br; span.small { (walk.depth()) }
+        },
+        None => html! { "not walked" br; span.small { (clean(&shorten(&row.not_walked, 80))) } },
+    };
+    let table = Table::of(batch.rows.iter().take(LISTED))
+        .class("cases")
+        .columns(WalkedRow::columns(), |row| row)
+        .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
+        .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
+        .showing("class", class);
+    html! {
+        (table.render())
+        @if batch.rows.len() > LISTED { p.small { "The rest is in batch.csv." } }
+        p.small {
+            "Limit: the strictest D15F by which the filter retains the sample. Governs: 1 for the sample \
+             with the least limit of its filter. Class by walk: with a link to the page of the walk; in \
+             full, or a first look of fewer replicates on a narrower lattice. Below a number its 95 % \
+             interval over the replicates; the threshold between the classes is "
+            (threshold(batch.threshold))
+            ". Probability of no erosion: that a test would show none, by what the walk is worth for soils \
+             of this kind."
+        }
+    }
+}
+
+fn notes(batch: &WalkedBatch) -> Markup {
+    html! { @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(note)) } } } } }
+}
+
+/// The limit of every sample against its D85B, with the D15F of the filters; none without a limit.
+fn limits(batch: &WalkedBatch) -> Option<Drawn> {
+    // A limit is the sample's: filters only differ where rules ask for more of one.
+    let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
+    let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
+    let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
+    let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
+    if rows.is_empty() {
+        return None;
+    }
+    let filters =
+        || batch.filters.iter().take(LINES.len()).filter_map(|filter| Some((filter, filter.d15f_mm?)));
+    let (low, high) = positive_range(rows.iter().map(|row| d85b(row)));
+    let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
+    let all = rows.iter().map(|row| limit(row)).chain(filters().map(|(_, mm)| mm));
+    let (low, high) = positive_range(all);
+    let y = Axis::log("Limit of D15F (mm)", low / 1.2, high * 1.2);
+    let what = "Strictest limit of D15F of each sample against its D85B, with the D15F of each filter";
+    let mut figure = Figure::new("Limits of the samples", what, "", x, y).names_above();
+    for ((filter, mm), (colour, dash)) in filters().zip(LINES) {
+        let label = format!("D15F of {}", shorten(&filter_name(batch, &filter.name), 24));
+        figure.add(Rule::new(Across::Y, mm, colour).dash(dash).label(&label));
+    }
+    let point = |row: &&WalkedRow| {
+        let shape = if row.governs == Some(1) { Shape::Square } else { Shape::Circle };
+        let point = Point::new(d85b(row), limit(row), BLUE, shape);
+        if row.rules.limit_at_most { point.hollow() } else { point }
+    };
+    let of = |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
+    figure.add_points("sample", of(false));
+    figure.add_points("governs a filter", of(true));
+    let caption = "Strictest limit of D15F of each sample. A filter retains the samples that lie above the \
+                   line of its D15F. Hollow: the limit is at most this.";
+    Some(Drawn::new("batch-limits", figure, caption))
+}
+
+/// Mass eroded in the first run against D15F by the limit: the rule and the walk, side by side.
+fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
+    let of = |row: &WalkedRow| {
+        let walk: &SampleWalk = row.walk.as_ref()?;
+        let first = walk.runs.first()?;
+        Some(cases::AtRatio {
+            ratio: row.rules.d15f_mm? / row.rules.limit_mm?,
+            class: walk.verdict,
+            value: 100.0 * first.mean,
+            interval: interval_in_percent(first),
+        })
+    };
+    let symbols: Vec<cases::AtRatio> = batch.rows.iter().filter_map(of).collect();
+    if symbols.is_empty() {
+        return None;
+    }
+    let ratios = symbols.iter().map(|symbol| symbol.ratio).chain([0.8, 1.25]);
+    let (low, high) = positive_range(ratios);
+    let x = Axis::log("D15F of the filter / limit of the sample (–)", low / 1.2, high * 1.2);
+    let y = Axis::percent("Base eroded in the first run, by mass (%)");
+    let limit = format!("{} %", 100.0 * batch.threshold);
+    let rules = vec![
+        Rule::new(Across::Y, 100.0 * batch.threshold, BLACK).dash(Dash::Dashed).label(&limit),
+        Rule::new(Across::X, 1.0, BLACK).dash(Dash::Dotted).label("limit by practice"),
+    ];
+    let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
+    let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
+    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Left of 1 the \
+                   rules of retention are met. Below the dashed line the walk erodes less than the \
+                   threshold. The class also takes the second run.";
+    Some(Drawn::new("batch-eroded", figure, caption))
+}

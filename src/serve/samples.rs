@@ -1,0 +1,66 @@
+//! Every sample of a sheet against filters: the table of rules, for the page and as a file.
+
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::sheets::Sheets;
+use crate::outcome::table::Shown;
+use crate::verdict::batch::columns;
+use crate::verdict::{BatchTable, PairOptions};
+
+/// Filters of a table.
+const FILTERS: usize = 6;
+
+/// The table of all samples of the sheet in which a base is, against filters.
+pub struct SampleTable(BatchTable);
+
+impl SampleTable {
+    /// Applies the rules.
+    ///
+    /// # Errors
+    /// There is no such sheet; a sheet that cannot be read; no filter, or too many of them.
+    pub fn new(sheets: &Sheets, base: &str, filters: &[&str], options: PairOptions) -> Result<Self, String> {
+        if !(1..=FILTERS).contains(&filters.len()) {
+            return Err(format!("name one to {FILTERS} filters"));
+        }
+        let whole = base.split_once('#').map_or(base, |(sheet, _)| sheet);
+        let paths: Vec<PathBuf> = filters.iter().map(|name| sheets.path(name)).collect::<Result<_, _>>()?;
+        let mut table = BatchTable::read(&sheets.path(whole)?, &paths, options).map_err(|e| e.to_string())?;
+        // Sheets have their own names here, and no folder.
+        for row in &mut table.rows {
+            row.filter = sheets.as_named(&row.filter);
+            row.note = sheets.as_named(&row.note);
+        }
+        table.filters.iter_mut().for_each(|filter| filter.name = sheets.as_named(&filter.name));
+        for (file, _) in &mut table.notes {
+            *file = sheets.as_named(&file.display().to_string()).into();
+        }
+        Ok(Self(table))
+    }
+
+    /// As the page shows it: headings, which of them stand over numbers, cells, and sentences on each filter.
+    pub fn json(&self) -> Value {
+        let columns: Vec<_> = columns().of_page().collect();
+        let text = |shown: Shown| shown.text;
+        let cells: Vec<Vec<String>> = self
+            .0
+            .rows
+            .iter()
+            .map(|row| columns.iter().map(|column| text((column.cell)(row))).collect())
+            .collect();
+        let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display()));
+        json!({
+            "headings": columns.iter().map(|column| &column.heading).collect::<Vec<_>>(),
+            "numbers": columns.iter().map(|column| column.is_number).collect::<Vec<_>>(),
+            "rows": cells,
+            "filters": self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows)).collect::<Vec<_>>(),
+            "notes": notes.collect::<Vec<_>>(),
+        })
+    }
+
+    /// As a file.
+    pub fn csv(&self) -> Vec<u8> {
+        columns().csv(&self.0.rows)
+    }
+}

@@ -1,0 +1,192 @@
+//! What a batch walks: the pairs of samples and filters as the cases of a campaign that share one seed.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use super::super::file_names::{names, refuse_twice, shared};
+use crate::campaign::plan::PlannedCase;
+use crate::campaign::{self, CampaignOptions, CampaignPlan};
+use crate::run::error::RunError;
+use crate::run::folder::shown;
+use crate::scene::{Scene, TableOptions};
+use crate::verdict::batch::{NAMED, governing};
+use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
+
+/// Voids across the lattice of a first look, as `voidwalk design` searches.
+const ACROSS: u64 = 20;
+
+/// Settings with which the size of the lattice is somebody's own.
+const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
+
+/// Why a pair that looks exchanged is not walked.
+const EXCHANGED: &str = "base and filter look exchanged; --as-given accepts them";
+
+/// Which pairs are walked, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BatchWalks {
+    /// A first look at every sample, and the three that govern each filter in full.
+    #[default]
+    GoverningInFull,
+    /// A first look at every sample.
+    FirstLook,
+    /// The three that govern each filter alone, in full.
+    GoverningAlone,
+}
+
+/// A batch, its pairs worked out.
+#[derive(Clone, Debug)]
+pub struct BatchPlan {
+    /// The samples, as they were named.
+    pub(super) samples: PathBuf,
+    /// The filters.
+    pub(super) filters: Vec<BatchFilter>,
+    /// What practice says of each pair; nothing is walked yet.
+    pub(super) rows: Vec<WalkedRow>,
+    /// The name of each row's case, whether it is walked or not.
+    pub(super) cases: Vec<String>,
+    /// Cases that are walked in full.
+    pub(super) in_full: HashSet<String>,
+    /// What was assumed of the files.
+    pub(super) notes: Vec<String>,
+    /// The cases that are walked.
+    pub(super) campaign: CampaignPlan,
+}
+
+impl BatchPlan {
+    /// The pairs of the samples of a file or a folder with filters. `tables` is what each scene is given
+    /// besides its two soils. A pair that cannot be walked stays in the table, with the reason.
+    ///
+    /// # Errors
+    /// A file that cannot be read; a filter that is named twice; cases that do not fit the memory; no pair
+    /// that can be walked.
+    pub fn new(
+        samples: &Path,
+        filters: &[PathBuf],
+        tables: &TableOptions,
+        rules: PairOptions,
+        walks: BatchWalks,
+        options: &CampaignOptions,
+    ) -> Result<Self, RunError> {
+        refuse_twice(filters)?;
+        let table = BatchTable::read(samples, filters, rules).map_err(RunError::refused)?;
+        let of_notes = table.notes.iter().map(|(file, note)| format!("{}: {note}", shown(file)));
+        let cases = case_names(&table, filters);
+        let mut plan = Self {
+            samples: samples.to_owned(),
+            rows: governed(&table),
+            filters: table.filters,
+            cases,
+            in_full: HashSet::new(),
+            notes: of_notes.collect(),
+            campaign: CampaignPlan {
+                file: "batch".into(),
+                title: format!("samples of {}", shown(samples)),
+                factors: vec!["sample".into(), "filter".into()],
+                cases: Vec::new(),
+            },
+        };
+        let looks = first_look(tables);
+        for (row, case) in plan.rows.iter_mut().zip(&plan.cases) {
+            let in_full = row.governs.is_some() && walks != BatchWalks::FirstLook;
+            if walks == BatchWalks::GoverningAlone && !in_full {
+                row.not_walked = "does not govern".into();
+                continue;
+            }
+            match scene(row, &plan.filters, if in_full { tables } else { &looks }) {
+                Ok(scene) => {
+                    let pair = [("sample", &row.rules.sample), ("filter", &row.rules.filter)];
+                    let levels = pair.map(|(factor, level)| (factor.to_owned(), level.clone())).to_vec();
+                    plan.campaign.cases.push(PlannedCase { name: case.clone(), levels, scene });
+                    plan.in_full.extend(in_full.then(|| case.clone()));
+                }
+                Err(problem) => row.not_walked = problem,
+            }
+        }
+        plan.leave_out_unsound(options)?;
+        Ok(plan)
+    }
+
+    /// Leaves out of the walks what is wrong in itself.
+    fn leave_out_unsound(&mut self, options: &CampaignOptions) -> Result<(), RunError> {
+        if !self.campaign.cases.is_empty() {
+            for failed in campaign::unsound(&self.campaign, options)? {
+                self.campaign.cases.retain(|case| case.name != failed.case);
+                let at = self.cases.iter().position(|case| *case == failed.case);
+                at.into_iter().for_each(|at| self.rows[at].not_walked = failed.problem.clone());
+            }
+        }
+        if self.campaign.cases.is_empty() {
+            let why = |row: &WalkedRow| {
+                format!("{} and {}: {}", row.rules.sample, row.rules.filter, row.not_walked)
+            };
+            let reasons: Vec<String> = self.rows.iter().take(NAMED).map(why).collect();
+            let problem = format!("no pair of a sample and a filter can be walked\n{}", reasons.join("\n"));
+            return Err(RunError::Refused(problem));
+        }
+        Ok(())
+    }
+
+    /// What the constrictions of the walks come from, in a sentence.
+    pub fn constrictions_in_words(&self) -> String {
+        self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
+    }
+}
+
+/// The rows of a table, with those that govern.
+fn governed(table: &BatchTable) -> Vec<WalkedRow> {
+    let of_filters: Vec<Vec<&BatchRow>> =
+        table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
+    let rank = |row: &BatchRow| {
+        let of_filter = |named: &Vec<&BatchRow>| named.iter().position(|other| std::ptr::eq(*other, row));
+        of_filters.iter().find_map(of_filter).map(|at| at as u64 + 1)
+    };
+    let walked = |row: &BatchRow| WalkedRow {
+        rules: row.clone(),
+        governs: rank(row),
+        walk: None,
+        not_walked: String::new(),
+    };
+    table.rows.iter().map(walked).collect()
+}
+
+/// A name for each row, no two the same: sample and filter.
+fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
+    let samples = table.rows.len() / filters.len().max(1);
+    let mut of_samples: Vec<String> = table.rows[..samples].iter().map(|row| row.sample.clone()).collect();
+    for at in shared(&of_samples) {
+        of_samples[at] = format!("{} {}", at + 1, of_samples[at]);
+    }
+    let of_filters = names(filters);
+    let pair = |filter: &String| {
+        let name = |sample: &String| format!("{sample} in {filter}");
+        of_samples.iter().map(name).collect::<Vec<_>>()
+    };
+    of_filters.iter().flat_map(pair).collect()
+}
+
+/// The scene of a pair, or why there is none.
+fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
+    let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
+    if filter.is_some_and(|filter| filter.curves.len() > 1) {
+        return Err("the filter is an envelope; name one of its curves to walk it".into());
+    }
+    if row.rules.is_refused {
+        return Err(EXCHANGED.into());
+    }
+    // Whether they are exchanged is known.
+    let tables = TableOptions { as_given: true, ..tables.clone() };
+    let filter = PathBuf::from(&row.rules.filter);
+    Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| problem.to_string())
+}
+
+/// The settings of a first look: as `--quick`, on a lattice no wider than is needed for the class.
+fn first_look(tables: &TableOptions) -> TableOptions {
+    let is_own = |change: &String| {
+        let name = change.split_once('=').map_or("", |(name, _)| name).trim();
+        OWN_LATTICE.contains(&name)
+    };
+    let lattice = ["nx", "ny"].map(|side| format!("network.{side}={ACROSS}"));
+    let lattice = lattice.into_iter().filter(|_| !tables.changes.iter().any(is_own));
+    let changes = lattice.chain(tables.changes.iter().cloned()).collect();
+    TableOptions { quick: true, changes, ..tables.clone() }
+}

@@ -1,0 +1,110 @@
+//! The table of many samples against filters, from their files.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::batch::{BatchRow, NAMED, governing, may_govern, more_with_that_limit};
+use super::pair::PairOptions;
+use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
+use crate::outcome::three;
+
+/// A filter of a batch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct BatchFilter {
+    /// As it was named, and as the rows name it.
+    pub name: String,
+    /// What its curves are called; several are an envelope.
+    pub curves: Vec<String>,
+    /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
+    pub d15f_mm: Option<f64>,
+}
+
+impl BatchFilter {
+    /// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
+    pub fn in_words(&self, rows: &[BatchRow]) -> Vec<String> {
+        let Self { name, curves, .. } = self;
+        let of_filter = || rows.iter().filter(|row| row.filter == *name);
+        let count = |met: Option<bool>| of_filter().filter(|row| row.met == met).count();
+        let [met, not_met, none] = [Some(true), Some(false), None].map(count);
+        let samples = of_filter().count();
+        let one_or_more = if samples == 1 { "sample" } else { "samples" };
+        let mut said = vec![format!(
+            "{name}: of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result"
+        )];
+        if curves.len() > 1 {
+            said.push(format!(
+                "an envelope of {} curves ({}): retention by the coarsest, drainage by the finest",
+                curves.len(),
+                curves.join(", ")
+            ));
+        }
+        let strictest = governing(rows, name, NAMED);
+        for (at, row) in strictest.iter().enumerate() {
+            let what = if at == 0 { "governing sample" } else { "then" };
+            let at_most = if row.limit_at_most { " at most" } else { "" };
+            let limit = three(row.limit_mm.unwrap_or(0.0));
+            said.push(format!("{what} {}: D15F up to {limit} mm{at_most} ({})", row.sample, row.rule));
+        }
+        let more = more_with_that_limit(rows, name, &strictest);
+        if more > 0 {
+            said.push(format!("and {more} more with the same limit"));
+        }
+        let open: Vec<&str> = may_govern(rows, name).into_iter().map(|row| row.sample.as_str()).collect();
+        if !open.is_empty() {
+            said.push(format!("may govern, as its limit is not known: {}", open.join(", ")));
+        }
+        said
+    }
+}
+
+/// What practice says of every sample and filter, filter by filter.
+#[derive(Clone, Debug)]
+pub struct BatchTable {
+    /// A row for each filter and sample.
+    pub rows: Vec<BatchRow>,
+    /// The filters.
+    pub filters: Vec<BatchFilter>,
+    /// What was assumed of a file, once: the file and the sentence.
+    pub notes: Vec<(PathBuf, String)>,
+}
+
+impl BatchTable {
+    /// Reads the samples of a file or a folder, as [`samples_in`], and the filters; each soil of a filter's
+    /// file is a curve of its envelope.
+    ///
+    /// ```no_run
+    /// use voidwalk::verdict::{BatchTable, PairOptions};
+    /// let table = BatchTable::read("site.ags".as_ref(), &["filter.csv".into()], PairOptions::default())?;
+    /// println!("{} samples", table.rows.len());
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A file that cannot be read as a table.
+    pub fn read(samples: &Path, filters: &[PathBuf], options: PairOptions) -> Result<Self, GradationError> {
+        let of_base = samples_in(samples)?;
+        let mut table = Self { rows: Vec::new(), filters: Vec::new(), notes: Vec::new() };
+        for filter in filters {
+            let curves = curves_in_file(filter, None)?;
+            let name = filter.display().to_string();
+            let rows = of_base.iter().map(|sample| BatchRow::of(sample, (&name, &curves), options));
+            let rows: Vec<BatchRow> = rows.collect();
+            let d15f_mm = rows.iter().find_map(|row| row.d15f_mm);
+            table.rows.extend(rows);
+            let curves = curves.into_iter().map(|(name, _)| name).collect();
+            table.filters.push(BatchFilter { name, curves, d15f_mm });
+        }
+        let files: Vec<PathBuf> = match samples.is_dir() {
+            true => of_base.iter().map(|sample| file_and_soil(&sample.path).0).collect(),
+            false => vec![samples.to_owned()],
+        };
+        let mut read = HashSet::new();
+        for file in files.iter().chain(filters).filter(|file| read.insert(*file)) {
+            table.notes.extend(notes_in_file(file)?.into_iter().map(|note| (file.clone(), note)));
+        }
+        Ok(table)
+    }
+}

@@ -1,0 +1,200 @@
+//! Many samples against filters: what practice says of each pair, and beside it what its walk says.
+
+use serde::{Deserialize, Serialize};
+
+use super::batch::{BatchRow, columns};
+use super::batch_table::BatchFilter;
+use crate::outcome::BaseSize;
+use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
+use crate::outcome::table::Columns;
+use crate::outcome::verdict::THRESHOLD;
+
+/// Columns of the table that a terminal and a page show; all are in the file.
+const SHOWN: [&str; 12] = [
+    "sample",
+    "filter",
+    "group",
+    "d85b_mm",
+    "limit_mm",
+    "result",
+    "governs",
+    "class",
+    "confidence",
+    "first_eroded_mass_percent",
+    "probability_no_erosion_percent",
+    "note",
+];
+
+/// The whole of `batch.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WalkedBatch {
+    /// Version of the program.
+    pub version: String,
+    /// Hash of everything that the rows follow from: samples, filters and settings.
+    pub work: String,
+    /// Seed of every walk.
+    pub seed: u64,
+    /// The samples, as they were named.
+    pub samples: String,
+    /// The filters.
+    pub filters: Vec<BatchFilter>,
+    /// A row for each filter and sample, filter by filter.
+    pub rows: Vec<WalkedRow>,
+    /// What was assumed of the files, a sentence each.
+    pub notes: Vec<String>,
+    /// Eroded mass fraction that divides the classes: 0.075.
+    pub threshold: f64,
+    /// What no walk contains.
+    pub model_leaves_out: Vec<ModelLimit>,
+}
+
+/// One sample and one filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WalkedRow {
+    /// What practice says.
+    #[serde(flatten)]
+    pub rules: BatchRow,
+    /// 1 for the sample that governs the filter by the rules, 2 and 3 for those next to it.
+    pub governs: Option<u64>,
+    /// What its walk says; `None` where there was none.
+    pub walk: Option<SampleWalk>,
+    /// Why it was not walked; empty where it was.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub not_walked: String,
+}
+
+/// What the walk of one sample says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SampleWalk {
+    /// Folder of its results, inside the batch's.
+    pub folder: String,
+    /// Whether it was walked in full; otherwise it was a first look.
+    pub in_full: bool,
+    /// The class that its replicates together support.
+    pub verdict: Verdict,
+    /// How far it can be relied on.
+    pub confidence: Confidence,
+    /// The weightiest reason why no further.
+    pub reason: Option<String>,
+    /// Replicates.
+    pub replicates: u64,
+    /// D15F over D85B and D95B.
+    pub ratios: Ratios,
+    /// D85B, and which base it is of.
+    pub base: Option<BaseSize>,
+    /// Eroded mass fraction of each run.
+    pub runs: Vec<Statistic>,
+    /// Least and most eroded over the range of the constriction curve, one pair per run; empty where the
+    /// curve is no range.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve_range: Vec<[f64; 2]>,
+    /// The probability that a test would show no erosion, by the walk; `None` where evidence does not say.
+    pub probability_no_erosion: Option<f64>,
+    /// On which side of that number it lies, where the walk's boundary was not found.
+    pub probability_bound: Option<Bound>,
+    /// The same probability by published tests alone.
+    pub probability_by_tests: Option<f64>,
+}
+
+impl SampleWalk {
+    /// Of the outcome in this folder.
+    pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
+        let evidence = outcome.evidence.as_ref();
+        let range = outcome.curve_range.as_ref();
+        Self {
+            folder,
+            in_full,
+            verdict: outcome.verdict,
+            confidence: outcome.confidence,
+            reason: outcome.reasons.first().cloned(),
+            replicates: outcome.replicates.len() as u64,
+            ratios: outcome.ratios,
+            base: outcome.inputs.base_size(),
+            runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+            curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
+            probability_no_erosion: evidence.and_then(|of| of.probability_no_erosion),
+            probability_bound: evidence.and_then(|of| of.probability_no_erosion.and(of.bound)),
+            probability_by_tests: evidence.and_then(|of| of.probability_by_tests),
+        }
+    }
+
+    /// How it was walked, in words.
+    pub fn depth(&self) -> &'static str {
+        if self.in_full { "in full" } else { "first look" }
+    }
+
+    /// The probability of no erosion by the walk, as `at least 93 %`.
+    pub fn probability_in_words(&self) -> Option<String> {
+        let bound = match self.probability_bound {
+            Some(Bound::AtLeast) => "at least ",
+            Some(Bound::AtMost) => "at most ",
+            None => "",
+        };
+        Some(format!("{bound}{:.0} %", 100.0 * self.probability_no_erosion?))
+    }
+}
+
+impl WalkedBatch {
+    /// A batch of these rows.
+    pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            work: String::new(),
+            seed: 0,
+            samples,
+            filters,
+            rows,
+            notes: Vec::new(),
+            threshold: THRESHOLD,
+            model_leaves_out: Vec::new(),
+        }
+    }
+
+    /// The rows of a filter.
+    pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
+        self.rows.iter().filter(move |row| row.rules.filter == filter)
+    }
+
+    /// How many walks of a filter came to each class, in the order of [`Verdict::ALL`].
+    pub fn classes(&self, filter: &str) -> [usize; 4] {
+        let count = |class| {
+            self.of_filter(filter).filter_map(|row| row.walk.as_ref()).filter(move |w| w.verdict == class)
+        };
+        Verdict::ALL.map(|class| count(class).count())
+    }
+}
+
+impl WalkedRow {
+    /// The columns of `batch.csv`, and under their headings what a terminal and a page show.
+    pub fn columns<'a>() -> Columns<'a, Self> {
+        let walk = |row: &Self| row.walk.clone();
+        let of_walk = Columns::default()
+            .column("governs", |row: &Self| row.governs)
+            .headed("Governs")
+            .column("walked", |row: &Self| row.walk.as_ref().map_or("not walked", SampleWalk::depth))
+            .column("class", move |row| walk(row).map(|walk| walk.verdict))
+            .headed("Class by walk")
+            .confidence(|row| row.walk.as_ref().map(|walk| walk.confidence), |_| None)
+            .column("replicates", move |row| walk(row).map(|walk| walk.replicates))
+            .digits("d15f_over_d85b", 4, move |row| walk(row).map(|walk| walk.ratios.d15f_over_d85b))
+            .eroded(|row, run| {
+                let walk = row.walk.as_ref();
+                let range = walk.and_then(|walk| walk.curve_range.get(run).copied());
+                (walk.and_then(|walk| walk.runs.get(run).copied()), range)
+            })
+            .percent("probability_no_erosion_percent", move |row| walk(row)?.probability_no_erosion)
+            .number("Probability of no erosion", move |row| walk(row)?.probability_in_words())
+            .column("probability_bound", move |row| {
+                let bound = walk(row)?.probability_bound?;
+                Some(if bound == Bound::AtLeast { "at least" } else { "at most" })
+            })
+            .percent("probability_by_tests_percent", move |row| walk(row)?.probability_by_tests)
+            .column("reason", move |row| walk(row)?.reason)
+            .column("not_walked", |row: &Self| row.not_walked.clone())
+            .column("folder", move |row| walk(row).map(|walk| walk.folder));
+        columns().of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
+    }
+}
