@@ -109,7 +109,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
-    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
+    let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
     let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
     let main = html! {
         section.sheet {

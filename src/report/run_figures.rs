@@ -115,7 +115,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         figure = figure.sieves();
     }
     let name = |kind: &str, name: &str| {
-        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(soil_name(name), 24)) }
+        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(&soil_name(name), 24)) }
     };
     boundaries::draw(&mut figure, &limits);
     // Of two curves of the base each says which it is; of one, it is as sampled.

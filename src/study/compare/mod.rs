@@ -15,10 +15,12 @@ use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign, ReadyCases, Walk};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Outcome;
+use crate::outcome::rules::Authority;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
 use crate::store::{Folder, read_whole};
+use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -120,6 +122,12 @@ impl ComparePlan {
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
 
+    /// Whose rules the sheet of a case lists.
+    fn authority_of(&self, case: &str) -> Authority {
+        let planned = self.campaign.cases.iter().find(|planned| planned.name == case);
+        planned.and_then(|planned| planned.scene.about.authority).unwrap_or_default()
+    }
+
     /// The cases that were walked, side by side.
     fn compared(&self, folder: &Folder, walked: &FinishedCampaign) -> Result<Comparison, RunError> {
         let mut outcomes = Vec::new();
@@ -135,6 +143,10 @@ impl ComparePlan {
             case.walk = outcome.walk_in_words();
             case.next = outcome.next_in_words();
             case.beside = outcome.beside_the_verdict();
+            case.found = outcome.ordered().into_iter().map(|finding| finding.sentence).collect();
+            let d15f = Some(outcome.inputs.filter.d15_mm);
+            let of_authority = of_pair(&outcome.rules, self.authority_of(&case.name), d15f);
+            case.by_authority = of_authority.map_or(String::new(), |said| format!("{said} {ON_ALL_RULES}"));
         }
         Ok(comparison)
     }
