@@ -8,6 +8,7 @@ use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{SizeUnit, in_digits, whole};
+use super::rules::inches;
 use super::shell::{clean, unbroken};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
@@ -180,10 +181,8 @@ fn result(rule: &AppliedRule) -> Option<bool> {
 
 /// A value or a limit of a rule with its unit, in inches, too, where those are shown.
 fn of_rule(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
-    match (rule.unit.as_str(), unit) {
-        ("mm", SizeUnit::MmAndInches) => unit.size(value),
-        (of_rule, _) => format!("{} {of_rule}", in_digits(value, 3)).trim_end().to_owned(),
-    }
+    let shown = format!("{}\u{202f}{}", in_digits(value, 3), rule.unit);
+    shown.trim_end().to_owned() + &inches(rule, value, unit)
 }
 
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {

@@ -126,7 +126,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         h2 { "Figures" }
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
-        (rules(outcome))
+        (rules(outcome, unit))
         (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))

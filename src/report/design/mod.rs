@@ -9,7 +9,7 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::files::{json, rows};
 use super::names::soil_name;
-use super::numbers::{duration, significant, threshold, trimmed, whole};
+use super::numbers::{SizeUnit, duration, significant, threshold, trimmed, whole};
 use super::rules;
 use super::section::Sections;
 use super::shell::{citation, clean, fact, unbroken};
@@ -348,7 +348,7 @@ fn practice(design: &Design) -> Markup {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
                 @if design.least_held().is_some() { ", the coarsest that holds in the model" } "."
             }
-            (rules::table(&rules))
+            (rules::table(&rules, SizeUnit::Mm))
         }
     }
 }
