@@ -2,6 +2,7 @@
 """The eleven problems of a dam engineer: the program's first lines beside limits worked out by hand, and pictures of its pages.
 
     scripts/checks/eleven_problems.py [--binary target/release/voidwalk] [--only a,b2] [--pictures DIR] [--out results/eleven-problems.md]
+                                      [--set network.nx=8 ...]
 
 Writes the soils of each problem as sheets (`trial_sheets.py` has them), runs `judge`, `design` or `compare` as somebody would who gives no
 density, and takes what the program says first, its seconds and its exit code. By hand: D15F by logarithmic interpolation, the limit of design by
@@ -10,7 +11,7 @@ lines are these within 1 %, where it says "met" or "not met" as the limit has it
 
 `--pictures DIR` prints each page on A4 and Letter and looks at it at 1280 px, 390 px and in dark (Chromium; `scripts/browser`). What breaks
 there is a fault of the problem: a first printed page that lacks a part or holds a word of the program, a table that is wider than its sheet.
-Exit code 1 where a row is not equal. Python 3's standard library only.
+`--set` makes the walks smaller, for the pages alone. Exit code 1 where a row is not equal. Python 3's standard library only.
 """
 
 import argparse
@@ -105,6 +106,7 @@ class Problem:
         command, *flags = self.call
         self.args = {"judge": [command, f"{base}.csv", *files, *flags], "compare": [command, "--base", f"{base}.csv", *files, *flags],
                      "design": [command, f"{base}.csv", *(["--filter", *files] if files else []), *flags]}[command]
+        self.args += [word for one in options.set for word in ("--set", one)]
         self.faults = []
 
     def run(self):
@@ -188,6 +190,7 @@ def main():
     parser.add_argument("--only", help="names of problems, with commas between them")
     parser.add_argument("--pictures", type=pathlib.Path, help="folder for pictures and prints of each page")
     parser.add_argument("--out", type=pathlib.Path, help="Markdown page whose table is replaced")
+    parser.add_argument("--set", nargs="*", default=[], metavar="KEY=VALUE", help="settings of every walk")
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else list(PROBLEMS)
     rows, wrong = [], 0
