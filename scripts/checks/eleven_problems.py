@@ -51,7 +51,7 @@ PROGRAM_WORDS = re.compile(
 
 # A sheet has its rules, its sizes and its figure on the first page.
 FIRST_PAGE = {"judge": ["Figure 1.", "D15", "D85", "Group by ASTM D2487", "Rules of practice", "The model leaves out: "],
-              "design": ["Figure 1.", "Band", "The model leaves out: "], "compare": ["Practice", "Walk", "Next", "The model leaves out: "]}
+              "design": ["Figure 1.", "D15F", "The model leaves out: "], "compare": ["Practice", "Walk", "Next", "The model leaves out: "]}
 
 
 def continuing_limit(base):

@@ -8,6 +8,7 @@ use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
+use super::names::soil_name;
 use super::numbers::threshold;
 use super::run_figures::run_name;
 use super::section::Sections;
@@ -101,7 +102,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
     };
     let names = match common.is_empty() {
         true => html! {},
-        false => html! { (capital(common)) " " b { bdi { (name(&comparison.common)) } } },
+        false => html! { (capital(common)) " " b { bdi { (name(&soil_name(&comparison.common))) } } },
     };
     let first = html! { section.sheet {
             (answers(comparison))

@@ -86,12 +86,16 @@ const CURVE: &str = ", constrictions ";
 
 /// What was found, without the names of settings: what speaks against the answer first.
 fn told(design: &Design) -> Vec<String> {
+    // Why a row has no band stands in the answer itself.
+    let notes = design.boundaries.iter().filter_map(|row| row.band_note.as_ref());
+    let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
+    let is_said = |of: &&DesignFinding| notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
         of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
     };
     let (against, others): (Vec<&DesignFinding>, Vec<&DesignFinding>) =
-        design.findings.iter().partition(|of| of.finding.against);
+        design.findings.iter().filter(|of| !is_said(of)).partition(|of| of.finding.against);
     // What no finding says: of an authority's rules, and in files of earlier versions.
     let is_found = |said: &&String| !design.findings.iter().any(|of| of.words() == **said);
     let more = |said: &'_ [String]| said.iter().filter(is_found).cloned().collect::<Vec<String>>();
@@ -166,7 +170,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
             @for row in &design.boundaries {
                 @if let Some(note) = &row.band_note {
                     p {
-                        b { "No band for " (clean(&row.density)) ", " (clean(&row.thickness)) ". " }
+                        b { "No band for " (clean(&row.name())) ", " (clean(&row.thickness)) ". " }
                         (sentence(note))
                     }
                 }
