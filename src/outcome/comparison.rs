@@ -68,8 +68,8 @@ pub struct ComparedCase {
     /// What an authority's rules say of the pair and leave out, where one is named; empty for all.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub by_authority: String,
-    /// What was found about the verdict, the weightiest first, without the names of settings; empty in records
-    /// of earlier versions.
+    /// What was found about the verdict, the weightiest first, without the names of settings. Records of
+    /// earlier versions do not say.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub found: Vec<String>,
     /// What else stands beside every verdict, in sentences.

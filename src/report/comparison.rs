@@ -115,8 +115,8 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
                 @if comparison.model_leaves_out.is_empty() {
                     "What the model leaves out stands on the page of each case."
                 } @else { (clean(&left_out_in_brief(&comparison.model_leaves_out))) }
-                " The verdicts of the walk are the model’s. They do not replace a filter test or a designer’s \
-                 judgement."
+                " The verdicts of the walk are the model’s. They do not replace a filter test or a \
+                 designer’s judgement."
             }
     } };
     let table = html! {

@@ -1365,8 +1365,8 @@ class ComparedCase(_ComparedCase, total=False):
     next: str
     #: What an authority's rules say of the pair and leave out, where one is named; empty for all.
     by_authority: str
-    #: What was found about the verdict, the weightiest first, without the names of settings; empty in records of
-    #: earlier versions.
+    #: What was found about the verdict, the weightiest first, without the names of settings. Records of earlier
+    #: versions do not say.
     found: List[str]
     #: What else stands beside every verdict, in sentences.
     beside: List[str]
