@@ -78,7 +78,7 @@ def design_limit(soil, dispersive=False):
     soil = regraded(soil)
     fines, d85 = finer(soil, 0.075), d(soil, 85)
     if fines > 85:
-        return max((6.5 if dispersive else 9) * d85, 0.2)
+        return max((6.4 if dispersive else 9) * d85, 0.2)
     if fines >= 40:
         return 0.5 if dispersive else 0.7
     if fines >= 15:

@@ -136,6 +136,9 @@ pub struct CampaignPlan {
 type Level = (String, Vec<String>);
 
 impl CampaignPlan {
+    /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
+    pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
+
     /// Reads a plan and every scene in it.
     ///
     /// # Errors
@@ -396,6 +399,29 @@ mod tests {
         assert_eq!(names, ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]);
         let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.walk.seed).collect();
         assert_eq!(seeds.len(), 4);
+    }
+
+    /// As it is printed, and with every key that stands behind a "#".
+    #[test]
+    fn the_plan_to_start_from_is_one_and_names_every_key() {
+        let text = CampaignPlan::INIT_TEXT;
+        assert_eq!(plan(text).unwrap().cases.len(), 4);
+        let uncommented = |line: &str| match line.strip_prefix("# ") {
+            Some(rest) if rest.starts_with("[[") || rest.contains(" = ") && !rest.starts_with("scene") => {
+                rest.to_owned()
+            }
+            _ => line.to_owned(),
+        };
+        let whole: Vec<String> = text.lines().map(uncommented).collect();
+        let whole = plan(&whole.join("\n")).unwrap();
+        // Without the combination that is left out, and with the case outside the cross.
+        assert_eq!((whole.cases.len(), whole.cases[3].name.as_str()), (4, "wide base"));
+        assert!(whole.cases.iter().all(|case| case.scene.walk.seed == 1), "common seeds");
+        let known = plan("no = 1").unwrap_err().to_string();
+        for key in ["title", "seed", "seeds", "scene", "set", "factor", "leave_out", "case"] {
+            let is_there = [format!("{key} = "), format!("[{key}]")].iter().any(|of| text.contains(of));
+            assert!(is_there && known.contains(key), "{key}: {known}");
+        }
     }
 
     #[test]

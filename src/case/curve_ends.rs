@@ -30,11 +30,11 @@ pub(super) fn of(
         let name = format!("constrictions {:.1} % coarser", 100.0 * (coarser - 1.0));
         Some(OtherCurve { name, curve: curve.scaled(coarser).ok()?, times_grains: 1.0 })
     });
-    let guess = |density: f64| {
-        let name = format!("estimate = {density}");
+    let guess = |(density, name): (f64, &str)| {
+        let name = name.to_owned();
         Some(OtherCurve { name, curve: inscribed(filter, density).ok()?, times_grains: 1.0 })
     };
-    let is_other = |end: &f64| guessed.is_some_and(|given| given != *end);
-    let guesses = [1.0, 0.0].into_iter().filter(is_other).map(guess);
+    let is_other = |(end, _): &(f64, &str)| guessed.is_some_and(|given| given != *end);
+    let guesses = [(1.0, "densest guess"), (0.0, "loosest guess")].into_iter().filter(is_other).map(guess);
     coarser.into_iter().chain(guesses).flatten().collect()
 }

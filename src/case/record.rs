@@ -4,6 +4,7 @@ use super::{Case, Input};
 use crate::gradation::Gradation;
 use crate::network::ExitRule;
 use crate::outcome::record::{self, InputFile};
+use crate::outcome::three;
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
 impl Case {
@@ -132,7 +133,7 @@ impl Case {
             BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
         };
         let regraded = self.regraded_from.as_ref();
-        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {at:.3} mm"))
+        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {} mm", three(*at)))
     }
 
     /// The network that was walked, where its constrictions have no direction of their own.

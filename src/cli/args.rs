@@ -57,6 +57,9 @@ pub enum Command {
     Init {
         /// File to write [default: stdout]
         path: Option<PathBuf>,
+        /// The plan of a campaign instead of a scene, every key explained
+        #[arg(long, conflicts_with_all = ["json", "schema"])]
+        plan: bool,
         /// Print every setting as JSON instead: type, default, allowed values, meaning
         #[arg(long, conflicts_with = "path")]
         json: bool,

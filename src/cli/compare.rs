@@ -88,6 +88,9 @@ fn words(comparison: &Comparison) -> String {
         line(format!("  Practice: {}", case.practice));
         line(format!("  Walk: {}", case.walk));
         line(format!("  Next: {}", case.next));
+        if !case.by_authority.is_empty() {
+            line(format!("  {}", case.by_authority));
+        }
         line(format!(
             "  D15F/D85B {:.2}{}, {}",
             case.ratios.d15f_over_d85b,

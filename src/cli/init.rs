@@ -1,14 +1,15 @@
-//! `voidwalk init`: the built-in scene, as a start.
+//! `voidwalk init`: the built-in scene, or the plan of a campaign, as a start.
 
 use std::path::Path;
 
 use super::print::{json, shown, to_stdout};
-use crate::run::{RunError, write_built_in};
+use crate::campaign::CampaignPlan;
+use crate::run::{RunError, write_built_in, write_new};
 use crate::scene::Scene;
 use crate::store::format::{self, Format};
 
-/// Writes the built-in scene, or says what may be set, or what a file holds.
-pub fn init(path: Option<&Path>, as_json: bool, schema: Option<Format>) -> Result<(), RunError> {
+/// Writes the built-in scene or a plan, or says what may be set, or what a file holds.
+pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<Format>) -> Result<(), RunError> {
     if let Some(form) = schema {
         to_stdout(form.schema);
         return Ok(());
@@ -18,10 +19,14 @@ pub fn init(path: Option<&Path>, as_json: bool, schema: Option<Format>) -> Resul
         return Ok(());
     }
     let Some(path) = path else {
-        to_stdout(&Scene::init_text());
+        to_stdout(&if plan { CampaignPlan::INIT_TEXT.to_owned() } else { Scene::init_text() });
         return Ok(());
     };
-    write_built_in(path)?;
+    if plan {
+        write_new(path, CampaignPlan::INIT_TEXT.as_bytes())?;
+    } else {
+        write_built_in(path)?;
+    }
     to_stdout(&format!("{}\n", shown(path)));
     Ok(())
 }

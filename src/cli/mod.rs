@@ -89,7 +89,7 @@ pub fn main_with(start: Start) -> u8 {
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
-        Command::Init { path, json, schema } => init::init(path.as_deref(), json, schema),
+        Command::Init { path, plan, json, schema } => init::init(path.as_deref(), plan, json, schema),
         Command::Examples { folder } => write_examples::examples(&folder),
         Command::Design(args) => design::design(&args),
         Command::Campaign(args) => campaign::campaign(&args),

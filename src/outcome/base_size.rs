@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::numbers::SizeUnit;
 use super::record::{BaseRecord, Inputs};
 
 /// D85 of a base (mm), of the base as it is walked.
@@ -26,10 +27,16 @@ impl BaseSize {
 
     /// All of it, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`.
     pub fn words(&self) -> String {
+        self.words_in(SizeUnit::Mm)
+    }
+
+    /// The same, with inches behind each D85 where they are shown.
+    pub fn words_in(&self, unit: SizeUnit) -> String {
+        let size = |mm: f64| format!("{} mm{}", three(mm), unit.beside(mm));
         let before = self.as_sampled_mm.filter(|_| self.regraded_at_mm.is_some());
-        let before = before.map_or(String::new(), |d85| format!(" (as sampled {} mm)", three(d85)));
+        let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
         let comma = if self.regraded_at_mm.is_some() { "," } else { "" };
-        format!("D85B {} mm{comma} {}{before}", three(self.d85_mm), self.grading())
+        format!("D85B {}{comma} {}{before}", size(self.d85_mm), self.grading())
     }
 }
 

@@ -65,6 +65,13 @@ pub struct ComparedCase {
     /// What to do next.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub next: String,
+    /// What an authority's rules say of the pair and leave out, where one is named; empty for all.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub by_authority: String,
+    /// What was found about the verdict, the weightiest first, without the names of settings. Records of
+    /// earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub found: Vec<String>,
     /// What else stands beside every verdict, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<String>,
@@ -198,6 +205,8 @@ impl ComparedCase {
             headline: String::new(),
             walk: String::new(),
             next: String::new(),
+            by_authority: String::new(),
+            found: Vec::new(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
             beside: Vec::new(),
             replicates: outcome.replicates.len() as u64,

@@ -178,10 +178,14 @@ impl SizeUnit {
 
     /// A size with its unit, and in inches, too, where those are shown.
     pub fn size(self, value: f64) -> String {
-        let shown = size(value, self == Self::D0f);
+        size(value, self == Self::D0f) + &self.beside(value)
+    }
+
+    /// What stands behind a size in mm: inches, where those are shown.
+    pub fn beside(self, mm: f64) -> String {
         match self {
-            Self::D0f | Self::Mm => shown,
-            Self::MmAndInches => format!("{shown} ({}{THIN}in)", significant(value / INCH_MM)),
+            Self::D0f | Self::Mm => String::new(),
+            Self::MmAndInches => format!(" ({}{THIN}in)", significant(mm / INCH_MM)),
         }
     }
 }

@@ -65,7 +65,7 @@ pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<
     if frames > 1 {
         let step = text[start..].lines().nth(1).map_or("", str::trim);
         let step = shortened(step);
-        notes.push(format!("{file} holds {frames} frames: the last one, timestep {step}, is taken"));
+        notes.push(format!("holds {frames} frames: the last one, timestep {step}, is taken"));
     }
     let before = text[..start].matches('\n').count();
     let mut lines = text[start..].lines().enumerate().map(|(i, line)| (before + i + 1, line));

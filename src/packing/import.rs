@@ -271,7 +271,7 @@ fn complete(
     fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
     if unit != LengthUnit::Mm {
         into_mm(&mut packing, unit, (file, line))?;
-        notes.push(format!("{file}: lengths are in {}, and are turned into mm", unit.words()));
+        notes.push(format!("lengths are in {}, and are turned into mm", unit.words()));
     }
     Ok((packing, notes))
 }

@@ -47,7 +47,7 @@ fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: SizeUnit) -> Marku
         .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
     html! {
         div {
-            h3 { (kind) ": " bdi { (clean(soil_name(name))) } }
+            h3 { (kind) ": " bdi { (clean(&soil_name(name))) } }
             (table)
             @if finest > 0.0 {
                 p.small {

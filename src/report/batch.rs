@@ -57,12 +57,12 @@ fn name(name: &str) -> String {
 /// What a filter is called here: the soil, or its whole path where that is the name of another, too.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     let is_shared = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter)).count() > 1;
-    name(if is_shared { filter } else { soil_name(filter) })
+    if is_shared { name(filter) } else { name(&soil_name(filter)) }
 }
 
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
-        "Samples " b { bdi { (name(soil_name(&batch.samples))) } } ", "
+        "Samples " b { bdi { (name(&soil_name(&batch.samples))) } } ", "
         @if batch.filters.len() == 1 { "filter " } @else { "filters " }
         @for (at, filter) in batch.filters.iter().enumerate() {
             @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }

@@ -2,7 +2,7 @@
 //! lines on the sheet of gradations.
 
 use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
-use super::numbers::size;
+use super::numbers::SizeUnit;
 use crate::outcome::record::{Outcome, RuleQuantity};
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION};
 
@@ -47,13 +47,13 @@ pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
 }
 
 /// What the caption says of them; nothing where there are none.
-pub(super) fn caption(boundaries: &[Boundary], scale_free: bool) -> String {
+pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
     let one = |(place, limit, at_most): &Boundary| {
-        let at_most = if *at_most { " at most" } else { "" };
-        format!("{} {}{at_most}", LIMITS[*place].3, size(*limit, scale_free))
+        let at_most = if *at_most { " or less" } else { "" };
+        format!("{} {}{at_most}", LIMITS[*place].3, unit.size(*limit))
     };
     let all: Vec<String> = boundaries.iter().map(one).collect();
     format!(

@@ -8,15 +8,17 @@ use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
+use super::names::soil_name;
 use super::numbers::threshold;
 use super::run_figures::run_name;
 use super::section::Sections;
-use super::shell::{Drawn, citation, clean, leaves_out};
+use super::shell::{Drawn, citation, clean, unbroken};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Verdict};
 use crate::verdict::FOREMOST;
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
@@ -100,24 +102,22 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
     };
     let names = match common.is_empty() {
         true => html! {},
-        false => html! { (capital(common)) " " b { bdi { (name(&comparison.common)) } } },
+        false => html! { (capital(common)) " " b { bdi { (name(&soil_name(&comparison.common))) } } },
     };
-    let first = html! { div.first {
-        section {
-            p.lead { (lead(comparison)) }
+    let first = html! { section.sheet {
+            (answers(comparison))
+            (doubts(comparison))
+            p { (lead(comparison)) }
             @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
                 p { "Undecided is not a verdict. The page of the case says what would decide it." }
             }
-            (answers(comparison))
-            (doubts(comparison))
-        }
-        (leaves_out(&comparison.model_leaves_out, &html! {
-            @if comparison.model_leaves_out.is_empty() {
-                p { "compare.json of this earlier version does not say; the page of each case does." }
+            p.small {
+                @if comparison.model_leaves_out.is_empty() {
+                    "What the model leaves out stands on the page of each case."
+                } @else { (clean(&left_out_in_brief(&comparison.model_leaves_out))) }
+                " The verdicts of the walk are the model’s. They do not replace a filter test or a \
+                 designer’s judgement."
             }
-            p { "The verdicts are the model’s. They do not replace a filter test or a designer’s \
-                 judgement." }
-        }))
     } };
     let table = html! {
         (cases(folder, comparison))
@@ -171,15 +171,18 @@ fn answers(comparison: &Comparison) -> Markup {
         p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
         ul {
             @for (line, said) in [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)] {
-                @if !said.is_empty() { li { b { (line) } ": " (clean(said)) "." } }
+                @if !said.is_empty() { li { b { (line) } ": " (unbroken(said)) "." } }
             }
+            @if !case.by_authority.is_empty() { li { (unbroken(&case.by_authority)) } }
         }
     } }
 }
 
 fn doubts(comparison: &Comparison) -> Markup {
     html! { @for doubt in Confidence::DOUBTS {
-        @let named: Vec<String> = comparison.cases.iter().filter(|case| case.confidence == doubt)
+        @let named: Vec<String> = comparison.cases.iter()
+            // The line of the walk says it.
+            .filter(|case| case.confidence == doubt && case.walk.is_empty())
             .map(|case| name(&case.name)).collect();
         @if !named.is_empty() {
             p { span.amber { (capital(doubt.words())) } ": " bdi { (named.join(", ")) } }
@@ -237,7 +240,10 @@ fn reasons(comparison: &Comparison) -> Markup {
             h2 { bdi { (name(&case.name)) } ": "
                 @if case.confidence == Confidence::Within { "what else to know" }
                 @else { "why this verdict is in doubt" } }
-            @let all: Vec<&String> = case.reasons.iter().chain(&case.beside).collect();
+            @let all: Vec<&String> = match case.found.is_empty() {
+                true => case.reasons.iter().chain(&case.beside).collect(),
+                false => case.found.iter().collect(),
+            };
             @let (foremost, rest) = all.split_at(all.len().min(FOREMOST));
             ul { @for said in foremost { li { (clean(said)) } } }
             @if !case.rules_not_kept.is_empty() {

@@ -7,8 +7,9 @@ use serde::Deserialize;
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{SizeUnit, in_digits, significant, whole};
-use super::shell::clean;
+use super::numbers::{SizeUnit, in_digits, whole};
+use super::rules::inches;
+use super::shell::{clean, unbroken};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
 use crate::outcome::rules::Authority;
@@ -64,7 +65,7 @@ pub(super) fn authority(folder: &RunFolder) -> Authority {
 /// The two soils, and what belongs to a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
-    let soil = |name: &str| clean(&shorten(soil_name(name), LINE));
+    let soil = |name: &str| clean(&shorten(&soil_name(name), LINE));
     html! {
         h1 { "Will this filter hold this soil?" }
         p.names {
@@ -108,9 +109,9 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
     html! {
         section.verdict.(colour(outcome)) {
             p.word { (clean(&capital(&headline))) "." }
-            @for (name, said) in &lines { p.practice { b { (name) } ": " (clean(said)) "." } }
+            @for (name, said) in &lines { p.practice { b { (name) } ": " (unbroken(said)) "." } }
             @if !foremost.is_empty() {
-                ul { @for finding in &foremost { li { (clean(&finding.sentence)) } } }
+                ul { @for finding in &foremost { li { (unbroken(&finding.sentence)) } } }
             }
             @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
@@ -164,7 +165,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
-            @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice)) }
+            @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice, unit)) }
             @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
             (thickness(outcome, unit))
             p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
@@ -178,22 +179,31 @@ fn result(rule: &AppliedRule) -> Option<bool> {
     rule.met.filter(|_| rule.applies)
 }
 
-fn table(rules: &[&AppliedRule]) -> Markup {
+/// A value or a limit of a rule with its unit, in inches, too, where those are shown.
+fn of_rule(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
+    let shown = format!("{}\u{202f}{}", in_digits(value, 3), rule.unit);
+    shown.trim_end().to_owned() + &inches(rule, value, unit)
+}
+
+fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| clean(&rule.name))
         .text("here", |rule| {
-            let found = |value| format!("{} = {}", rule.quantity.name(), significant(value));
+            let found = |value| format!("{} = {}", rule.quantity.name(), of_rule(rule, value, unit));
             clean(&rule.value.map_or_else(|| "–".to_owned(), found))
         })
         .text("limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
-            let limit = |limit: f64| format!("{sign} {} {}", in_digits(limit, 3), rule.unit);
-            let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
-            html! { (limit) @if rule.limit_at_most { " at most" } }
+            let limit = |limit: f64| format!("{sign} {}", of_rule(rule, limit, unit));
+            let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
+            html! { (limit) @if rule.limit_at_most { " or less" } }
         })
         .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {
             (Some(true), _) => html! { span.keeps { "✓ met" } },
             (Some(false), _) => html! { span.breaks { "✗ not met" } },
+            (None, true) if rule.value.is_some() && rule.limit.is_none() && rule.needs.is_empty() => {
+                html! { "no limit" }
+            }
             (None, true) => html! { "no result" },
             (None, false) => html! { "does not apply" },
         });
@@ -208,7 +218,7 @@ fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
             p.thickness {
                 "Thickness modelled: " b { (unit.size(thickness)) } " along the flow, "
                 (whole(network.layers)) " layers of voids. "
-                @if let Some(sentence) = thickness_moves(outcome) { (clean(&sentence)) }
+                @if let Some(sentence) = thickness_moves(outcome) { (unbroken(&sentence)) }
             }
         }
     }

@@ -109,7 +109,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
-    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
+    let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
     let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
     let main = html! {
         section.sheet {
@@ -126,7 +126,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         h2 { "Figures" }
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
-        (rules(outcome))
+        (rules(outcome, unit))
         (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))

@@ -110,11 +110,11 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
         .number("Blocked", |(.., run)| percent(run.blocked_fraction))
         .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
         .number("On an open path", |(.., run)| percent(run.backbone_fraction))
-        .number("Inserted", |(.., run)| whole(run.inserted))
-        .number("Eroded", |(.., run)| whole(run.eroded))
-        .number("In constrictions", |(.., run)| whole(run.retained_in_constrictions))
-        .number("In voids", |(.., run)| whole(run.retained_in_voids))
-        .number("Trapped", |(.., run)| whole(run.trapped))
+        .number("Inserted", |(.., run)| count(run.inserted))
+        .number("Eroded", |(.., run)| count(run.eroded))
+        .number("In constrictions", |(.., run)| count(run.retained_in_constrictions))
+        .number("In voids", |(.., run)| count(run.retained_in_voids))
+        .number("Trapped", |(.., run)| count(run.trapped))
         .number("Per void", |(.., run)| significant(run.retained_per_void))
         .number("Increments", |(.., run)| whole(run.increments))
         .number("Moves", |(.., run)| whole(run.particle_moves))
@@ -134,6 +134,11 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
             }
         }
     }
+}
+
+/// A number of particles that fits its column: from ten thousand million on in three digits.
+fn count(particles: u64) -> String {
+    if particles < 10_000_000_000 { whole(particles) } else { significant(particles as f64) }
 }
 
 /// What is said below a study: that points stopped early, and of what their classes are.

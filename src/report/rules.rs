@@ -2,31 +2,36 @@
 
 use maud::{Markup, html};
 
-use super::numbers::{significant, trimmed};
+use super::numbers::{SizeUnit, significant, trimmed};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 
 /// Every rule with its value, limit, result, source and what it was made for.
-pub(super) fn rules(outcome: &Outcome) -> Markup {
+pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
         outcome.rules.iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
             p { (outcome.compared_with_tests()) }
-            (table(&practice))
+            (table(&practice, unit))
             @if !walk.is_empty() {
                 h3 { "Comparisons of the walk with tests and with the paper" }
                 p.small { "They show whether the walk agrees with both. No filter fails by them." }
-                (table(&walk))
+                (table(&walk, unit))
             }
         }
     }
 }
 
+/// What stands behind a value or a limit of a rule: inches, where it is a length and they are shown.
+pub(super) fn inches(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
+    if rule.unit == "mm" { unit.beside(value) } else { String::new() }
+}
+
 /// Rules as a table.
-pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
+pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {
@@ -43,16 +48,21 @@ pub(super) fn table(rules: &[&AppliedRule]) -> Markup {
             }
         })
         .number("Here", |rule| {
-            let value = rule
-                .value
-                .map_or_else(|| "–".to_owned(), |value| format!("= {} {}", significant(value), rule.unit));
-            html! { (clean(rule.quantity.name())) " " br; (clean(value.trim_end())) }
+            let value = |value| {
+                let shown = format!("= {} {}", significant(value), rule.unit);
+                shown.trim_end().to_owned() + &inches(rule, value, unit)
+            };
+            let value = rule.value.map_or_else(|| "–".to_owned(), value);
+            html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
-            let limit = |limit: f64| format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
-            let limit = clean(rule.limit.map_or_else(|| "–".to_owned(), limit).trim_end());
-            html! { (limit) @if rule.limit_at_most { " at most" } }
+            let limit = |limit: f64| {
+                let shown = format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
+                shown.trim_end().to_owned() + &inches(rule, limit, unit)
+            };
+            let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
+            html! { (limit) @if rule.limit_at_most { " or less" } }
         })
         .text("", |rule| match (rule.role, rule.met) {
             (RuleRole::Walk, Some(true)) => html! { "within" },

@@ -7,7 +7,7 @@ use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
-use super::first_page::coarse_left;
+use super::first_page::{coarse_left, units};
 use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
@@ -90,7 +90,7 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let limits = boundaries(&folder.outcome);
+    let (limits, unit) = (boundaries(&folder.outcome), units(folder));
     let sampled = base.as_sampled.as_ref();
     let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
     let rows =
@@ -115,7 +115,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         figure = figure.sieves();
     }
     let name = |kind: &str, name: &str| {
-        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(soil_name(name), 24)) }
+        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(&soil_name(name), 24)) }
     };
     boundaries::draw(&mut figure, &limits);
     // Of two curves of the base each says which it is; of one, it is as sampled.
@@ -132,7 +132,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(constrictions.label("constrictions\n(by number)"));
     figure.add(Line::new(points(&filter.gradation), BLACK).width(2.6).label(&name("filter", &filter.name)));
     let mark = |at: f64, percent: f64, colour, shape, text: &str| {
-        let label = format!("{text} = {}", size(at, inputs.scale_free));
+        let label = format!("{text} = {}", unit.size(at));
         Point::new(at, percent, colour, shape).dropped().label(&label)
     };
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
@@ -143,9 +143,9 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
          are. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
         shorten(&filter.curve_name, 80),
         significant(folder.outcome.ratios.d15f_over_d85b),
-        inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words())),
+        inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
         significant(folder.outcome.ratios.d15f_over_d95b),
-        boundaries::caption(&limits, inputs.scale_free),
+        boundaries::caption(&limits, unit),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)

@@ -30,7 +30,7 @@ use crate::outcome::record::ModelLimit;
 const STYLE: &str = include_str!("page.css");
 /// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
 /// new one.
-const STYLE_HASH: &str = "w2ifTXVskvnn0IktDsEeF+nB3ACHhj6CzYDmHXjEMNo=";
+const STYLE_HASH: &str = "9LhCMvhRXbhrnGvxGdIebXizZG3yOTwDaXkWjdTN3Cc=";
 
 /// A figure of a page with its caption.
 pub struct Drawn {
@@ -113,6 +113,17 @@ fn with_contents(main: &str) -> String {
 /// A text from outside without characters that are no text; maud escapes the markup in it.
 pub fn clean(text: &str) -> String {
     text.chars().map(visible).collect()
+}
+
+/// A sentence, cleaned, in which no line breaks between a number and its unit.
+pub(super) fn unbroken(text: &str) -> String {
+    let mut said = clean(text);
+    for unit in ["%", "mm"] {
+        let (broken, joined) = (format!(" {unit}"), format!("\u{202f}{unit}"));
+        said = (0..10)
+            .fold(said, |said, digit| said.replace(&format!("{digit}{broken}"), &format!("{digit}{joined}")));
+    }
+    said
 }
 
 /// A figure as an element of the page, in both its sizes: the style shows the one that there is room for.

@@ -67,7 +67,7 @@ pub fn measure_constrictions(
             packing.diameter.len()
         ))
     })?;
-    notes.iter().for_each(|note| (callbacks.warn)(note));
+    notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {note}")));
     if let Some(graph) = &graph {
         let square = graph.d32_mm * graph.d32_mm;
         let k = permeability_mm2(graph, 2).map_err(|error| RunError::refused(format!("{file}: {error}")))?;

@@ -36,7 +36,8 @@ impl Outcome {
         let runs = [("first run", "95 % interval "), ("second", "")].into_iter().zip(&self.summary);
         let runs: Vec<String> = runs.map(|((name, what), run)| eroded(name, what, run)).collect();
         let mut said = format!("{}; eroded {}", self.verdict.words(), runs.join(", "));
-        if self.confidence != Confidence::Within {
+        // What practice says of the filter itself stands in the lines above.
+        if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
         }
         match self.probability() {
@@ -221,7 +222,12 @@ fn breaks(rules: &[AppliedRule], role: RuleRole) -> bool {
 
 fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
     let eroded = &run.eroded_mass_fraction;
-    let interval = match eroded.low.zip(eroded.high) {
+    // An interval that is no wider than the last digit of its mean says nothing.
+    let is_wide = |(low, high): &(f64, f64)| {
+        let [mean, low, high] = [eroded.mean, *low, *high].map(|of| percent(of.max(1e-9)));
+        mean != low || mean != high
+    };
+    let interval = match eroded.low.zip(eroded.high).filter(is_wide) {
         Some((low, high)) => format!(" ({what}{} to {})", percent(low), percent(high)),
         None => String::new(),
     };

@@ -327,9 +327,9 @@ findings! {
     pan_readings_walked(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
         "finest part", "soils.md",
         "The finest {share} of the base may block constrictions. It is finer than the finest sieve, \
-         {sieve}, but may be coarser than the finest constriction, {constriction}. It is walked as it goes \
-         on in soils with a hydrometer test, as finer than every constriction and as all of that sieve's \
-         size.";
+         {sieve}, but may be coarser than the finest constriction, {constriction}. It is walked in \
+         three readings: continued as in soils with a hydrometer test, finer than every constriction, and \
+         all of that sieve's size.";
     /// The constriction curve of another filter.
     other_curve(cu: Ratio, curve: Text, of_cu: Ratio): Constrictions, Open, Limits;
         "constrictions", "uncertainty.md",
@@ -523,7 +523,7 @@ findings! {
     /// What the readings came to.
     pan_readings(taken: Text, each: Text): Base, Settled, Note;
         "finest part", "soils.md",
-        "The numbers are of the base with its finest part taken as {taken}. All readings: {each}.";
+        "The numbers are of the base with its finest part {taken}. All readings: {each}.";
     /// Particles that circle.
     trapped(particles: Count): Walk, Settled, Note;
         "trapped", "uncertainty.md",

@@ -8,6 +8,7 @@ use super::words::capital;
 use crate::gradation::Gradation;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, Sides, apply_to_envelopes};
+use crate::outcome::three;
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -293,7 +294,7 @@ impl Mistake {
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
-            let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {at:.3} mm"));
+            let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", three(at)));
             let sentence = format!(
                 "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
                  the two files exchanged? Or its sizes micrometres under a header in mm?",

@@ -6,6 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
 use crate::gradation::{RegradeCause, RegradeReason};
+use crate::outcome::numbers::significant;
 use crate::outcome::record::{RuleNote, RuleText};
 
 impl RuleNote {
@@ -38,7 +39,7 @@ impl RuleNote {
             Self::NeedsErosion => "needs a walk whose first run erodes something",
             Self::Dispersive => "dispersive",
             Self::Category(category) => return format!("base category {category}"),
-            Self::RegradedOn(size) => return format!("base regraded on {} mm", fixed(size, 3)),
+            Self::RegradedOn(size) => return format!("base regraded on {} mm", significant(size)),
             Self::BeforeRegrading => "base before regrading",
             Self::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines",
             Self::ResultOfModel => "a result of the model, for the base as it is walked",
@@ -207,7 +208,7 @@ mod tests {
     fn notes_are_written_as_words_and_read_back() {
         let notes = RuleText::Of(vec![RuleNote::Category(2), RuleNote::RegradedOn(4.75)]);
         let text = serde_json::to_string(&notes).unwrap();
-        assert_eq!(text, "\"base category 2; base regraded on 4.750 mm\"");
+        assert_eq!(text, "\"base category 2; base regraded on 4.75 mm\"");
         let read: RuleText = serde_json::from_str(&text).unwrap();
         assert!(matches!(&read, RuleText::Said(_)) && read == notes && !read.is_empty());
         assert_eq!(serde_json::from_str::<RuleText>("\"\"").unwrap(), RuleText::default());

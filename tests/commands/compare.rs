@@ -23,9 +23,19 @@ fn filters_are_compared_on_the_same_random_numbers() {
     let (_root, at) = soils();
     // The same table under another name, and one that would be markup.
     fs::write(at.join("a<b>.csv"), COARSE).unwrap();
-    let said = compare(&at, &["--base", "base.csv", "fine.csv", "coarse.csv", "a<b>.csv"]);
+    let named = ["--base", "base.csv", "fine.csv", "coarse.csv", "a<b>.csv", "--authority", "foster-fell"];
+    let said = compare(&at, &named);
     done(&said);
     let text = String::from_utf8(said.stdout).unwrap();
+    // Of every filter, and on the page, whose rules are listed and what they leave out.
+    let of_authority: Vec<&str> = text.lines().filter(|line| line.contains("Left out: ")).collect();
+    assert_eq!(of_authority.len(), 3, "{text}");
+    assert!(
+        of_authority.iter().all(|line| {
+            line.starts_with("  Foster and Fell: ") && line.ends_with(" The verdict rests on all rules.")
+        }),
+        "{of_authority:?}"
+    );
     assert!(text.contains("fine erodes") && text.contains("less than coarse"), "{text}");
     assert!(text.contains("Not in these intervals: how far the constriction curve"), "{text}");
     assert!(text.contains("first run over the range of the constriction curve: "), "{text}");
@@ -41,6 +51,8 @@ fn filters_are_compared_on_the_same_random_numbers() {
     // Replicate by replicate the same: nothing of chance is left.
     assert_eq!((&same["difference"]["mean"], &same["difference"]["sd"]), (&0.0.into(), &0.0.into()));
     let page = fs::read_to_string(at.join("c/compare.html")).unwrap();
+    assert_eq!(page.matches("The verdict rests on all rules.").count(), 3);
+    assert!(!page.contains("filter.density") && page.contains("The model leaves out: "));
     assert!(!page.contains("a<b>") && page.contains("a&lt;b&gt;"));
     assert!(page.contains("href=\"walks/cases/fine/report.html\""), "each case has its page");
     assert!(page.contains("None of these verdicts is within the range"));
@@ -218,5 +230,5 @@ fn what_the_model_leaves_out_is_that_of_the_cases() {
     // Of both kinds, each is said.
     let (text, page, _) = compare(&["wet.toml", "dry.toml"]);
     assert!(text.contains("where water gives particles their way; hydraulics, in the other cases"), "{text}");
-    assert!(page.contains("no flow") && page.contains("slow flow"));
+    assert!(page.contains("slow flow") && page.contains("hydraulics, in the other cases"), "{page}");
 }

@@ -70,8 +70,7 @@ fn a_design_fills_a_folder_and_says_it_all() {
     assert!(csv.starts_with(header) && csv.lines().count() > 30, "{csv}");
     figures_are_listed(FolderKind::Design, &out);
     let page = fs::read_to_string(out.join("design.html")).unwrap();
-    for words in
-        ["What the model leaves out", "ASTM C33 fine aggregate", "The band", "Content-Security-Policy"]
+    for words in ["The model leaves out: ", "ASTM C33 fine aggregate", "The band", "Content-Security-Policy"]
     {
         assert!(page.contains(words), "{words}");
     }
@@ -131,7 +130,7 @@ fn a_base_that_was_not_checked_never_looks_reassuring() {
     fs::write(out.join("design.json"), earlier.to_string()).unwrap();
     done(&call(root.path(), &["report", "voidwalk-design"]));
     let page = fs::read_to_string(out.join("design.html")).unwrap();
-    assert!(!page.contains("class=\"verdict none\"") && page.contains("Why this is in doubt"));
+    assert!(!page.contains("class=\"verdict none\"") && page.contains("more below, under “Other findings”"));
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(
         said.contains("outside checked range: ") || said.contains("contradicted by practice: "),

@@ -105,6 +105,7 @@ fn one_packing_in_six_formats_gives_one_curve() {
         done(&output);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(stderr.contains("are turned into mm"), name != "own.csv", "{name}: {stderr}");
+        assert_eq!(stderr.matches(&format!("{name}: lengths are")).count(), usize::from(name != "own.csv"));
         let found = numbers(&root.path().join(&out).join("constrictions.csv"));
         assert!(found.len() > 600, "{name}: {}", found.len());
         if wanted.is_empty() {
@@ -172,6 +173,16 @@ fn a_scene_walks_a_packing_of_yade_to_the_bits_of_its_csv() {
     let own = walk("own", scene("packing = \"own.csv\""));
     let yade = walk("yade", scene("packing = \"mm.txt\"\nunit = \"mm\"\ncell = \"6.4, 6.4, 6.4\""));
     assert_eq!(own, yade);
+    // What is said of a file says its name once.
+    let metres = scene("packing = \"yade.txt\"\nunit = \"m\"\ncell = \"0.0064, 0.0064, 0.0064\"");
+    fs::write(root.path().join("metres.toml"), metres).unwrap();
+    let checked = call(root.path(), &["check", "metres.toml"]);
+    done(&checked);
+    let said = String::from_utf8_lossy(&checked.stderr) + String::from_utf8_lossy(&checked.stdout);
+    assert!(
+        said.contains("yade.txt: lengths are in metres") && !said.contains("yade.txt: yade.txt"),
+        "{said}"
+    );
     assert!(own[0]["runs"][0]["blocked"].as_u64().unwrap() > 0);
     // The folder holds what it takes to walk it again.
     done(&call(root.path(), &["run", "yade/scene.toml", "--out", "again", "-q"]));

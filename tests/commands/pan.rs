@@ -42,10 +42,7 @@ fn a_pan_fraction_that_may_block_has_the_verdict_of_its_likely_reading() {
     let check = call(root.path(), &["check", "scene.toml"]);
     done(&check);
     let said = String::from_utf8_lossy(&check.stdout).into_owned();
-    assert!(
-        said.contains("walked as it goes on in soils with a hydrometer test, as finer than every"),
-        "{said}"
-    );
+    assert!(said.contains("continued as in soils with a hydrometer test, finer than every"), "{said}");
     // Three readings of three replicates and two studied ones, three replicates at either end of what is a
     // guess, two of either other thickness, two runs each.
     assert!(said.contains("42 runs"), "{said}");
@@ -126,7 +123,10 @@ fn cu_of_an_open_tail_comes_from_its_two_readings() {
     assert!(!fine.contains("Cu of the base") && fine.contains("counts by mass only"), "{fine}");
     // 0.171 mm over 0.14 mm, or over the finest constriction of the densest guess, 0.040 mm: 1.22 to 4.3.
     let coarse = said("0.14", "0.19");
-    assert!(!coarse.contains("Cu of the base") && coarse.contains("walked as it goes on"), "{coarse}");
+    assert!(
+        !coarse.contains("Cu of the base") && coarse.contains("It is walked in three readings"),
+        "{coarse}"
+    );
     // 0.091 mm over 0.02 mm is more than 4.5 however it is read.
     let broad = said("0.02", "0.2");
     assert!(broad.contains("Cu of the base is 4.55, and the model was checked for 1.2 to 4.5"), "{broad}");

@@ -226,6 +226,8 @@ fn what_cannot_be_is_refused_before_any_work() {
         (vec!["missing.toml"], "missing.toml"),
         (vec!["--set", "base.cu=0.5"], "base.cu"),
         (vec!["--set", "network.nx=1e10"], "network.nx"),
+        (vec!["--set", "walk.arching=zuriguel-2005"], "walk.arching: allowed: none"),
+        (vec!["--set", "walk.blocked=open"], "walk.blocked: allowed: \"closed\""),
     ] {
         refused(root.path(), &[&["precision"], &args[..]].concat(), message);
     }

@@ -330,6 +330,15 @@ fn init_writes_a_scene_that_check_understands() {
     let path = root.path().join("scene.toml");
     assert!(voidwalk(&["init", path.to_str().unwrap()]).status.success());
     refused(&voidwalk(&["init", path.to_str().unwrap()]), &["is there already"]);
+    let plan = root.path().join("plan.toml");
+    assert!(voidwalk(&["init", "--plan", plan.to_str().unwrap()]).status.success());
+    refused(&voidwalk(&["init", "--plan", plan.to_str().unwrap()]), &["is there already"]);
+    let output = voidwalk(&["init", "--plan"]);
+    assert_eq!(fs::read(&plan).unwrap(), output.stdout);
+    let output = voidwalk(&["campaign", plan.to_str().unwrap(), "--list"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("cu_b=3,filter=dense"), "{said}");
     let output = voidwalk(&["check", path.to_str().unwrap(), "--json"]);
     let check: Value = serde_json::from_slice(&output.stdout).unwrap();
     let n_base = check["n_base"].as_u64().unwrap();

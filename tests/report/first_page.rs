@@ -5,6 +5,7 @@ use std::process::Command;
 
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{RuleQuantity, RuleRole};
+use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::PairRules;
 
@@ -53,12 +54,21 @@ fn inches_stand_beside_mm_where_a_scene_asks_for_them() {
     let mut plan = Plan::usual();
     (plan.outcome.inputs.scale_free, plan.outcome.inputs.network.thickness_mm) = (false, Some(609.6));
     plan.outcome.inputs.filter.gradation = vec![[4.75, 0.0], [9.5, 50.0], [19.0, 100.0]];
+    let rule = &mut plan.outcome.rules[0];
+    (rule.id, rule.quantity, rule.unit) = ("sherard-dunnigan".into(), RuleQuantity::D15F, "mm".into());
+    (rule.applies, rule.value, rule.limit) = (true, Some(5.08), Some(2.54));
     let metric = words(&made(&plan).0);
     assert!(metric.contains("Thickness modelled: 610 mm along") && !metric.contains("US sieveSize"));
     plan.scene.push_str("[about]\nunits = \"us\"\n");
     let us = words(&made(&plan).0);
     assert!(us.contains("Thickness modelled: 610 mm (24.0 in) along"), "{us}");
     assert!(us.contains("US sieveSize (mm)") && us.contains("mm (in)") && us.contains("9.5 (0.374)"), "{us}");
+    // Every length of a rule, and of Figure 1.
+    for row in ["D15F = 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)", "= 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)"]
+    {
+        assert!(us.contains(row) && !metric.contains("(0.200 in)"), "{row}: {us}");
+    }
+    assert!(us.contains("design (Sherard and Dunnigan) 2.54 mm (0.100 in)"), "{us}");
     for row in ["No. 44.750", "3/8 in9.550", "3/4 in19100"] {
         assert!(us.contains(row), "{row}: {us}");
     }
@@ -187,8 +197,33 @@ fn headings_are_plain_words() {
     }
 }
 
+/// Words of the program and of its files, which say nothing to who signs a sheet.
+const PROGRAM_WORDS: [&str; 9] =
+    ["JSON", "json", "estimate = ", "replicates = ", "_mm", "N_base", "Eq. (", "--", "rattler"];
+
+/// Sections of a scene: a key of theirs is the name of a setting.
+const SECTIONS: [&str; 8] =
+    ["filter.", "base.", "walk.", "network.", "record.", "about.", "memory.", "packing."];
+
+/// Twelve soils on filters, from a clay to a gravel and from a good filter to one with a gap.
+fn twelve_pairs() -> Vec<(Gradation, Gradation)> {
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let till = soil(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+    let clay = soil(&[(0.002, 30.0), (0.02, 62.0), (0.075, 88.0), (0.425, 98.0), (2.0, 100.0)]);
+    let (sand, silty) =
+        (soil(&[(0.2, 0.0), (0.6, 100.0)]), soil(&[(0.075, 22.0), (0.25, 80.0), (0.85, 100.0)]));
+    let gravel = soil(&[(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)]);
+    let medium = soil(&[(1.0, 0.0), (3.0, 100.0)]);
+    let gap = soil(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)]);
+    let mut pairs = Vec::new();
+    for base in [till, clay, sand, silty] {
+        pairs.extend([&gravel, &medium, &gap].map(|filter| (base.clone(), filter.clone())));
+    }
+    pairs
+}
+
 /// Printed as a reader would, the first sheet holds the figure, the table of sizes and every rule, whatever was
-/// found. Left out where Chromium is not installed.
+/// found, and no word of the program. Left out where Chromium is not installed.
 #[test]
 fn the_first_printed_sheet_is_complete() {
     let has = |name: &str, asked: &str| Command::new(name).arg(asked).output().is_ok();
@@ -196,18 +231,16 @@ fn the_first_printed_sheet_is_complete() {
         println!("left out: chromium, pdftotext or python3 is missing");
         return;
     }
-    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
-    let till = soil(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
-    let gravel = soil(&[(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)]);
-    let (sand, medium) = (soil(&[(0.2, 0.0), (0.6, 100.0)]), soil(&[(1.0, 0.0), (3.0, 100.0)]));
-    let gap = soil(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)]);
-    for (base, filter, findings) in [(&till, &gravel, 10), (&sand, &medium, 0), (&sand, &gap, 5)] {
+    for (at, (base, filter)) in twelve_pairs().iter().enumerate() {
+        let findings = (at * 10).div_ceil(11);
         let mut plan = Plan::usual();
-        plan.outcome.rules = PairRules::of(base, filter).rules;
+        let pair = PairRules::of(base, filter);
+        plan.outcome.rules = pair.rules;
         let long = "The answer depends on the 12 % of the base that is finer than its finest sieve. With all of it \
                     finer than every constriction the verdict is no erosion, with all of it 0.075 mm in size it is \
                     continuing erosion; the finest constriction is 0.05 mm. A hydrometer test would decide";
-        plan.outcome.warnings = (1..=findings).map(|n| format!("{long} ({n}).")).collect();
+        let made_up = (1..=findings).map(|n| format!("{long} ({n})."));
+        plan.outcome.warnings = made_up.chain(pair.warnings).take(findings).collect();
         let rows = |soil: &Gradation| soil.points().iter().map(|&(size, percent)| [size, percent]).collect();
         (plan.outcome.inputs.base.gradation, plan.outcome.inputs.filter.gradation) =
             (rows(base), rows(filter));
@@ -217,11 +250,12 @@ fn the_first_printed_sheet_is_complete() {
         plan.scene.push_str(cover);
         let folder = made(&plan).2;
         let page = folder.path().join("report.html");
-        for paper in ["a4", "letter"] {
+        // Letter is the shorter sheet: it is printed of those with the most to say.
+        for paper in ["a4", "letter"].into_iter().take(if findings > 7 { 2 } else { 1 }) {
             let pdf = folder.path().join("page.pdf");
             let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/browser/look_at_report.sh");
             let said = Command::new("sh").arg(script).args([&page, &pdf]).arg(paper).output().unwrap();
-            assert!(said.status.success(), "{paper}: {}", String::from_utf8_lossy(&said.stderr));
+            assert!(said.status.success(), "{at}, {paper}: {}", String::from_utf8_lossy(&said.stderr));
             let said = Command::new("pdftotext").args(["-f", "1", "-l", "1"]).arg(&pdf).arg("-").output();
             let text = String::from_utf8(said.unwrap().stdout).unwrap();
             let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -230,9 +264,37 @@ fn the_first_printed_sheet_is_complete() {
             for part in
                 names.chain(["Figure 1.", "D5 ", "D95 ", "Group by ASTM D2487", "The model leaves out: "])
             {
-                assert!(text.contains(part), "{paper}, {findings} findings, {part}: {text}");
+                assert!(text.contains(part), "{at}, {paper}, {findings} findings, {part}: {text}");
             }
+            for word in PROGRAM_WORDS {
+                assert!(!text.contains(word), "{at}, {word}: {text}");
+            }
+            let is_setting = |word: &str| {
+                let word = word.trim_start_matches(|c: char| !c.is_alphabetic());
+                let key = SECTIONS.iter().find_map(|section| word.strip_prefix(section));
+                key.is_some_and(|key| key.starts_with(|c: char| c.is_ascii_lowercase()))
+            };
+            let settings: Vec<&str> = text.split_whitespace().filter(|word| is_setting(word)).collect();
+            assert!(settings.is_empty(), "{at}: {settings:?}");
+            assert!(!cannot_be_cited(&text), "{at}: {text}");
         }
+    }
+}
+
+/// Whether a text names a place that no report can cite.
+fn cannot_be_cited(text: &str) -> bool {
+    let places =
+        ["http", "www.", ".com", ".org", ".co.", ".in/", "scribd", "Wikipedia", "second hand", "second-hand"];
+    places.iter().any(|place| text.to_lowercase().contains(&place.to_lowercase()))
+}
+
+#[test]
+fn every_rule_has_a_source_that_can_be_cited() {
+    for rule in RULES {
+        assert!(!rule.source.is_empty() && !cannot_be_cited(rule.source), "{}: {}", rule.id, rule.source);
+    }
+    for place in ["as scribd.com/doc/1 has it", "USBR, second hand", "https://a"] {
+        assert!(cannot_be_cited(place), "{place}");
     }
 }
 

@@ -206,7 +206,7 @@ impl DesignRow {
     pub fn name(&self) -> String {
         match (&self.end_of, &self.as_end) {
             (Some(of), _) => format!("{} (an end of the range of {of})", self.density),
-            (None, Some(end)) => format!("{} (its worse end: {end})", self.density),
+            (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
             (None, None) => self.density.clone(),
         }
     }

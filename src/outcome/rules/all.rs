@@ -20,6 +20,9 @@ pub const CONSTRICTED_EXIT: &str = "constricted-exit";
 /// The rule by which a filter drains its base.
 pub const PERMEABILITY: &str = "permeability";
 
+/// The least D15F that an older manual asks for.
+pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
+
 /// The paper's own boundary of no erosion.
 pub const PAPER_NO_EROSION: &str = "paper-no-erosion";
 
@@ -165,7 +168,7 @@ pub const RULES: &[FilterRule] = &[
         judge: drainage::permeability,
     },
     FilterRule {
-        id: "permeability-em-1901",
+        id: PERMEABILITY_LEAST,
         authority: "",
         stated_by: &[Usace],
         says: "Permeability, the least by EM 1110-2-1901: the filter drains the base",

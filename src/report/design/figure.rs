@@ -4,8 +4,8 @@ use crate::outcome::design::band::{limits, retention};
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
-    DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, TERZAGHI, TESTS_CONTINUING, TESTS_EXCESSIVE,
-    TESTS_NO_EROSION,
+    DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, TERZAGHI, TESTS_CONTINUING,
+    TESTS_EXCESSIVE, TESTS_NO_EROSION,
 };
 use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule,
@@ -15,8 +15,9 @@ use crate::report::numbers::significant;
 use crate::report::shell::Drawn;
 
 /// Names of rules beside their lines.
-const NAMES: [(&str, &str); 8] = [
+const NAMES: [(&str, &str); 9] = [
     (PERMEABILITY, "drains"),
+    (PERMEABILITY_LEAST, "drains (EM 1110-2-1901)"),
     (DESIGN, "design"),
     (TERZAGHI, "Terzaghi"),
     (PAPER_NO_EROSION, "paper, no erosion"),
@@ -60,7 +61,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let practice = retention(&design.rules, design.rules_at * d85).map(|(_, limit)| limit);
     zones(&mut figure, row, d85, practice.filter(|_| !design.inverse), ends);
     for (rule, at) in &limits {
-        let name = NAMES.iter().find(|(id, _)| *id == rule.id).map_or(rule.id.as_str(), |(_, name)| *name);
+        let name = NAMES.iter().find(|(id, _)| *id == rule.id).map_or(rule.name.as_str(), |(_, name)| *name);
         figure.add(
             Rule::new(Across::X, *at, if rule.at_least { BLACK } else { GREY })
                 .dash(Dash::Dotted)

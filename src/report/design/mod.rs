@@ -8,15 +8,18 @@ use maud::{Markup, Render, html};
 
 use super::error::ReportError;
 use super::files::{json, rows};
-use super::numbers::{duration, significant, threshold, trimmed, whole};
+use super::names::soil_name;
+use super::numbers::{SizeUnit, duration, significant, threshold, trimmed, whole};
 use super::rules;
 use super::section::Sections;
-use super::shell::{citation, clean, fact, leaves_out};
+use super::shell::{citation, clean, fact, unbroken};
 use super::specification::Stated;
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
+use crate::outcome::design::{Boundary, Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
+use crate::verdict::FOREMOST;
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
@@ -33,19 +36,15 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         true => "How fine may the base be?",
     };
     let names = html! {
-        "Base " b { bdi { (clean(&design.base.name)) } } ", filter of the shape "
-        b { bdi { (clean(&design.filter)) } }
+        "Base " b { bdi { (clean(&soil_name(&design.base.name))) } } ", filter of the shape "
+        b { bdi { (clean(&filter_name(&design.filter))) } }
     };
+    let findings = told(&design);
+    let (foremost, rest) = findings.split_at(findings.len().min(FOREMOST));
     let sheet = html! { section.sheet {
-        div.first {
-            (answer(&design))
-            (leaves_out(&design.model_leaves_out, &html! {
-                p { "The boundaries are the model’s. They do not replace a filter test or a designer’s \
-                     judgement." }
-            }))
-        }
-        (said("Why this is in doubt", &design.reasons, design.confidence))
-        (said("Before you rely on this", &design.warnings, Confidence::Outside))
+        (answer(&design, foremost, rest.len()))
+        p.small { (clean(&left_out_in_brief(&design.model_leaves_out))) " The boundaries of the walk are the \
+            model’s. They do not replace a filter test or a designer’s judgement." }
     } };
     let footer = html! {
         (citation())
@@ -59,8 +58,9 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
         .words(&sheet)
-        .contents()
         .figures(figure::erosion(&design, &walks))
+        .contents()
+        .section("Other findings", &others(rest))
         .section("Boundaries of the model", &boundaries(&design))
         .section("The band of a specification", &bands(&design))
         .section("Standard products", &products(&design))
@@ -74,7 +74,43 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "design.html", &footer)
 }
 
-fn answer(design: &Design) -> Markup {
+/// The soil and the curve of the filter, without the name of a file.
+fn filter_name(filter: &str) -> String {
+    let (soil, curve) = filter.split_once(CURVE).unwrap_or((filter, ""));
+    let comma = if curve.is_empty() { "" } else { CURVE };
+    format!("{}{comma}{curve}", soil_name(soil))
+}
+
+/// What stands between the names of a filter and of its curve.
+const CURVE: &str = ", constrictions ";
+
+/// What was found, without the names of settings: what speaks against the answer first.
+fn told(design: &Design) -> Vec<String> {
+    // Why a row has no band stands in the answer itself.
+    let notes = design.boundaries.iter().filter_map(|row| row.band_note.as_ref());
+    let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
+    let is_said = |of: &&DesignFinding| notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
+    let words = |of: &DesignFinding| {
+        let said = &of.finding.sentence;
+        of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
+    };
+    let (against, others): (Vec<&DesignFinding>, Vec<&DesignFinding>) =
+        design.findings.iter().filter(|of| !is_said(of)).partition(|of| of.finding.against);
+    // What no finding says: of an authority's rules, and in files of earlier versions.
+    let is_found = |said: &&String| !design.findings.iter().any(|of| of.words() == **said);
+    let more = |said: &'_ [String]| said.iter().filter(is_found).cloned().collect::<Vec<String>>();
+    let against = more(&design.reasons).into_iter().chain(against.into_iter().map(words));
+    against.chain(more(&design.warnings)).chain(others.into_iter().map(words)).collect()
+}
+
+/// The findings that do not stand on the first sheet: folded on a screen, and open in print.
+fn others(rest: &[String]) -> Markup {
+    html! { @if !rest.is_empty() {
+        details { summary { (rest.len()) " more" } ul { @for said in rest { li { (clean(said)) } } } }
+    } }
+}
+
+fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     let (found, said) = (design.least_held(), design.answer());
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
     let others = others.count();
@@ -91,7 +127,7 @@ fn answer(design: &Design) -> Markup {
                 (clean(&said.said))
             }
             @if design.confidence != Confidence::Within {
-                p { b { (capital(design.confidence.words())) } "; see below." }
+                p { b { (capital(design.confidence.words())) } "." }
             }
             @if let Some((row, held)) = &found {
                 @if let Some(base) = design.base.size() { p.lead { (base.words()) "." } }
@@ -121,7 +157,9 @@ fn answer(design: &Design) -> Markup {
                 }
                 @if let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.words())) } "." }
-                    @if let Some(practice) = band.practice.filter(|_| !band.is_empty) {
+                    // Where practice sets the coarse side, the band says so.
+                    @let of_walk = |limit: &f64| !band.is_empty && *limit != band.greatest_of_both();
+                    @if let Some(practice) = band.practice.filter(of_walk) {
                         p {
                             "Practice allows up to " (significant(practice)) " " (band.unit) " ("
                             (clean(&band.practice_rule)) ")."
@@ -132,7 +170,7 @@ fn answer(design: &Design) -> Markup {
             @for row in &design.boundaries {
                 @if let Some(note) = &row.band_note {
                     p {
-                        b { "No band for " (clean(&row.density)) ", " (clean(&row.thickness)) ". " }
+                        b { "No band for " (clean(&row.name())) ", " (clean(&row.thickness)) ". " }
                         (sentence(note))
                     }
                 }
@@ -147,6 +185,8 @@ fn answer(design: &Design) -> Markup {
                     "."
                 }
             }
+            @if !foremost.is_empty() { ul { @for said in foremost { li { (unbroken(said)) } } } }
+            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
     }
 }
@@ -154,7 +194,8 @@ fn answer(design: &Design) -> Markup {
 /// How far limits can be relied on that follow from the answer, where they are in doubt.
 fn in_doubt(design: &Design) -> Markup {
     let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
-    html! { @if is_shown { p { b { (clean(&design.confidence_said())) } } } }
+    let (label, first) = (capital(design.confidence.words()), told(design).into_iter().next());
+    html! { @if is_shown { p { b { (label) @if let Some(first) = first { ": " (clean(&first)) } } } } }
 }
 
 /// A note as a sentence; in files of earlier versions it is a part of one.
@@ -175,17 +216,6 @@ fn between(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> Str
 fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
     let is_known = low.is_some() || high.is_some();
     if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
-}
-
-fn said(heading: &str, sentences: &[String], confidence: Confidence) -> Markup {
-    html! {
-        @if !sentences.is_empty() {
-            section.warnings {
-                h2 { @if confidence == Confidence::Within { "What else to know" } @else { (heading) } }
-                ul { @for sentence in sentences { li { (clean(sentence)) } } }
-            }
-        }
-    }
 }
 
 fn boundaries(design: &Design) -> Markup {
@@ -328,7 +358,7 @@ fn practice(design: &Design) -> Markup {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
                 @if design.least_held().is_some() { ", the coarsest that holds in the model" } "."
             }
-            (rules::table(&rules))
+            (rules::table(&rules, SizeUnit::Mm))
         }
     }
 }
@@ -489,7 +519,7 @@ mod tests {
         let page = written(&design(boundary(), Confidence::Within), CSV);
         assert!(page.contains("verdict none") && page.contains("D15F up to 0.862 mm"), "{page}");
         assert!(page.contains("&lt;loose&gt;") && !page.contains("<loose>"));
-        assert!(page.contains("default-src 'none'") && page.contains("<li>water</li>"));
+        assert!(page.contains("default-src 'none'") && page.contains("The model leaves out: water."));
         for confidence in [Confidence::Outside, Confidence::Contradicted] {
             let page = written(&design(boundary(), confidence), CSV);
             assert!(page.contains("verdict doubted") && !page.contains("verdict none"));

@@ -63,7 +63,7 @@ fn inputs(outcome: &Outcome) -> Sheet {
     let mut sheet = Sheet::new("Inputs", &["Item", "Value", "Unit"]);
     let (inputs, unit) = (&outcome.inputs, unit(outcome));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
-    sheet.item("Filter", soil_name(&filter.name), "");
+    sheet.item("Filter", &*soil_name(&filter.name), "");
     for (name, size) in [
         ("D0F", filter.d0_mm),
         ("D15F", filter.d15_mm),
@@ -77,7 +77,7 @@ fn inputs(outcome: &Outcome) -> Sheet {
     sheet.item("Void ratio of the filter", filter.void_ratio, "-");
     sheet.item("Constriction curve", &filter.curve_name, "");
     sheet.item("Cu of the constrictions", filter.cu_csd, "-");
-    sheet.item("Base", soil_name(&base.name), "");
+    sheet.item("Base", &*soil_name(&base.name), "");
     for (name, size) in [
         ("D0B", Some(base.d0_mm)),
         ("D15B", base.d15_mm),

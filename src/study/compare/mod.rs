@@ -12,9 +12,11 @@ use super::of_cases::{StudyOfCases, outcome};
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::rules::Authority;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
+use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -75,6 +77,12 @@ impl ComparePlan {
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
 
+    /// Whose rules the sheet of a case lists.
+    fn authority_of(&self, case: &str) -> Authority {
+        let planned = self.campaign.cases.iter().find(|planned| planned.name == case);
+        planned.and_then(|planned| planned.scene.about.authority).unwrap_or_default()
+    }
+
     /// The cases that were walked, side by side.
     fn compared(&self, folder: &Folder, walked: &FinishedCampaign) -> Result<Comparison, RunError> {
         let mut outcomes = Vec::new();
@@ -90,6 +98,10 @@ impl ComparePlan {
             case.walk = outcome.walk_in_words();
             case.next = outcome.next_in_words();
             case.beside = outcome.beside_the_verdict();
+            case.found = outcome.ordered().into_iter().map(|finding| finding.sentence).collect();
+            let d15f = Some(outcome.inputs.filter.d15_mm);
+            let of_authority = of_pair(&outcome.rules, self.authority_of(&case.name), d15f);
+            case.by_authority = of_authority.map_or(String::new(), |said| format!("{said} {ON_ALL_RULES}"));
         }
         Ok(comparison)
     }

@@ -98,6 +98,10 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
                        blocked constrictions are closed";
         return Err(RunError::refused(problem));
     }
+    if scene.law().is_some() {
+        let problem = "walk.arching: allowed: none; engines and exact answers are compared without arches";
+        return Err(RunError::refused(problem));
+    }
     let here = Path::new(".");
     let pool = threads(options.prepare.threads)?;
     let claim = || claim(&options.out, FolderKind::Precision, options.overwrite);

@@ -1363,6 +1363,11 @@ class ComparedCase(_ComparedCase, total=False):
     walk: str
     #: What to do next.
     next: str
+    #: What an authority's rules say of the pair and leave out, where one is named; empty for all.
+    by_authority: str
+    #: What was found about the verdict, the weightiest first, without the names of settings. Records of earlier
+    #: versions do not say.
+    found: List[str]
     #: What else stands beside every verdict, in sentences.
     beside: List[str]
     #: D85B and which base it is of; `None` without a unit, and in records of earlier versions.

@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""The eleven problems of a dam engineer: the program's first lines beside limits worked out by hand, and pictures of its pages.
+
+    scripts/checks/eleven_problems.py [--binary target/release/voidwalk] [--only a,b2] [--pictures DIR] [--out results/eleven-problems.md]
+                                      [--set network.nx=8 ...]
+
+Writes the soils of each problem as sheets (`trial_sheets.py` has them), runs `judge`, `design` or `compare` as somebody would who gives no
+density, and takes what the program says first, its seconds and its exit code. By hand: D15F by logarithmic interpolation, the limit of design by
+category after regrading on 4.75 mm, and the boundaries of no and of continuing erosion. A problem is equal where the numbers in the program's
+lines are these within 1 %, where it says "met" or "not met" as the limit has it, and, of `design`, where no answer is beyond the strictest limit.
+
+`--pictures DIR` prints each page on A4 and Letter and looks at it at 1280 px, 390 px and in dark (Chromium; `scripts/browser`). What breaks
+there is a fault of the problem: a first printed page that lacks a part or holds a word of the program, a table that is wider than its sheet.
+`--set` makes the walks smaller, for the pages alone. Exit code 1 where a row is not equal. Python 3's standard library only.
+"""
+
+import argparse
+import html
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+import trial_sheets as soils
+from trial_sheets import csv, d, design_limit, no_erosion_limit
+
+BROWSER = pathlib.Path(__file__).resolve().parents[1] / "browser" / "look_at_report.sh"
+
+# (sheets {file: soil}, the call, what the base and the filter are; of a comparison the filters, of a design none)
+PROBLEMS = {
+    "a": ("dispersive clay core on C33, coarse side", "CLAY_CORE", ["C33_COARSE"], ["judge", "--dispersive"]),
+    "b": ("till on 0-32 gravel", "TILL", ["GRAVEL_0_32"], ["judge"]),
+    "b2": ("the same till on segregated gravel", "TILL", ["SEGREGATED"], ["judge"]),
+    "c": ("silty fine sand on No. 57 stone", "SILTY_SAND", ["NO_57"], ["judge"]),
+    "d": ("dredged sand on a rock toe", "DREDGED", ["ROCK_TOE"], ["judge"]),
+    "e": ("fine sand on a gap-graded filter", "FINE_SAND", ["GAP"], ["judge"]),
+    "f1": ("clay core on C33, middle", "CLAY_CORE", ["C33_MID"], ["judge"]),
+    "f2": ("C33, middle, on No. 57 stone", "C33_MID", ["NO_57"], ["judge"]),
+    "g": ("design: a filter of the shape of C33 for the till", "TILL", ["C33_MID"], ["design"]),
+    "h": ("design: a filter of the library for the silty fine sand", "SILTY_SAND", [], ["design", "--filter", "cu1.5-loose"]),
+    "k": ("compare: No. 8, No. 57 and C33 on the silty fine sand", "SILTY_SAND", ["NO_8", "NO_57", "C33_MID"], ["compare"]),
+}
+
+# Words that say nothing to who signs the page, and places that no report can cite.
+PROGRAM_WORDS = re.compile(
+    r"\b(?:filter|base|walk|network|record|about)\.[a-z][a-z0-9_]+|\bJSON\b|\bestimate = |\breplicates = |\w_mm\b|\bN_base\b"
+    r"|[a-z]+-em-1901|https?:|www\.|scribd|second[- ]hand", re.IGNORECASE)
+
+# A sheet has its rules, its sizes and its figure on the first page.
+FIRST_PAGE = {"judge": ["Figure 1.", "D15", "D85", "Group by ASTM D2487", "Rules of practice", "The model leaves out: "],
+              "design": ["Figure 1.", "D15F", "The model leaves out: "], "compare": ["Practice", "Walk", "Next", "The model leaves out: "]}
+
+
+def continuing_limit(base):
+    """Foster and Fell's boundary of continuing erosion: 9 D95B of the base as it is regraded."""
+    return 9 * d(soils.regraded(base), 95)
+
+
+def by_hand(name, base, filter_):
+    """D15F, the limit of design, and the boundaries of no and of continuing erosion (mm)."""
+    dispersive = "--dispersive" in PROBLEMS[name][3]
+    return d(filter_, 15), design_limit(base, dispersive), no_erosion_limit(base, dispersive), continuing_limit(base)
+
+
+def near(said, limit):
+    """Whether a number, as it is printed, is this one within 1 % and half of its last digit."""
+    decimals = len(said.split(".")[1]) if "." in said else 0
+    return abs(float(said) - limit) <= 0.01 * limit + 0.5 * 10 ** -decimals
+
+
+def faults_of_practice(line, hand):
+    """What of a line of practice is not as by hand."""
+    d15f, design, no_erosion, continuing = hand
+    strictest = min(design, no_erosion)
+    if line.startswith("met") != (d15f <= design):
+        yield "met or not"
+    sizes = re.match(r"(?:met|not met): D15F ([\d.]+) mm is (?:within|more than) the ([\d.]+) mm", line)
+    if not sizes:
+        yield "no D15F beside a limit"
+        return
+    if not near(sizes[1], d15f):
+        yield f"D15F {sizes[1]}"
+    if not near(sizes[2], design) and not near(sizes[2], strictest):
+        yield f"limit {sizes[2]}"
+    wanted = "no erosion" if d15f <= no_erosion else "some or excessive erosion" if d15f <= continuing else "continuing erosion"
+    if f"Foster and Fell: {wanted}" not in line:
+        yield f"Foster and Fell: not {wanted}"
+    for word, limit in (("up to", no_erosion), ("beyond", continuing)):
+        for said in re.findall(rf"{word} ([\d.]+) mm", line):
+            if not near(said, limit):
+                yield f"{word} {said}"
+
+
+class Problem:
+    def __init__(self, name, options, folder):
+        self.name, self.options, self.folder = name, options, folder
+        self.words, base, filters, self.call = PROBLEMS[name]
+        self.base, self.filters = getattr(soils, base), [getattr(soils, one) for one in filters]
+        self.hand = [by_hand(name, self.base, one) for one in self.filters]
+        for sheet in [base, *filters]:
+            (folder / f"{sheet}.csv").write_bytes(csv([["Opening (mm)", "% passing"], *map(list, getattr(soils, sheet))]))
+        files = [f"{one}.csv" for one in filters]
+        command, *flags = self.call
+        self.args = {"judge": [command, f"{base}.csv", *files, *flags], "compare": [command, "--base", f"{base}.csv", *files, *flags],
+                     "design": [command, f"{base}.csv", *(["--filter", *files] if files else []), *flags]}[command]
+        self.args += [word for one in options.set for word in ("--set", one)]
+        self.faults = []
+
+    def run(self):
+        began = time.monotonic()
+        done = subprocess.run([self.options.binary, *self.args, "--out", self.name], cwd=self.folder, capture_output=True, text=True)
+        self.seconds, self.code, self.out = time.monotonic() - began, done.returncode, done.stdout
+        if self.code:
+            self.faults.append(f"exit code {self.code}: {done.stderr.strip()[-200:]}")
+            return
+        command = self.call[0]
+        if command == "design":
+            self.check_design()
+            return
+        practice = re.findall(r"^\s*Practice: (.*)$", self.out, re.MULTILINE)
+        self.said = list(zip(practice, re.findall(r"^\s*Walk: (.*)$", self.out, re.MULTILINE)))
+        if len(self.said) != len(self.hand):
+            self.faults.append(f"{len(self.said)} lines of practice for {len(self.hand)} filters")
+        for (line, _), hand in zip(self.said, self.hand):
+            self.faults += faults_of_practice(line, hand)
+        findings = [line for line in self.out.splitlines() if line.startswith("- ") and " more on the page" not in line]
+        if command == "judge" and len(findings) > 3:
+            self.faults.append(f"{len(findings)} findings before those on the page")
+        if command == "judge" and len(self.out.splitlines()) > 15:
+            self.faults.append(f"{len(self.out.splitlines())} lines on stdout")
+
+    def check_design(self):
+        answer = json.loads((self.folder / self.name / "design.json").read_text())["answer"]
+        strictest = min(design_limit(self.base), no_erosion_limit(self.base))
+        self.hand = [(None, design_limit(self.base), no_erosion_limit(self.base), continuing_limit(self.base))]
+        self.said = [(answer["said"], f"set by {answer['set_by']}")]
+        greatest = answer["d15f_max_mm"]
+        if greatest > strictest * 1.01:
+            self.faults.append(f"{greatest} mm is beyond practice")
+        if answer["set_by"] == "practice" and abs(greatest - strictest) > 0.01 * strictest:
+            self.faults.append(f"{greatest} mm by practice")
+
+    def look(self, pictures):
+        """Prints and pictures of the page; what breaks there is a fault."""
+        page = self.folder / self.name / {"judge": "report.html", "design": "design.html", "compare": "compare.html"}[self.call[0]]
+        for suffix, how in (("1280.png", ["1280"]), ("390.png", ["390"]), ("dark.png", ["1280", "dark"]), ("a4.pdf", ["a4"]), ("letter.pdf", ["letter"])):
+            out = pictures / f"{self.name}-{suffix}"
+            done = subprocess.run(["sh", BROWSER, page, out, *how], capture_output=True, text=True)
+            if done.returncode:
+                self.faults.append(done.stderr.replace(str(page), self.name).strip()[:300])
+            if suffix.endswith(".pdf") and out.exists():
+                self.look_at_first_page(out, suffix)
+
+    def look_at_first_page(self, pdf, suffix):
+        first = subprocess.run(["pdftotext", "-f", "1", "-l", "1", pdf, "-"], capture_output=True, check=True, text=True).stdout
+        first = " ".join(first.split())
+        rules = []
+        if self.call[0] == "judge":
+            outcome = json.loads((self.folder / self.name / "outcome.json").read_text())
+            rules = [rule["name"] for rule in outcome["rules"] if rule["role"] != "walk"]
+        lacking = [part for part in [*FIRST_PAGE[self.call[0]], *rules] if part not in first]
+        if lacking:
+            self.faults.append(f"the first page of {suffix} lacks {', '.join(lacking)}")
+        words = sorted(set(PROGRAM_WORDS.findall(first)))
+        if words:
+            self.faults.append(f"the first page of {suffix} has words of the program: {', '.join(words)}")
+
+    def row(self):
+        def limits(hand):
+            d15f, design, no_erosion, continuing = hand
+            here = "" if d15f is None else f"D15F {d15f:.3g}; "
+            return f"{here}design {design:.3g}, NE {no_erosion:.3g}, CE {continuing:.3g}"
+
+        hand = "<br>".join(limits(one) for one in self.hand)
+        said = "<br>".join(f"{practice}<br>*{walk}*" for practice, walk in getattr(self, "said", []))
+        cells = [f"**{self.name}** {self.words}", hand, said, f"{self.seconds:.0f}", str(self.code), "; ".join(self.faults) or "equal"]
+        return "| " + " | ".join(cell.replace("|", "/").replace("\n", " ") for cell in cells) + " |"
+
+
+def version(binary):
+    return subprocess.run([binary, "--version"], capture_output=True, check=True, text=True).stdout.strip()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--binary", default="target/release/voidwalk", type=lambda text: str(pathlib.Path(text).resolve()))
+    parser.add_argument("--only", help="names of problems, with commas between them")
+    parser.add_argument("--pictures", type=pathlib.Path, help="folder for pictures and prints of each page")
+    parser.add_argument("--out", type=pathlib.Path, help="Markdown page whose table is replaced")
+    parser.add_argument("--set", nargs="*", default=[], metavar="KEY=VALUE", help="settings of every walk")
+    options = parser.parse_args()
+    wanted = options.only.split(",") if options.only else list(PROBLEMS)
+    rows, wrong = [], 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name in wanted:
+            problem = Problem(name, options, pathlib.Path(folder))
+            problem.run()
+            if options.pictures and not problem.code:
+                options.pictures.mkdir(parents=True, exist_ok=True)
+                problem.look(options.pictures.resolve())
+            rows.append(problem.row())
+            wrong += bool(problem.faults)
+            print(html.unescape(rows[-1]), flush=True)
+    print(f"{len(rows) - wrong} of {len(rows)} equal")
+    if options.out:
+        table = ["| problem | by hand (mm) | practice, and *walk* | s | exit code | beside the hand limits |", "|---|---|---|---|---|---|", *rows]
+        write_table(options.out, table)
+    return 1 if wrong else 0
+
+
+BEGIN, END = "<!-- table -->", "<!-- end of table -->"
+
+
+def write_table(page, table):
+    """Replaces the table between its marks; the words around it are by hand."""
+    text = page.read_text() if page.exists() else f"{BEGIN}\n{END}\n"
+    before, rest = text.split(BEGIN)
+    page.write_text(f"{before}{BEGIN}\n" + "\n".join(table) + f"\n{END}{rest.split(END)[1]}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
