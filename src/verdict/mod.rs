@@ -45,7 +45,7 @@ pub use batch::BatchRow;
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
-pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
 pub use specification::SpecificationOptions;

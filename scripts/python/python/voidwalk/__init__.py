@@ -20,6 +20,7 @@ from ._rules import rules
 from ._scene import Scene, init_text, scene_text
 from ._schema import schema
 from ._soil import Curve, Gradation
+from ._specification import Specification, specification
 from ._studies import Comparison, Design, compare, design, percolation, study
 from ._voidwalk import Progress, VoidwalkError, __version__
 from ._walk import campaign, replicate_seed, resume, run, walk
@@ -36,6 +37,7 @@ __all__ = [
     "Progress",
     "Result",
     "Scene",
+    "Specification",
     "VoidwalkError",
     "__version__",
     "campaign",
@@ -54,6 +56,7 @@ __all__ = [
     "scene_text",
     "schema",
     "soil",
+    "specification",
     "study",
     "walk",
 ]

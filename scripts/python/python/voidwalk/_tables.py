@@ -100,7 +100,7 @@ def workplace() -> Iterator[Workplace]:
 
 def changes(settings: Optional[Settings], options: Mapping[str, Tuple[str, Optional[Setting]]]) -> List[str]:
     """Settings and arguments that stand for one, as the library takes them."""
-    all_of_them: Dict[str, Optional[Setting]] = dict(settings or {})
+    all_of_them: Dict[str, object] = dict(settings or {})
     for argument, (key, value) in options.items():
         if value is None:
             continue
