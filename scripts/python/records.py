@@ -109,17 +109,18 @@ class Types:
             text = f'{about}{name} = TypedDict(\n    "{name}",\n    {{\n{"".join(fields)}    }},\n)\n'
             self.texts.setdefault(name, text)
             return name
+        about = []
         for field, of in schema["properties"].items():
-            said = comment(of.get("description", "") if isinstance(of, dict) else "")
-            groups[field not in required].append(f"{said}    {field}: {self.of(of, defs)}\n")
-        about = sentence(schema.get("description", ""))
+            about.append((field, of.get("description", "") if isinstance(of, dict) else ""))
+            groups[field not in required].append(f"    {field}: {self.of(of, defs)}\n")
+        doc = documented(schema.get("description", ""), about)
         text = ""
         if groups[1] and groups[0]:
             text = f"class _{name}(TypedDict):\n{''.join(groups[0])}\n\n"
-            text += f'class {name}(_{name}, total=False):\n    """{about}"""\n\n{"".join(groups[1])}'
+            text += f"class {name}(_{name}, total=False):\n{doc}\n{''.join(groups[1])}"
         else:
             total = ", total=False" if groups[1] else ""
-            text = f'class {name}(TypedDict{total}):\n    """{about}"""\n\n{"".join(groups[0] or groups[1])}'
+            text = f"class {name}(TypedDict{total}):\n{doc}\n{''.join(groups[0] or groups[1])}"
         if self.texts.setdefault(name, text) != text:
             sys.exit(f"{name} is two types")
         return name
@@ -129,6 +130,16 @@ def sentence(said: str) -> str:
     """A description in lines that fit, without the marks of Rust's documentation."""
     plain = said.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\")
     return "\n    ".join(textwrap.wrap(" ".join(plain.split()), 110)) or "A record."
+
+
+def documented(said: str, fields: List[Tuple[str, str]]) -> str:
+    """The docstring of a type, with what each of its fields is: help() shows no comments."""
+    lines = [f'    """{sentence(said)}\n\n    Keys\n    ----\n']
+    for name, about in fields:
+        plain = " ".join(about.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\").split())
+        lines.append(f"    {name}\n")
+        lines += [f"        {line}\n" for line in textwrap.wrap(plain, 104)]
+    return "".join(lines) + '    """\n'
 
 
 def comment(said: str) -> str:
@@ -180,15 +191,15 @@ def settings_text(told: Any) -> str:
     for section in sections:
         name = f"{section['name'].capitalize() or 'Scene'}Settings"
         names.append(name)
-        fields = [
-            f"{comment(of['meaning'])}    {of['name'].rsplit('.', 1)[-1]}: {KINDS[of['type']]}\n"
-            for of in section["settings"]
-        ]
+        fields = [f"    {of['name'].rsplit('.', 1)[-1]}: {KINDS[of['type']]}\n" for of in section["settings"]]
+        about = [(of["name"].rsplit(".", 1)[-1], of["meaning"]) for of in section["settings"]]
         if not section["name"]:
             others = [other["name"] for other in sections if other["name"]]
-            fields += [f"    #: Section [{other}].\n    {other}: {other.capitalize()}Settings\n" for other in others]
-        about = sentence(section["about"])
-        classes.append(f'class {name}(TypedDict, total=False):\n    """{about}"""\n\n{"".join(fields)}')
+            fields += [f"    {other}: {other.capitalize()}Settings\n" for other in others]
+            about += [(other, f"Its section [{other}].") for other in others]
+        classes.append(
+            f"class {name}(TypedDict, total=False):\n{documented(section['about'], about)}\n{''.join(fields)}"
+        )
     listed = "".join(f'    "{name}",\n' for name in sorted(names))
     return SETTINGS_HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(classes)
 

@@ -7,13 +7,13 @@
 //! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases
 //!   take.
 
-pub mod cases;
+pub(crate) mod cases;
 mod changed;
-pub mod cluster;
-pub mod ledger;
-pub mod plan;
-pub mod run;
-pub mod run_cases;
+pub(crate) mod cluster;
+pub(crate) mod ledger;
+pub(crate) mod plan;
+pub(crate) mod run;
+pub(crate) mod run_cases;
 
 pub use cases::{CasePart, FailedCase};
 pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};

@@ -5,4 +5,4 @@ pub mod compare;
 pub mod design;
 mod kept;
 pub mod percolation;
-pub mod precision;
+pub(crate) mod precision;

@@ -18,24 +18,24 @@
 
 mod answer;
 mod band;
-pub mod batch;
-pub mod beside;
-pub mod by_authority;
+pub(crate) mod batch;
+pub(crate) mod beside;
+pub(crate) mod by_authority;
 mod conclusion;
 mod design;
 mod entry;
-pub mod evidence;
-pub mod finding;
-pub mod left_out;
+pub(crate) mod evidence;
+pub(crate) mod finding;
+pub(crate) mod left_out;
 mod pair;
 mod planned_walk;
-pub mod practice;
+pub(crate) mod practice;
 mod quantity;
 mod rule_notes;
 mod specification;
 mod thickness;
-pub mod walks;
-pub mod words;
+pub(crate) mod walks;
+pub(crate) mod words;
 
 #[cfg(doc)]
 use crate::outcome::design::band::Band;

@@ -103,7 +103,9 @@ class Result:
 
     @property
     def verdict(self) -> str:
-        """Class of erosion: ``"no erosion"``, ``"some erosion"``, ``"continuing erosion"`` or ``"undecided"``."""
+        """Class of erosion, by the mass eroded over the mass inserted: ``"no erosion"`` (less than 7.5 % in the first
+        run), ``"some erosion"`` (more in the first run, less in the second: the filter seals), ``"continuing
+        erosion"`` (more in both), or ``"undecided"``."""
         return str(self.outcome["verdict"])
 
     @property

@@ -72,12 +72,15 @@ class Comparison:
 
     @property
     def cases(self) -> List[ComparedCase]:
-        """The cases, in the order in which they were named: verdict, confidence, reasons, eroded mass."""
+        """The cases, in the order in which they were named, each a dict: name, verdict, confidence, reasons, and in
+        runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
         return self.outcome["cases"]
 
     @property
     def pairs(self) -> List[ComparedPair]:
-        """Every two cases by run: the difference of their eroded masses with its intervals."""
+        """Every two cases by run, each a dict: first, second, run, difference (eroded mass fraction of the first less
+        that of the second, with mean, sd, low and high), and differ (whether all 95 % intervals taken together leave 0
+        out). See :class:`voidwalk.records.ComparedPair`."""
         return self.outcome["pairs"]
 
     def to_pandas(self) -> "pandas.DataFrame":
@@ -240,7 +243,8 @@ def compare(
     Parameters
     ----------
     base, filter : soil, or several
-        As for :func:`judge`. One of them is a list of two to six files, or a dict of soils by name.
+        As for :func:`judge`. One of them is a list of two to six files, or a dict of two to six soils by name, as
+        ``{"as built": ([0.5, 2], [0, 100]), "finer": "finer.csv"}``.
     out : path-like, optional
         Folder for the results; a comparison that was stopped there goes on. Without it everything stays in
         memory.
