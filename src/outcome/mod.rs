@@ -4,13 +4,13 @@
 //! - [`Recorder`] records of a running walk what was asked for.
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
-//! - [`by_void`] is what happened in each void and constriction, for pictures.
+//! - `by_void` is what happened in each void and constriction, for pictures.
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
-//!   [`early_stop`] how many of a study.
+//!   `early_stop` how many of a study.
 //! - [`leaves_out`] is what the model does not contain.
-//! - [`soil_sizes`] are the sizes of a soil that a sheet shows.
+//! - `soil_sizes` are the sizes of a soil that a sheet shows.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
-//! - [`paper`] holds what the paper states.
+//! - `paper` holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.

@@ -4,11 +4,11 @@
 //!   again and compares, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
-//! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
+//! - [`check`](check::check) says what a run would do, by the one model of `cost`.
 //! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
-//!   every folder, and [`unfinished`] marks those whose work is not whole.
+//!   every folder, and `unfinished` marks those whose work is not whole.
 //!
-//! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and
+//! A case is [prepared](prepare::prepare), its `replicates` are walked under `checkpoints`, and
 //! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
 
 pub(crate) mod allocation;

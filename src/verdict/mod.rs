@@ -1,20 +1,20 @@
 //! What an answer is worth: findings about a verdict, the label that they set, and all sentences about it.
 //!
-//! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
+//! - `finding` is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
-//! - [`practice`] is what the rules of filter practice say of a pair.
-//! - [`by_authority`] is what a sheet says that lists the rules of one authority.
-//! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
+//! - `practice` is what the rules of filter practice say of a pair.
+//! - `by_authority` is what a sheet says that lists the rules of one authority.
+//! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
-//! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
+//! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
-//! - [`batch`] is what practice says of many samples, a row each.
+//! - `batch` is what practice says of many samples, a row each.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
-//! - [`words`] are what a class means.
+//! - `words` are what a class means.
 
 mod answer;
 mod band;

@@ -116,7 +116,8 @@ pub fn specification(
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let sieves = sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
+    let sieves =
+        sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
     let options = SpecifyOptions { base, dispersive, sieves, out, overwrite };
     let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
