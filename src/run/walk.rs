@@ -98,8 +98,10 @@ pub fn walk_scene(
 /// let folder = tempfile::tempdir()?;
 /// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
 /// let stop = AtomicBool::new(false);
-/// let on_event = |event: Event| stop.fetch_or(matches!(event, Event::RunDone), Ordering::Relaxed);
-/// let callbacks = Callbacks { on_event: &|event| drop(on_event(event)), stop: &stop, ..Callbacks::default() };
+/// let on_event = |event: Event| {
+///     stop.fetch_or(matches!(event, Event::RunDone), Ordering::Relaxed);
+/// };
+/// let callbacks = Callbacks { on_event: &on_event, stop: &stop, ..Callbacks::default() };
 /// let stopped = walk_scene(Scene::built_in(&small.map(String::from))?, &options, &callbacks);
 /// assert_eq!(stopped.err().map(|error| error.exit()), Some(Exit::Stopped));
 /// let run = resume(&folder.path().join("run"), &RunOptions::default(), &Callbacks::default())?;
