@@ -208,6 +208,9 @@ class Trial:
         self.clone = self.work / "clone"
         subprocess.run(["git", "clone", "--quiet", "--local", ROOT, self.clone], check=True)
         BUILT.mkdir(parents=True, exist_ok=True)
+        # Environments of Python that stand on that of an earlier run, which is gone.
+        for environment in ("forge", "python", "book-environment"):
+            shutil.rmtree(BUILT / environment, ignore_errors=True)
         (self.clone / "target").symlink_to(BUILT)
         if args.wheel:
             (self.clone / "packages").mkdir()
