@@ -24,6 +24,7 @@ from run_workflow import ROOT, Runner, combination, yaml
 
 #: In two parts, as the spelling of this file is looked at, too.
 MISSPELT = "rec" + "ieves"
+TUTORIALS = "scripts/book/tutorials"
 WORKFLOW = ROOT / ".github" / "workflows" / "check.yml"
 BUILT = ROOT / "target" / "planted-failures"
 #: What a release build takes from its time where only failure and success are looked at.
@@ -141,8 +142,8 @@ PLANTS = [
         "interface",
         "The public interface since the last release",
         "a public function is gone, and the version stays",
-        [("src/gradation/mod.rs", "pub use", "// pub use")],
-        "semver",
+        [("src/stream.rs", "pub fn unit(", "pub(crate) fn unit(")],
+        "function_missing",
         tag="v0.0.0-planted",
     ),
     Plant(
@@ -165,7 +166,7 @@ PLANTS = [
         "python",
         "The book, with every command in it",
         "a tutorial that no list has",
-        [("scripts/book/tutorials/planted.md", "", "# Planted\n")],
+        [(f"{TUTORIALS}/planted.md", "", "# Planted\n")],
         "planted",
     ),
     Plant(
