@@ -18,4 +18,4 @@ if ! command -v cargo-deny >/dev/null 2>&1; then
     [ -x target/deny/bin/cargo-deny ] || prebuilt || cargo install --quiet --locked --root target/deny cargo-deny
     PATH=$PWD/target/deny/bin:$PATH
 fi
-cargo-deny --locked check "$@"
+cargo-deny --locked --workspace check "$@"

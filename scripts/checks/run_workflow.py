@@ -116,44 +116,80 @@ def main():
         shutil.rmtree(work)
 
 
+class Runner:
+    """A clean environment in which the steps of a job run: one after the other, each with what those before it left."""
+
+    def __init__(self, workflow, job, matrix, work, clone, ref="v0.0.0-trial"):
+        self.clone = clone
+        home, python = work / "home", work / "python"
+        home.mkdir()
+        subprocess.run([sys.executable, "-m", "venv", python], check=True)
+        # The compiler itself, not rustup's proxies, which may install another.
+        rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+        cargo, stand_ins = work / "cargo", work / "bin"
+        cargo.mkdir()
+        stand_ins.mkdir()
+        (stand_ins / "rustup").write_text(RUSTUP)
+        (stand_ins / "rustup").chmod(0o755)
+        fetched = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "registry"
+        if fetched.is_dir():
+            (cargo / "registry").symlink_to(fetched)
+        self.files = {name: work / name for name in ["GITHUB_ENV", "GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"]}
+        self.environment = {name: value for name, value in os.environ.items() if KEPT.match(name)} | {
+            "HOME": str(home),
+            "CARGO_HOME": str(cargo),
+            "PATH": f"{stand_ins}:{python}/bin:{rust}/bin:/usr/local/bin:/usr/bin:/bin",
+            "LANG": "C.UTF-8",
+            "CI": "true",
+            "GITHUB_ACTIONS": "true",
+            "GITHUB_REF_NAME": ref,
+            "GITHUB_WORKSPACE": str(clone),
+            "RUNNER_OS": "Linux",
+            "RUNNER_ARCH": "X64",
+            "RUNNER_TEMP": str(work),
+            **{name: str(path) for name, path in self.files.items()},
+        }
+        self.values = {f"matrix.{name}": value for name, value in matrix.items()}
+        self.values |= {"github.ref_name": ref, "runner.os": "Linux", "runner.arch": "X64", "github.workspace": str(clone)}
+        for level in (workflow, job):
+            self.environment |= {name: filled(value, self.values) for name, value in level.get("env", {}).items()}
+        shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
+        self.shell = shells[1] or shells[0]
+
+    def script(self, step):
+        """What a step runs, filled in."""
+        return filled(step["run"], self.values)
+
+    def run(self, step, script, shell=None, log=None):
+        """Runs a step: its exit code. What it says goes to a file, where one is given."""
+        if "if" in step:
+            print(f"-- its condition is not looked at: {step['if']}", flush=True)
+        for path in self.files.values():
+            path.write_text("")
+        own = {name: filled(value, self.values) for name, value in step.get("env", {}).items()}
+        # As GitHub does: without a shell named, a pipe fails as its last command does.
+        flags = ["-eo", "pipefail"] if (shell or step.get("shell") or self.shell) == "bash" else ["-e"]
+        where = self.clone / step.get("working-directory", ".")
+        command = ["bash", "--noprofile", "--norc", *flags, "-c", script]
+        streams = {} if log is None else {"stdout": log, "stderr": subprocess.STDOUT}
+        code = subprocess.run(command, cwd=where, env=self.environment | own, **streams).returncode
+        if code == 0:
+            self.environment |= named_values(self.files["GITHUB_ENV"])
+            for folder in self.files["GITHUB_PATH"].read_text().splitlines():
+                self.environment["PATH"] = f"{folder}:{self.environment['PATH']}"
+            if "id" in step:
+                outputs = named_values(self.files["GITHUB_OUTPUT"])
+                self.values |= {f"steps.{step['id']}.outputs.{name}": value for name, value in outputs.items()}
+        return code
+
+
 def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
-    home, python = work / "home", work / "python"
-    home.mkdir()
-    subprocess.run([sys.executable, "-m", "venv", python], check=True)
-    # The compiler itself, not rustup's proxies, which may install another.
-    rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
-    cargo, stand_ins = work / "cargo", work / "bin"
-    cargo.mkdir()
-    stand_ins.mkdir()
-    (stand_ins / "rustup").write_text(RUSTUP)
-    (stand_ins / "rustup").chmod(0o755)
-    fetched = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "registry"
-    if fetched.is_dir():
-        (cargo / "registry").symlink_to(fetched)
-    files = {name: work / name for name in ["GITHUB_ENV", "GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"]}
-    environment = {name: value for name, value in os.environ.items() if KEPT.match(name)} | {
-        "HOME": str(home),
-        "CARGO_HOME": str(cargo),
-        "PATH": f"{stand_ins}:{python}/bin:{rust}/bin:/usr/local/bin:/usr/bin:/bin",
-        "LANG": "C.UTF-8",
-        "CI": "true",
-        "GITHUB_ACTIONS": "true",
-        "GITHUB_REF_NAME": args.ref,
-        "GITHUB_WORKSPACE": str(clone),
-        "RUNNER_OS": "Linux",
-        "RUNNER_ARCH": "X64",
-        "RUNNER_TEMP": str(work),
-        **{name: str(path) for name, path in files.items()},
-    }
-    values = {f"matrix.{name}": value for name, value in matrix.items()}
-    values |= {"github.ref_name": args.ref, "runner.os": "Linux", "runner.arch": "X64", "github.workspace": str(clone)}
-    for level in (workflow, job):
-        environment |= {name: filled(value, values) for name, value in level.get("env", {}).items()}
-    shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
+    runner = Runner(workflow, job, matrix, work, clone, args.ref)
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()
     for step in job["steps"]:
+        shell = None
         if "uses" in step:
             action = step["uses"].split("@")[0]
             if action not in instead:
@@ -161,29 +197,14 @@ def run(workflow, job, args, matrix, instead, work, clone):
                 continue
             name, script, shell = f"{action}, here: {instead[action]}", instead[action], "bash"
         else:
-            script = filled(step["run"], values)
+            script = runner.script(step)
             name = step.get("name", script.splitlines()[0])
-            shell = step.get("shell") or shells[1] or shells[0]
-        if "if" in step:
-            print(f"-- its condition is not looked at: {step['if']}", flush=True)
-        for path in files.values():
-            path.write_text("")
-        own = {name: filled(value, values) for name, value in step.get("env", {}).items()}
-        # As GitHub does: without a shell named, a pipe fails as its last command does.
-        flags = ["-eo", "pipefail"] if shell == "bash" else ["-e"]
-        where = clone / step.get("working-directory", ".")
         print(f"== {name}", flush=True)
         at = time.monotonic()
-        done = subprocess.run(["bash", "--noprofile", "--norc", *flags, "-c", script], cwd=where, env=environment | own)
-        print(f"   {time.monotonic() - at:.1f} s, exit code {done.returncode}", flush=True)
-        if done.returncode:
-            return done.returncode
-        environment |= named_values(files["GITHUB_ENV"])
-        for folder in files["GITHUB_PATH"].read_text().splitlines():
-            environment["PATH"] = f"{folder}:{environment['PATH']}"
-        if "id" in step:
-            outputs = named_values(files["GITHUB_OUTPUT"])
-            values |= {f"steps.{step['id']}.outputs.{name}": value for name, value in outputs.items()}
+        code = runner.run(step, script, shell)
+        print(f"   {time.monotonic() - at:.1f} s, exit code {code}", flush=True)
+        if code:
+            return code
     print(f"{args.job}: every step that runs here has passed, {time.monotonic() - begun:.0f} s", flush=True)
     return 0
 

@@ -6,15 +6,18 @@ RUN is the folder of a run with `record.voids` on the voids of a packing. The pi
 fifth of the filter deep; water flows from left to right. Needs nothing but Python.
 """
 
+from __future__ import annotations
+
 import csv
 import pathlib
 import sys
+from typing import Dict, List
 
 WIDTH, EDGE, BELOW = 720, 12, 30
 CLASSES = [(0, "open", "#b8b8b8", 0.7), (1, "closed in the first run", "#d55e00", 1.3), (2, "closed in the second run", "#0072b2", 1.3)]
 
 
-def table(path):
+def table(path: pathlib.Path) -> List[Dict[str, str]]:
     with open(path) as file:
         return list(csv.DictReader(file))
 
@@ -27,7 +30,7 @@ low, high = ([pick(place[axis] for place in places.values()) for axis in range(3
 middle, half = (low[1] + high[1]) / 2, (high[1] - low[1]) / 10
 
 scale = (WIDTH - 2 * EDGE) / (high[2] - low[2])
-lines = {run: [] for run, *_ in CLASSES}
+lines: Dict[int, List[str]] = {run: [] for run, *_ in CLASSES}
 for row in table(folder / "constrictions_of_network.csv"):
     step = [float(row[f"d{axis}_mm"]) for axis in "xyz"]
     if row["from"] in places:

@@ -6,6 +6,8 @@ Without a file 2,000 grains are packed here. Writes dem_packing.vtu (voids as po
 dem_packing.png; the .vtu needs nothing but NumPy, PyVista shows it where it is installed.
 """
 
+from __future__ import annotations
+
 import sys
 
 import matplotlib
@@ -13,19 +15,21 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 import voidwalk as vw
 
 
-def write_vtu(path, found, cell):
+def write_vtu(path: str, found: vw.Constrictions) -> None:
     """Voids and the constrictions between those that lie in one cell, as an unstructured grid in text."""
-    conns, keep = found["throat.conns"], np.ones(len(found["throat.conns"]), dtype=bool)
+    conns = found["throat.conns"]
+    keep: NDArray[np.bool_] = np.ones(len(conns), dtype=bool)
     if "throat.shift" in found:
-        keep = ~found["throat.shift"].any(axis=1)
+        keep = np.all(found["throat.shift"] == 0, axis=1)
     points, lines = found["pore.coords"], conns[keep]
     columns = {"PointData": ("void_diameter_mm", found["pore.diameter"]),
                "CellData": ("constriction_diameter_mm", found["throat.diameter"][keep])}
-    def array(name, kind, values, parts=1):
+    def array(name: str, kind: str, values: ArrayLike, parts: int = 1) -> str:
         text = " ".join(map(str, np.ravel(values).tolist()))
         return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{parts}" format="ascii">{text}</DataArray>\n'
     with open(path, "w") as file:
@@ -49,9 +53,9 @@ print(packing)
 print(found, f"{found.grains_per_void:.3f} grains per void")
 curve = found.curve
 print("  ".join(f"Dc{percent} {curve.dc(percent):.4f} mm" for percent in (5, 35, 50, 85)))
-write_vtu("dem_packing.vtu", found, packing.cell)
+write_vtu("dem_packing.vtu", found)
 try:
-    import pyvista
+    import pyvista  # type: ignore[import-not-found,unused-ignore]  # pyright: ignore
 
     print(pyvista.read("dem_packing.vtu"))
 except ImportError:

@@ -16,16 +16,18 @@ result = vw.run(settings={"network.nx": 20, "network.ny": 20, "network.nz": 30, 
 print(result)
 for run in result.summary:
     eroded = run["eroded_mass_fraction"]
-    print(f"run {run['run']}: {100 * eroded['mean']:.2f} % of the mass eroded, {100 * eroded['low']:.2f} to "
-          f"{100 * eroded['high']:.2f} % at 95 %")
+    low, high = eroded["low"], eroded["high"]
+    # One replicate has no interval.
+    interval = "" if low is None or high is None else f", {100 * low:.2f} to {100 * high:.2f} % at 95 %"
+    print(f"run {run['run']}: {100 * eroded['mean']:.2f} % of the mass eroded{interval}")
 
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
 series = result.series
 for replicate in range(1, len(result.replicates) + 1):
-    for run, colour in [(1, "tab:blue"), (2, "tab:orange")]:
-        rows = (series["replicate"] == replicate) & (series["run"] == run)
+    for number, colour in [(1, "tab:blue"), (2, "tab:orange")]:
+        rows = (series["replicate"] == replicate) & (series["run"] == number)
         axes.plot(series["increment"][rows], 100 * series["eroded_mass_fraction"][rows], color=colour, lw=0.8,
-                  label=f"run {run}" if replicate == 1 else None)
+                  label=f"run {number}" if replicate == 1 else None)
 axes.set(xlabel="increment", ylabel="base eroded (% of its mass)", title=f"Verdict: {result.verdict}")
 axes.legend()
 path = sys.argv[1] if len(sys.argv) > 1 else "first_verdict.png"

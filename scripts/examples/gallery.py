@@ -11,7 +11,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts" / "book"))
-import console
+import console  # type: ignore[import-not-found]  # pyright: ignore
 
 binary = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "target" / "release" / "voidwalk").resolve()
 folder = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else ROOT / "target")

@@ -5,20 +5,24 @@
 Without OpenPNM the same cubic network is built from arrays.
 """
 
+from __future__ import annotations
+
 import sys
+from typing import Dict
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import voidwalk as vw
 
 SHAPE, draw = (16, 16, 24), np.random.default_rng(5)
 
 
-def cubic_arrays():
+def cubic_arrays() -> Dict[str, NDArray[np.generic]]:
     """Voids on a grid of 1 mm, each joined to its six neighbours, with the labels of OpenPNM."""
     number = np.arange(np.prod(SHAPE)).reshape(SHAPE)
     conns = np.concatenate([
@@ -31,7 +35,7 @@ def cubic_arrays():
 
 
 try:
-    import openpnm as op
+    import openpnm as op  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
     pn = op.network.Cubic(shape=SHAPE, spacing=1e-3)
 except ImportError:
@@ -44,6 +48,7 @@ result = vw.walk(network, base, n_base=200_000, replicates=4)
 print(network)
 print(result)
 
+assert result.blocked is not None and network.coords is not None
 blocked = result.blocked[:, 0].mean(axis=0)
 ends = network.coords[network.conns][:, :, 2]
 where, is_along = ends.mean(axis=1), np.abs(ends[:, 1] - ends[:, 0]) > 0.5

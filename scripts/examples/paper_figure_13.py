@@ -6,15 +6,20 @@ The cases of scripts/campaigns/progress.toml with their networks as large as the
 fewer are warned of.
 """
 
+from __future__ import annotations
+
 import sys
+from typing import Tuple
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from numpy.typing import NDArray
 
 import voidwalk as vw
+from voidwalk.columns import Series
 
 #: Filter, the filter whose Dc the base is scaled by, Cu of the base, the Dc that is its D85.
 CASES = {
@@ -24,7 +29,7 @@ CASES = {
 }
 
 
-def mean_progress(series, run):
+def mean_progress(series: Series, run: int) -> Tuple[NDArray[np.uint64], NDArray[np.float64]]:
     """Mean of the eroded share by increment over the replicates; a walk that has ended stays where it is."""
     of_run = series["run"] == run
     increments = np.arange(series["increment"][of_run].max() + 1)
@@ -33,7 +38,8 @@ def mean_progress(series, run):
         rows = of_run & (series["replicate"] == replicate)
         at = np.searchsorted(series["increment"][rows], increments, side="right")
         curves.append(np.concatenate([[0.0], series["eroded_mass_fraction"][rows]])[at])
-    return increments, np.mean(curves, axis=0)
+    share: NDArray[np.float64] = np.mean(curves, axis=0)
+    return increments, share
 
 
 figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")

@@ -28,10 +28,10 @@ print(frame.pivot_table(index="D15F/D85B", columns=["Cu of the base", "run"], va
 print(frame[frame["run"] == 1].pivot(index="D15F/D85B", columns="Cu of the base", values="verdict"))
 
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
-for (cu, run), part in frame.groupby(["Cu of the base", "run"]):
+for (of_cu, of_run), part in frame.groupby(["Cu of the base", "run"]):
     low, high = 100 * (part["mean"] - part["low"]), 100 * (part["high"] - part["mean"])
     axes.errorbar(part["D15F/D85B"], 100 * part["mean"], yerr=[low, high], marker="o", ms=4, capsize=2,
-                  ls="-" if run == 1 else "--", color="C0" if cu == 1.5 else "C1", label=f"Cu {cu}, run {run}")
+                  ls="-" if of_run == 1 else "--", color="C0" if of_cu == 1.5 else "C1", label=f"Cu {of_cu}, run {of_run}")
 axes.axhline(7.5, color="grey", lw=0.8)
 axes.annotate("7.5 %", (0.995, 7.5), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="grey", fontsize=8)
 axes.set(xlabel="D15F / D85B", ylabel="base eroded (% of its mass)", title="Filter of Cu 1.5, loose")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Writes scripts/python/python/voidwalk/records.py, the types of every JSON record, from the JSON Schemas of the crate;
-with --check it only compares."""
+with --check it only compares. With --settings FILE it writes settings.py beside it, the types of a scene's settings, from
+what ``voidwalk init --json`` prints."""
 
 from __future__ import annotations
 
@@ -14,6 +15,8 @@ from typing import Any, Dict, List, Tuple
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMAS = ROOT / "src" / "store" / "schemas"
 WRITTEN = Path(__file__).resolve().parent / "python" / "voidwalk" / "records.py"
+
+SETTINGS = WRITTEN.with_name("settings.py")
 
 #: What a user meets, the most important first; each gives the name of its type.
 ROOTS = {
@@ -106,17 +109,18 @@ class Types:
             text = f'{about}{name} = TypedDict(\n    "{name}",\n    {{\n{"".join(fields)}    }},\n)\n'
             self.texts.setdefault(name, text)
             return name
+        about = []
         for field, of in schema["properties"].items():
-            said = comment(of.get("description", "") if isinstance(of, dict) else "")
-            groups[field not in required].append(f"{said}    {field}: {self.of(of, defs)}\n")
-        about = sentence(schema.get("description", ""))
+            about.append((field, of.get("description", "") if isinstance(of, dict) else ""))
+            groups[field not in required].append(f"    {field}: {self.of(of, defs)}\n")
+        doc = documented(schema.get("description", ""), about)
         text = ""
         if groups[1] and groups[0]:
             text = f"class _{name}(TypedDict):\n{''.join(groups[0])}\n\n"
-            text += f'class {name}(_{name}, total=False):\n    """{about}"""\n\n{"".join(groups[1])}'
+            text += f"class {name}(_{name}, total=False):\n{doc}\n{''.join(groups[1])}"
         else:
             total = ", total=False" if groups[1] else ""
-            text = f'class {name}(TypedDict{total}):\n    """{about}"""\n\n{"".join(groups[0] or groups[1])}'
+            text = f"class {name}(TypedDict{total}):\n{doc}\n{''.join(groups[0] or groups[1])}"
         if self.texts.setdefault(name, text) != text:
             sys.exit(f"{name} is two types")
         return name
@@ -126,6 +130,16 @@ def sentence(said: str) -> str:
     """A description in lines that fit, without the marks of Rust's documentation."""
     plain = said.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\")
     return "\n    ".join(textwrap.wrap(" ".join(plain.split()), 110)) or "A record."
+
+
+def documented(said: str, fields: List[Tuple[str, str]]) -> str:
+    """The docstring of a type, with what each of its fields is: help() shows no comments."""
+    lines = [f'    """{sentence(said)}\n\n    Keys\n    ----\n']
+    for name, about in fields:
+        plain = " ".join(about.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\").split())
+        lines.append(f"    {name}\n")
+        lines += [f"        {line}\n" for line in textwrap.wrap(plain, 104)]
+    return "".join(lines) + '    """\n'
 
 
 def comment(said: str) -> str:
@@ -144,7 +158,57 @@ def text() -> str:
     return HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(types.texts.values())
 
 
+SETTINGS_HEAD = '''"""The types of a scene's settings, as :attr:`voidwalk.Scene.settings` gives them: lengths in mm, as numbers.
+
+Made by ``scripts/python/records.py --settings`` from what ``voidwalk init --json`` prints. A setting that a scene
+does not have is not there.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, List, TypedDict, Union
+
+'''
+
+#: The kinds of settings, as they are read back.
+KINDS = {
+    "integer": "int",
+    "float": "float",
+    "float or string": "float",
+    "string": "str",
+    "string or table": "Union[str, Dict[str, object]]",
+    "boolean": "bool",
+    "array of integers": "List[int]",
+    "array of floats": "List[float]",
+}
+
+
+def settings_text(told: Any) -> str:
+    """The module of the settings."""
+    classes = []
+    names = []
+    sections = sorted(told["sections"], key=lambda section: section["name"] == "")
+    for section in sections:
+        name = f"{section['name'].capitalize() or 'Scene'}Settings"
+        names.append(name)
+        fields = [f"    {of['name'].rsplit('.', 1)[-1]}: {KINDS[of['type']]}\n" for of in section["settings"]]
+        about = [(of["name"].rsplit(".", 1)[-1], of["meaning"]) for of in section["settings"]]
+        if not section["name"]:
+            others = [other["name"] for other in sections if other["name"]]
+            fields += [f"    {other}: {other.capitalize()}Settings\n" for other in others]
+            about += [(other, f"Its section [{other}].") for other in others]
+        classes.append(
+            f"class {name}(TypedDict, total=False):\n{documented(section['about'], about)}\n{''.join(fields)}"
+        )
+    listed = "".join(f'    "{name}",\n' for name in sorted(names))
+    return SETTINGS_HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(classes)
+
+
 def main() -> None:
+    if sys.argv[1:2] == ["--settings"]:
+        told = json.loads(Path(sys.argv[2]).read_text(encoding="utf-8"))
+        SETTINGS.write_text(settings_text(told), encoding="utf-8")
+        return
     if sys.argv[1:] == ["--check"]:
         if WRITTEN.read_text(encoding="utf-8") != text():
             sys.exit(f"{WRITTEN.name} is not what the schemas say: run scripts/python/records.py")

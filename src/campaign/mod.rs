@@ -1,19 +1,19 @@
 //! Campaigns: many scenes, walked by as many processes as are started on one folder.
 //!
-//! - [`plan`] crosses factors into cases, each with a name and a seed of its own; [`cases`] are worked out
+//! - [`plan`] crosses factors into cases, each with a name and a seed of its own; `cases` are worked out
 //!   from it.
-//! - [`run()`] walks those that are not done, by [`run_cases`]; [`collect`] writes what came of them, the
-//!   [`ledger`].
-//! - [`cluster`] hands a plan to a cluster's scheduler, by what [`crate::run::cost`] says that its cases
+//! - [`run()`] walks those that are not done, by `run_cases`; [`collect`] writes what came of them, the
+//!   `ledger`.
+//! - `cluster` hands a plan to a cluster's scheduler, by what `crate::run::cost` says that its cases
 //!   take.
 
-pub mod cases;
+pub(crate) mod cases;
 mod changed;
-pub mod cluster;
-pub mod ledger;
+pub(crate) mod cluster;
+pub(crate) mod ledger;
 pub mod plan;
-pub mod run;
-pub mod run_cases;
+pub(crate) mod run;
+pub(crate) mod run_cases;
 
 pub use cases::{CasePart, FailedCase};
 pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};

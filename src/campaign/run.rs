@@ -356,7 +356,7 @@ pub fn collect(
 /// Makes one of the packings that a plan needs, counted from 1 in the order of its cases.
 ///
 /// # Errors
-/// There is no such packing; then as [`provide`].
+/// There is no such packing; then as `provide`.
 pub fn make_packing(
     plan: &CampaignPlan,
     number: u64,

@@ -62,6 +62,15 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 }
 
 /// A scene, worked out.
+///
+/// ```
+/// use voidwalk::{Case, Scene};
+/// let case = Case::new(Scene::built_in(&["base.cu=3".to_owned()])?)?;
+/// // D85 of the base is the Dc5 of the filter, and Eq. (2) says how many particles there are.
+/// assert!((case.base.d(85.0).unwrap() / case.curve.dc(5.0).unwrap() - 1.0).abs() < 1e-9);
+/// assert_eq!(Some(case.n_base), case.n_base_eq2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone)]
 pub struct Case {
     /// The scene it comes from.

@@ -139,7 +139,7 @@ pub struct RulesArgs {
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
     /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said. JSON has
-    /// all rules [default: all]
+    /// all rules, and those of the authority by their id [default: all]
     #[arg(long, value_name = "NAME", value_parser = authority)]
     pub authority: Option<Authority>,
     /// Accept base and filter as named, even if they look exchanged

@@ -8,7 +8,7 @@ use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
-use crate::verdict::by_authority::{of_pair, stated_by};
+use crate::verdict::by_authority::stated_by;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -31,12 +31,14 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
         let files = format!("base {}, filter {}", shown(&args.base), shown(filter));
         RunError::Refused(format!("{files}: {}", mistake.refusal()))
     })?;
+    let by = args.authority.unwrap_or_default();
+    let pair = pair.stated_by(by);
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
     to_stdout(&if args.json {
         json(format::RULES, &pair)?
     } else {
-        words(&pair, (&args.base, filter), args.authority.unwrap_or_default(), &notes)
+        words(&pair, (&args.base, filter), by, &notes)
     });
     Ok(())
 }
@@ -122,9 +124,9 @@ fn words(
             wrapped(&rule.source, INDENT).into_iter().for_each(&mut line);
         }
     }
-    if let Some(said) = of_pair(&pair.rules, by, filter.d15_mm) {
+    if let Some(stated) = &pair.by_authority {
         line(String::new());
-        line(said);
+        line(stated.said.clone());
     }
     text
 }

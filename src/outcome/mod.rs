@@ -4,13 +4,13 @@
 //! - [`Recorder`] records of a running walk what was asked for.
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
-//! - [`by_void`] is what happened in each void and constriction, for pictures.
+//! - `by_void` is what happened in each void and constriction, for pictures.
 //! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
-//!   [`early_stop`] how many of a study.
+//!   `early_stop` how many of a study.
 //! - [`leaves_out`] is what the model does not contain.
-//! - [`soil_sizes`] are the sizes of a soil that a sheet shows.
+//! - `soil_sizes` are the sizes of a soil that a sheet shows.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
-//! - [`paper`] holds what the paper states.
+//! - `paper` holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
@@ -24,13 +24,13 @@
 mod applied;
 mod base_size;
 pub mod by_connectivity;
-pub mod by_void;
+pub(crate) mod by_void;
 mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;
 pub(crate) mod digits;
-pub mod early_stop;
+pub(crate) mod early_stop;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
@@ -41,7 +41,7 @@ pub mod number_rows;
 pub mod numbers;
 pub mod packing;
 mod pan;
-pub mod paper;
+pub(crate) mod paper;
 pub mod percolation;
 pub mod precision;
 pub mod record;
@@ -49,7 +49,7 @@ mod recorder;
 mod rule_note;
 pub mod rules;
 pub mod so_far;
-pub mod soil_sizes;
+pub(crate) mod soil_sizes;
 mod statistic;
 pub mod stopping;
 pub(crate) mod student;

@@ -40,6 +40,16 @@ pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Why a command of the program ended early; [`RunError::exit`] says whether it was refused, stopped or
 /// failed.
+///
+/// ```
+/// use voidwalk::run::{Exit, RunError};
+/// use voidwalk::{Callbacks, RunOptions, resume};
+/// let folder = tempfile::tempdir()?;
+/// let Err(error) = resume(folder.path(), &RunOptions::default(), &Callbacks::default()) else { panic!() };
+/// assert_eq!((error.exit(), error.exit().code()), (Exit::Refused, 2));
+/// assert!(error.to_string().contains("holds no scene.toml"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A scene or plan that is refused.

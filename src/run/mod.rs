@@ -4,21 +4,21 @@
 //!   again and compares, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
-//! - [`check`](check::check) says what a run would do, by the one model of [`cost`].
+//! - [`check`](check::check) says what a run would do, by the one model of `cost`.
 //! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
-//!   every folder, and [`unfinished`] marks those whose work is not whole.
+//!   every folder, and `unfinished` marks those whose work is not whole.
 //!
-//! A case is [prepared](prepare::prepare), its [`replicates`] are walked under [`checkpoints`], and
+//! A case is [prepared](prepare::prepare), its `replicates` are walked under `checkpoints`, and
 //! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
 
-pub mod allocation;
-pub mod callbacks;
+pub(crate) mod allocation;
+pub(crate) mod callbacks;
 mod check;
-pub mod checkpoints;
-pub mod constrictions;
-pub mod cost;
+pub(crate) mod checkpoints;
+pub(crate) mod constrictions;
+pub(crate) mod cost;
 mod curve_range;
-pub mod erosion;
+pub(crate) mod erosion;
 pub mod error;
 mod evidence;
 mod examples;
@@ -28,19 +28,19 @@ mod margin;
 mod network_answer;
 mod network_record;
 mod network_walk;
-pub mod other_walks;
-pub mod pack;
+pub(crate) mod other_walks;
+pub(crate) mod pack;
 mod packing_record;
 mod pilot;
-pub mod planned;
-pub mod prepare;
-pub mod replicates;
+pub(crate) mod planned;
+pub(crate) mod prepare;
+pub(crate) mod replicates;
 mod reproduce;
 pub mod results;
-pub mod shared_networks;
-pub mod studies;
-pub mod unfinished;
-pub mod walk;
+pub(crate) mod shared_networks;
+pub(crate) mod studies;
+pub(crate) mod unfinished;
+pub(crate) mod walk;
 
 pub use callbacks::{Callbacks, Event};
 pub use check::{Check, PackingCheck, check};

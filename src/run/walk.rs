@@ -24,7 +24,13 @@ use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 
-/// How a scene is walked; no setting changes a result.
+/// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
+///
+/// ```
+/// use voidwalk::RunOptions;
+/// let options = RunOptions { out: Some("my-run".into()), overwrite: true, ..RunOptions::default() };
+/// assert_eq!(options.prepare.threads, None);
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
@@ -80,6 +86,28 @@ pub fn walk_scene(
 ///
 /// # Errors
 /// A folder that holds no run, or a finished one, is refused; then as [`walk_scene`].
+///
+/// # Example
+/// A walk is stopped after its first run, and continued.
+/// ```
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use voidwalk::run::{Event, Exit};
+/// use voidwalk::{Callbacks, RunOptions, Scene, resume, walk_scene};
+///
+/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
+/// let folder = tempfile::tempdir()?;
+/// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+/// let stop = AtomicBool::new(false);
+/// let on_event = |event: Event| {
+///     stop.fetch_or(matches!(event, Event::RunDone), Ordering::Relaxed);
+/// };
+/// let callbacks = Callbacks { on_event: &on_event, stop: &stop, ..Callbacks::default() };
+/// let stopped = walk_scene(Scene::built_in(&small.map(String::from))?, &options, &callbacks);
+/// assert_eq!(stopped.err().map(|error| error.exit()), Some(Exit::Stopped));
+/// let run = resume(&folder.path().join("run"), &RunOptions::default(), &Callbacks::default())?;
+/// assert_eq!(run.outcome.replicates.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
     let (scene, name) = (folder.join("scene.toml"), shown(folder));
     if !scene.is_file() {

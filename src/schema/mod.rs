@@ -8,7 +8,7 @@
 //! Which settings exclude each other is declared by [`Group`]s.
 
 mod allowed;
-pub mod hints;
+pub(crate) mod hints;
 pub mod length;
 mod nearest;
 mod settings;

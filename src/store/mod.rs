@@ -6,7 +6,7 @@ pub mod disk;
 mod folder;
 pub mod format;
 mod npz;
-pub mod platform;
+pub(crate) mod platform;
 
 pub use column::{Column, Placement};
 pub use disk::{open_regular, read_regular};

@@ -8,4 +8,4 @@ mod file_names;
 mod kept;
 mod of_cases;
 pub mod percolation;
-pub mod precision;
+pub(crate) mod precision;

@@ -1,5 +1,6 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
+use super::pair::{PairRules, StatedByAuthority};
 use super::practice::{against, tested, tested_words};
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
@@ -9,6 +10,27 @@ use crate::outcome::rules::{Authority, TESTS_CONTINUING, authority, is_stated_by
 /// The rules of practice that one authority states, in their order; those of the walk are none of them.
 pub fn stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
     rules.iter().filter(|rule| rule.role != RuleRole::Walk && is_stated_by(rule, by)).cloned().collect()
+}
+
+impl PairRules {
+    /// With what one authority states of the two soils; of all authorities it says nothing.
+    ///
+    /// ```
+    /// use voidwalk::{Gradation, outcome::rules::Authority, verdict::PairRules};
+    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let stated = PairRules::of(&base, &filter).stated_by(Authority::Nrcs).by_authority.unwrap();
+    /// assert!(stated.said.starts_with("NRCS: met: D15F 0.616 mm is within 0.98"), "{}", stated.said);
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn stated_by(mut self, by: Authority) -> Self {
+        self.by_authority = of_pair(&self.rules, by, self.filter.d15_mm).map(|said| StatedByAuthority {
+            authority: by.word().to_owned(),
+            rules: stated_by(&self.rules, by).into_iter().map(|rule| rule.id).collect(),
+            said,
+        });
+        self
+    }
 }
 
 /// What stands behind [`of_pair`] where there is a walk.

@@ -1,44 +1,44 @@
 //! What an answer is worth: findings about a verdict, the label that they set, and all sentences about it.
 //!
-//! - [`finding`] is the table of all findings: direction, weight, label, sentence and page of each, and a
+//! - `finding` is the table of all findings: direction, weight, label, sentence and page of each, and a
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
-//! - [`practice`] is what the rules of filter practice say of a pair.
-//! - [`by_authority`] is what a sheet says that lists the rules of one authority.
-//! - [`left_out`] has the words of what the model does not contain and of what a scene does not need.
+//! - `practice` is what the rules of filter practice say of a pair.
+//! - `by_authority` is what a sheet says that lists the rules of one authority.
+//! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
-//! - [`walks`] is what walks say themselves, [`beside`] what their results say beside the verdict.
+//! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
-//! - [`batch`] is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
+//! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
 //!   and [`WalkedBatch`] is them with what their walks say.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
-//! - [`words`] are what a class means.
+//! - `words` are what a class means.
 
 mod answer;
 mod band;
-pub mod batch;
+pub(crate) mod batch;
 mod batch_table;
-pub mod beside;
-pub mod by_authority;
+pub(crate) mod beside;
+pub(crate) mod by_authority;
 mod conclusion;
 mod design;
 mod entry;
-pub mod evidence;
-pub mod finding;
-pub mod left_out;
+pub(crate) mod evidence;
+pub(crate) mod finding;
+pub(crate) mod left_out;
 mod pair;
 mod planned_walk;
-pub mod practice;
+pub(crate) mod practice;
 mod quantity;
 mod rule_notes;
 mod specification;
 mod thickness;
 mod walked_batch;
-pub mod walks;
-pub mod words;
+pub(crate) mod walks;
+pub(crate) mod words;
 
 #[cfg(doc)]
 use crate::outcome::design::band::Band;
@@ -49,7 +49,7 @@ pub use batch_table::{BatchFilter, BatchTable};
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
 pub use entry::{Entry, Finding};
-pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
 pub use specification::SpecificationOptions;

@@ -22,6 +22,22 @@ pub struct PairRules {
     pub rules: Vec<AppliedRule>,
     /// What may be wrong with the two tables, and what was taken for what.
     pub warnings: Vec<String>,
+    /// What one authority states of them, where one is asked for; `rules` has all of them all the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by_authority: Option<StatedByAuthority>,
+}
+
+/// The rules of one authority on two soils.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct StatedByAuthority {
+    /// Its word: nrcs, usbr, usace or foster-fell.
+    pub authority: String,
+    /// The `id` of every rule that it states, in the order of `rules`.
+    pub rules: Vec<String>,
+    /// Its limit of D15F, and what is left out: stricter limits, rules that are not met, rules without a
+    /// result.
+    pub said: String,
 }
 
 /// What else the rules are told of two soils.
@@ -181,6 +197,7 @@ impl PairRules {
             },
             rules,
             warnings: found.iter().map(Finding::with_to_do).collect(),
+            by_authority: None,
         }
     }
 }

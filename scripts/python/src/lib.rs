@@ -42,7 +42,7 @@ mod _voidwalk {
     #[pymodule_export]
     use crate::soil::{Curve, Gradation};
     #[pymodule_export]
-    use crate::studies::{compare, design, percolation, schema, soils};
+    use crate::studies::{compare, design, percolation, schema, soils, specification, specification_says};
     #[pymodule_export]
     use crate::walks::{replicate_seed, walk};
     #[pymodule_export]

@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use voidwalk::case::CaseError;
 use voidwalk::gradation::soils_in_file;
+use voidwalk::outcome::design::Specification;
+use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
+use voidwalk::outcome::numbers::{rounded_down, rounded_up};
 use voidwalk::store::format;
 use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
-use voidwalk::study::design::{self as designs, DesignOptions};
+use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
 use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
 
 use crate::problem::{failed, of_run, refused};
@@ -98,6 +101,44 @@ pub fn design(
     };
     let found = at_work(py, progress, |callbacks| designs::run(&options, &callbacks.run))?;
     format::DESIGN.json(&found).map_err(failed)
+}
+
+/// Makes the specification of a filter for a base by practice alone, into a folder: the JSON of
+/// `specification.json`.
+#[pyfunction]
+#[pyo3(signature = (base, dispersive, sieves, out, overwrite, progress))]
+pub fn specification(
+    py: Python<'_>,
+    base: PathBuf,
+    dispersive: bool,
+    sieves: &str,
+    out: PathBuf,
+    overwrite: bool,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let sieves =
+        sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
+    let options = SpecifyOptions { base, dispersive, sieves, out, overwrite };
+    let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
+    format::SPECIFICATION.json(&found).map_err(failed)
+}
+
+/// The answer in short, what a delivery must keep beside the limits, what set the greatest D15F, and whether D15 of
+/// each product fits.
+type Said = (String, Option<String>, Option<String>, Vec<Option<bool>>);
+
+/// What the record of a specification says besides its numbers.
+#[pyfunction]
+pub fn specification_says(record: &str) -> PyResult<Said> {
+    let of: Specification = serde_json::from_str(record).map_err(refused)?;
+    let answer = match (of.band.as_ref().map(SizeBand::d15_mm), &of.no_band) {
+        (Some([least, most]), _) => {
+            format!("D15F from {} to {} mm", rounded_up(least), rounded_down(most))
+        }
+        (None, why) => format!("No band. {}", why.as_deref().unwrap_or_default()),
+    };
+    let fits = of.products.iter().map(ProductMargin::fits).collect();
+    Ok((answer, of.beside_limits(), of.set_by().map(str::to_owned), fits))
 }
 
 /// Finds percolation thresholds, into a folder: the JSON of `percolation.json`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 import re
 import subprocess
 import sys
@@ -12,6 +13,8 @@ import pytest
 from conftest import ROOT
 
 import voidwalk as vw
+from voidwalk import settings
+from voidwalk.settings import SceneSettings
 
 
 def test_the_version_is_that_of_the_crate() -> None:
@@ -55,6 +58,37 @@ def test_the_package_is_typed_strictly(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "-p", "voidwalk"]
     said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert said.returncode == 0, said.stdout + said.stderr
+
+
+def test_nothing_that_a_user_touches_is_of_any_type() -> None:
+    """Parameters, results and attributes of what is public; and the types of records, tables and settings."""
+    package = Path(vw.__file__).parent
+    for path in sorted([*package.glob("*.py"), *package.glob("*.pyi")]):
+        assert re.search(r"\bAny\b", path.read_text(encoding="utf-8")) is None, path.name
+
+
+def test_the_settings_of_a_scene_are_those_of_the_program() -> None:
+    sys.path.insert(0, str(ROOT / "scripts" / "python"))
+    import records
+
+    words = [sys.executable, "-m", "voidwalk", "init", "--json"]
+    told = json.loads(subprocess.run(words, capture_output=True, check=True).stdout)
+    assert records.SETTINGS.read_text(encoding="utf-8") == records.settings_text(told)
+    typed = SceneSettings.__annotations__
+    scene = vw.Scene(settings={"base.regrade": "no", "stop.decide_percent": 99.0, "walk.exit": "area"})
+    for name, value in scene.settings.items():
+        assert name in typed, name
+        if isinstance(value, dict):
+            of_section = getattr(settings, f"{name.capitalize()}Settings").__annotations__
+            assert set(value) <= set(of_section), name
+
+
+def test_the_examples_are_typed_strictly(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    for example in sorted((ROOT / "scripts" / "examples").glob("*.py")):
+        command = [sys.executable, "-m", "mypy", "--strict", str(example)]
+        said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+        assert said.returncode == 0, said.stdout + said.stderr
 
 
 def test_what_the_readme_shows_runs_without_a_warning() -> None:

@@ -86,6 +86,21 @@ def test_studies_are_drawn() -> None:
     matplotlib.pyplot.close("all")
 
 
+def test_a_specification_is_drawn_with_its_band() -> None:
+    found = vw.specification(([0.002, 0.075, 2.0, 19.0], [0, 60, 90, 100]))
+    ax = found.plot()
+    said = words(ax)
+    assert said[:2] == ["Size (mm)", "Percent finer by mass"] and ax.get_xscale() == "log"
+    assert {"Base, as sampled", "Base, regraded", "Filter, fine side", "Filter, coarse side"} <= set(said)
+    band = found.band
+    assert band is not None
+    (coarse,) = [line for line in ax.lines if line.get_label() == "Filter, coarse side"]
+    assert list(coarse.get_xdata()) == [point[0] for point in band["coarse_side"]]
+    bare = vw.specification(([0.3, 1.0], [50, 100]))
+    assert "Filter, fine side" not in words(bare.plot())
+    matplotlib.pyplot.close("all")
+
+
 def test_matplotlib_is_imported_when_a_figure_is_asked_for() -> None:
     import subprocess
     import sys

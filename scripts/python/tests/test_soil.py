@@ -61,3 +61,32 @@ def test_a_shipped_curve_is_scaled_with_its_filter() -> None:
     one, two = vw.Curve.shipped("cu1.5-loose"), vw.Curve.shipped("cu1.5-loose", d0_mm=2.0)
     assert two.dc(50) == pytest.approx(2 * one.dc(50)) and one.cu == pytest.approx(two.cu)
     assert one.percent_smaller(one.dc(35)) == pytest.approx(35, abs=1e-6)
+
+
+def test_a_walk_takes_a_soil_as_the_other_calls_do(tmp_path: Path) -> None:
+    network = vw.Network.cubic([6, 6, 9])
+    sizes, percents = [0.1, 0.3], [0.0, 100.0]
+    file = tmp_path / "base.csv"
+    file.write_text("opening_mm,percent_finer\n0.1,0\n0.3,100\n")
+    soils = [vw.Gradation(sizes, percents), (sizes, percents), file]
+    eroded = [vw.walk(network, soil, n_base=500, replicates=1).eroded_mass_fraction()[0] for soil in soils]
+    assert eroded[0] == eroded[1] == eroded[2]
+
+
+def test_sizes_and_percents_that_are_no_pair_are_refused_with_the_form_of_a_soil() -> None:
+    for call in (vw.judge, vw.rules):
+        with pytest.raises(ValueError, match=r"base = \[0.1, 0.5\] is not allowed; .* as \(\[0.1, 0.5\], \[0, 100\]\)"):
+            call([0.1, 0.5], [0, 100])  # type: ignore[operator]
+
+
+def test_help_says_what_each_key_of_a_dict_is() -> None:
+    from voidwalk import columns, records, settings
+
+    for module in (columns, records, settings):
+        for name in module.__all__:
+            of = getattr(module, name)
+            keys = getattr(of, "__annotations__", None)
+            if keys and of.__doc__ and "Keys" in of.__doc__:
+                missing = [key for key in keys if f"\n    {key}\n" not in of.__doc__]
+                assert not missing, (name, missing)
+    assert "eroded_mass_fraction" in (columns.Series.__doc__ or "")

@@ -67,6 +67,40 @@ def test_judge_is_that_of_the_command_line(program: str, tmp_path: Path) -> None
     assert again.folder is not None and answer(again.outcome) == answer(wanted)
 
 
+def test_a_specification_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
+    core = ([0.002, 0.075, 2.0, 19.0], [0.0, 60.0, 90.0, 100.0])
+    table(tmp_path, "base", core)
+    words = ["base.csv", "--steps", "--dispersive", "--sieves", "iso", "--quiet", "--json", "--out", "o"]
+    done = subprocess.run([program, "design", *words], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    wanted = json.loads(done.stdout)
+    found = vw.specification(core, dispersive=True, sieves="iso")
+    kept = vw.specification(tmp_path / "base.csv", tmp_path / "kept", dispersive=True, sieves="iso")
+    for of in (found, kept, vw.read(tmp_path / "kept"), vw.read(tmp_path / "o")):
+        assert isinstance(of, vw.Specification)
+        record, other = answer(of.outcome), answer(wanted)
+        # The name of the one curve is that of its file, or the argument's.
+        assert record == other
+        assert list(of.tables["limits"]["sieve"]) == [limit["sieve"] for limit in wanted["limits"]]
+        assert of.tables["limits"]["max_percent_finer"].tolist() == [of["max_percent_finer"] for of in wanted["limits"]]
+        assert list(of.fits) == [product["product"] for product in wanted["products"]]
+    assert found.folder is None and kept.report().name == "specification.html"
+    assert found.d15f_max_mm == wanted["d15f_max_mm"] and found.band == wanted["band"] and found.no_band is None
+    assert len(found.to_pandas("steps")) >= len(found.steps) == len(wanted["steps"])
+    assert found.note is not None and found.answer in repr(found) and found.limits[0]["sieve"] in found._repr_html_()
+    with pytest.raises(ValueError, match="table = all is not allowed; one of limits, steps, products"):
+        found.to_pandas("all")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="sieves = din is not allowed; us or iso"):
+        vw.specification(core, sieves="din")  # type: ignore[arg-type]
+
+
+def test_a_specification_without_a_band_says_why() -> None:
+    # Coarser than 0.075 mm, and its finest sieve lets half of it through: how much of it is fines is not known.
+    found = vw.specification(([0.3, 1.0], [50.0, 100.0]))
+    assert found.band is None and found.limits == [] and found.note is None
+    assert found.answer == f"No band. {found.no_band}" and found.set_by is None
+
+
 def test_compare_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
     table(tmp_path, "base", BASE), table(tmp_path, "fine", FILTER), table(tmp_path, "coarse", COARSE)
     words = ["--quick", "--density", "dense", "--quiet", "--out", "o"]

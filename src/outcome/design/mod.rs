@@ -5,7 +5,7 @@
 //! the filter is scaled, which repacks nothing.
 
 pub mod band;
-pub mod products;
+pub(crate) mod products;
 mod record;
 mod sieves;
 pub mod specification;

@@ -3,6 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 /// The paper's three classes, after Foster and Fell, and a fourth for what these replicates leave open.
+///
+/// ```
+/// use voidwalk::Verdict;
+/// assert_eq!(Verdict::ALL.map(Verdict::words)[..2], ["no erosion", "some erosion"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Verdict {
@@ -94,6 +99,12 @@ pub enum ShortOf {
 }
 
 /// A mean, and with two or more replicates its standard deviation and interval.
+///
+/// ```
+/// use voidwalk::Statistic;
+/// let of = Statistic::of(&[0.10, 0.12, 0.14]);
+/// assert!(of.low.unwrap() < of.mean && of.mean < of.high.unwrap());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Statistic {

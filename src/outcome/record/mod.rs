@@ -44,6 +44,18 @@ pub use super::pan::{PanBounds, PanReading, PanSize};
 pub use super::rule_note::{RuleNote, RuleText};
 
 /// The whole of `outcome.json`.
+///
+/// ```
+/// use voidwalk::{Callbacks, Case, Scene, walk_case};
+/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
+/// let case = Case::new(Scene::built_in(&small.map(String::from))?)?;
+/// let outcome = walk_case(&case, &Callbacks::default())?;
+/// for run in &outcome.summary {
+///     println!("run {}: {:.1} % eroded", run.run, 100.0 * run.eroded_mass_fraction.mean);
+/// }
+/// assert_eq!(outcome.summary.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Outcome {

@@ -12,7 +12,7 @@ pub struct Classed {
     pub replicates: u64,
     /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
     /// scatter of the scene's own replicates, or its own where that is wider
-    /// ([`crate::outcome::early_stop`]).
+    /// (`crate::outcome::early_stop`).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped_when_clear: bool,
     /// Their class.

@@ -2,8 +2,38 @@
 
 The calls are those of the program voidwalk and give the same bits. Lengths are in mm unless a name says otherwise.
 
+Where to begin; ``help(voidwalk.judge)`` and the like have arguments and an example each:
+
+=======================================  =====================================================================
+call                                     answer
+=======================================  =====================================================================
+``judge(base, filter)``                  does this filter hold this base? A :class:`Result`
+``rules(base, filter)``                  what the rules of practice say, without a walk
+``compare(base, {"a": f1, "b": f2})``    what another filter, or another base, changes: a :class:`Comparison`
+``specification(base)``                  a filter for this base by practice: a :class:`Specification`
+``design(base, filter)``                 how coarse a filter may be, by walk and practice: a :class:`Design`
+``soil(soil)``                           what is understood of a sieve table
+``Network(...)``, ``walk(...)``          a network of your own, and base particles through it
+``run(scene)``, ``campaign(plan)``       every setting, in a scene or a plan
+``read(folder)``                         results that lie in a folder
+=======================================  =====================================================================
+
+A soil is the file of a sieve table (CSV with opening in mm and percent finer by mass, .xlsx, .ods or AGS4), a pair of
+arrays (sizes in mm, percents finer), or a :class:`Gradation`. The base comes first, then the filter. ``voidwalk.records``
+says what each dict holds, ``voidwalk.columns`` what each table.
+
 Examples
 --------
+Two sieve curves; ``quick`` and small networks save time here:
+
+>>> import voidwalk as vw
+>>> base, filter = ([0.08, 0.3], [0, 100]), ([0.5, 2.0], [0, 100])
+>>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
+>>> vw.judge(base, filter, density="dense", quick=True, settings=small).verdict
+'no erosion'
+
+A network:
+
 >>> import voidwalk as vw
 >>> network = vw.Network.cubic([10, 10, 20], "cu1.5-loose")
 >>> base = vw.Gradation.linear(1.5, 0.2, percent=85)
@@ -20,6 +50,7 @@ from ._rules import rules
 from ._scene import Scene, init_text, scene_text
 from ._schema import schema
 from ._soil import Curve, Gradation
+from ._specification import Specification, specification
 from ._studies import Comparison, Design, compare, design, percolation, study
 from ._voidwalk import Progress, VoidwalkError, __version__
 from ._walk import campaign, replicate_seed, resume, run, walk
@@ -36,6 +67,7 @@ __all__ = [
     "Progress",
     "Result",
     "Scene",
+    "Specification",
     "VoidwalkError",
     "__version__",
     "campaign",
@@ -54,6 +86,7 @@ __all__ = [
     "scene_text",
     "schema",
     "soil",
+    "specification",
     "study",
     "walk",
 ]

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: The kind of an array's entries.
+Scalar = TypeVar("Scalar", bound=np.generic)
 
-def _array(name: str, value: Any, kinds: str, wanted: str) -> NDArray[Any]:
+
+def _array(name: str, value: object, kinds: str, wanted: str) -> NDArray[np.generic]:
     if isinstance(value, np.ma.MaskedArray) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name} has masked entries; every entry must be {wanted}")
     try:
@@ -23,7 +26,7 @@ def _array(name: str, value: Any, kinds: str, wanted: str) -> NDArray[Any]:
     return array
 
 
-def _shaped(name: str, array: NDArray[Any], shape: Tuple[Optional[int], ...]) -> NDArray[Any]:
+def _shaped(name: str, array: NDArray[Scalar], shape: Tuple[Optional[int], ...]) -> NDArray[Scalar]:
     if array.size == 0 and shape[0] is None and array.ndim == 1:
         array = array.reshape((0,) + tuple(n or 0 for n in shape[1:]))
     fits = array.ndim == len(shape) and all(n is None or n == m for n, m in zip(shape, array.shape))
@@ -34,7 +37,7 @@ def _shaped(name: str, array: NDArray[Any], shape: Tuple[Optional[int], ...]) ->
     return array
 
 
-def floats(name: str, value: Any, *shape: Optional[int], finite: bool = True) -> Floats:
+def floats(name: str, value: object, *shape: Optional[int], finite: bool = True) -> Floats:
     """Numbers of this shape (``None`` is any length), in one piece of memory: the caller's own where it will do."""
     array = _shaped(name, _array(name, value, "fiu", "a number"), shape)
     column = np.ascontiguousarray(array, dtype=np.float64)
@@ -45,7 +48,7 @@ def floats(name: str, value: Any, *shape: Optional[int], finite: bool = True) ->
     return column
 
 
-def ints(name: str, value: Any, *shape: Optional[int]) -> Ints:
+def ints(name: str, value: object, *shape: Optional[int]) -> Ints:
     """Whole numbers of this shape, in one piece of memory: the caller's own where it will do."""
     array = _shaped(name, _array(name, value, "iu", "a whole number"), shape)
     if array.dtype.kind == "u" and array.size and int(array.max()) > np.iinfo(np.int64).max:
@@ -53,7 +56,7 @@ def ints(name: str, value: Any, *shape: Optional[int]) -> Ints:
     return np.ascontiguousarray(array, dtype=np.int64)
 
 
-def pores(name: str, value: Any, count: int) -> Ints:
+def pores(name: str, value: object, count: int) -> Ints:
     """Numbers of pores, given as such or as a mask of all of them."""
     array = np.asarray(value)
     if array.dtype.kind == "b":
@@ -65,7 +68,7 @@ def pores(name: str, value: Any, count: int) -> Ints:
     return numbers
 
 
-def cell_lengths(cell: Any) -> Optional[Tuple[float, float, float]]:
+def cell_lengths(cell: Optional[ArrayLike]) -> Optional[Tuple[float, float, float]]:
     """Lengths of a periodic cell (mm), or ``None`` where there is none."""
     if cell is None:
         return None
@@ -75,14 +78,14 @@ def cell_lengths(cell: Any) -> Optional[Tuple[float, float, float]]:
     return float(array[0]), float(array[1]), float(array[2])
 
 
-def frozen(array: NDArray[Any]) -> NDArray[Any]:
+def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:
     """A view of an array that nothing is written through."""
     view = array.view()
     view.flags.writeable = False
     return view
 
 
-def whole(name: str, value: Any, least: int = 0) -> int:
+def whole(name: str, value: object, least: int = 0) -> int:
     """A whole number that a 64-bit count can hold."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise ValueError(f"{name} = {value!r} is not allowed; a whole number from {least} is needed")

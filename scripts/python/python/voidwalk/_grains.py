@@ -4,21 +4,41 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, Iterator, Mapping, Optional, Tuple, Union
+from typing import Dict, Iterator, Literal, Mapping, Optional, Tuple, TypedDict, Union, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _voidwalk
-from ._arrays import Floats, cell_lengths, floats, frozen, threads_or_none, whole
+from ._arrays import Floats, Ints, cell_lengths, floats, frozen, threads_or_none, whole
 from ._plots import Axes
 from ._progress import Follower, Following
 from ._soil import Curve, Gradation
+from .records import ConstrictionsSummary
 
 __all__ = ["Constrictions", "Packing", "constrictions", "pack"]
 
 #: Overlap of two inscribed spheres from which their tetrahedra are one void.
 MERGE_OVERLAP = 0.1
+
+
+class Reached(TypedDict, total=False):
+    """What a compression reached; empty for grains that were not packed here."""
+
+    #: Volume of voids over volume of grains.
+    void_ratio: float
+    #: Mean pressure (kPa).
+    pressure_kpa: float
+    #: Mean number of contacts of a grain.
+    coordination: float
+    #: Share of the grains that bear nothing.
+    rattlers: float
+    #: Friction between grains during compression, which sets the density.
+    friction: float
+    #: Seed of sizes and start positions.
+    seed: int
+    #: Steps of the compression.
+    steps: int
 
 
 class Packing:
@@ -60,7 +80,7 @@ class Packing:
     coords: Floats
     diameter: Floats
     cell: Optional[Tuple[float, float, float]]
-    reached: Dict[str, Any]
+    reached: Reached
 
     def __init__(self, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> None:
         self.coords = frozen(floats("coords", coords, None, 3))
@@ -122,7 +142,7 @@ class Packing:
     def __len__(self) -> int:
         return len(self.diameter)
 
-    def __reduce__(self) -> Tuple[Any, ...]:
+    def __reduce__(self) -> Tuple[object, ...]:
         return _packing, (np.asarray(self.coords), np.asarray(self.diameter), self.cell, self.reached)
 
     def __repr__(self) -> str:
@@ -133,7 +153,7 @@ class Packing:
         return f"Packing({len(self)} grains, {sizes}, {cell})"
 
 
-def _packing(coords: Floats, diameter: Floats, cell: Any, reached: Dict[str, Any]) -> Packing:
+def _packing(coords: Floats, diameter: Floats, cell: Optional[Tuple[float, float, float]], reached: Reached) -> Packing:
     packing = Packing(coords, diameter, cell)
     packing.reached = reached
     return packing
@@ -193,7 +213,23 @@ def pack(
     return _packing(coords, diameter, cell, reached)
 
 
-class Constrictions(Mapping[str, NDArray[Any]]):
+#: Keys of constrictions whose arrays are of whole numbers.
+WholeKey = Literal["throat.conns", "throat.shift"]
+
+#: Keys of those whose arrays are of numbers with a point.
+FloatKey = Literal[
+    "pore.coords",
+    "pore.diameter",
+    "pore.volume",
+    "throat.coords",
+    "throat.diameter",
+    "throat.conductance",
+    "csd.percent_smaller",
+    "csd.diameter",
+]
+
+
+class Constrictions(Mapping[str, Union[Floats, Ints]]):
     """Voids and constrictions of a packing as arrays by key; lengths in mm.
 
     ==========================  ==========  ========================================================
@@ -225,12 +261,22 @@ class Constrictions(Mapping[str, NDArray[Any]]):
     }
 
     def __init__(
-        self, arrays: Dict[str, NDArray[Any]], summary: Dict[str, Any], packing: Packing, merge_overlap: float
+        self,
+        arrays: Dict[str, Union[Floats, Ints]],
+        summary: ConstrictionsSummary,
+        packing: Packing,
+        merge_overlap: float,
     ) -> None:
         self._arrays, self.summary, self.packing = arrays, summary, packing
         self.merge_overlap = merge_overlap
 
-    def __getitem__(self, key: str) -> NDArray[Any]:
+    @overload
+    def __getitem__(self, key: FloatKey) -> Floats: ...
+    @overload
+    def __getitem__(self, key: WholeKey) -> Ints: ...
+    @overload
+    def __getitem__(self, key: str) -> Union[Floats, Ints]: ...
+    def __getitem__(self, key: str) -> Union[Floats, Ints]:
         return self._arrays[key]
 
     def __iter__(self) -> Iterator[str]:
@@ -255,10 +301,15 @@ class Constrictions(Mapping[str, NDArray[Any]]):
         """Draws the curve of constriction sizes, as :meth:`Curve.plot`."""
         return self.curve.plot(ax, label=label)
 
-    def to_openpnm(self) -> Dict[str, NDArray[Any]]:
+    def to_openpnm(self) -> Dict[str, Union[Floats, Ints]]:
         """The voids and constrictions as a dict that OpenPNM's ``Network`` is updated with; lengths in m."""
-        si = {"pore.coords": 1e-3, "pore.diameter": 1e-3, "throat.diameter": 1e-3, "pore.volume": 1e-9}
-        named = {key: self[key] * factor for key, factor in si.items() if key in self}
+        si: Dict[FloatKey, float] = {
+            "pore.coords": 1e-3,
+            "pore.diameter": 1e-3,
+            "throat.diameter": 1e-3,
+            "pore.volume": 1e-9,
+        }
+        named: Dict[str, Union[Floats, Ints]] = {key: self[key] * si[key] for key in si if key in self}
         return {**named, "throat.conns": self["throat.conns"]}
 
     def __repr__(self) -> str:

@@ -46,8 +46,9 @@ def judge(
     Parameters
     ----------
     base, filter : Gradation, path-like, or a pair of array_like
-        The soil to be retained, and the soil that retains it: a gradation, a file (``"FILE#NAME"`` for one of
-        several soils), or sizes (mm) and percents finer by mass.
+        The soil to be retained, and the soil that retains it: a gradation, a file, or a pair of sizes (mm) and
+        percents finer by mass. A file is a sieve table in CSV (two columns: opening in mm, percent finer), .xlsx,
+        .ods or AGS4; ``"FILE#NAME"`` takes one of several soils.
     out : path-like, optional
         Folder for the results. A run that was stopped there goes on. Without it everything stays in memory.
     threads : int, optional
@@ -79,6 +80,8 @@ def judge(
     Returns
     -------
     Result
+        ``verdict``, ``confidence``, ``reasons`` (what speaks against the verdict), ``warnings`` (what else to know),
+        ``summary`` and ``outcome``, which has everything.
 
     Raises
     ------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Mapping, Optional, Sequence, Tuple, Type, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,7 +86,7 @@ class Network:
         "of packings; else None.",
     }
     _native: _voidwalk.Network
-    _made: Tuple[str, Dict[str, Any]]
+    _made: Tuple[str, Mapping[str, object]]
     conns: Ints
     diameter: Floats
     inlets: Ints
@@ -152,7 +152,7 @@ class Network:
 
     @classmethod
     def _of(
-        cls, native: _voidwalk.Network, made: str, arguments: Dict[str, Any], coords: Optional[Floats], rho: float
+        cls, native: _voidwalk.Network, made: str, arguments: Mapping[str, object], coords: Optional[Floats], rho: float
     ) -> Network:
         new = cls.__new__(cls)
         new._native, new._made, new.coords, new.conductance, new.rho = native, (made, arguments), coords, None, rho
@@ -163,10 +163,32 @@ class Network:
 
     @classmethod
     def from_arrays(
-        cls, conns: ArrayLike, diameter: ArrayLike, inlets: ArrayLike, outlets: ArrayLike, **options: Any
+        cls,
+        conns: ArrayLike,
+        diameter: ArrayLike,
+        inlets: ArrayLike,
+        outlets: ArrayLike,
+        *,
+        exit: str = "flux",
+        conductance: Optional[ArrayLike] = None,
+        rho: float = 0.0,
+        count: Optional[int] = None,
+        coords: Optional[ArrayLike] = None,
+        reference_mm: float = 1.0,
     ) -> Network:
         """The class itself, by another name."""
-        return cls(conns, diameter, inlets, outlets, **options)
+        return cls(
+            conns,
+            diameter,
+            inlets,
+            outlets,
+            exit=exit,
+            conductance=conductance,
+            rho=rho,
+            count=count,
+            coords=coords,
+            reference_mm=reference_mm,
+        )
 
     @classmethod
     def cubic(
@@ -284,14 +306,17 @@ class Network:
     @classmethod
     def from_openpnm(
         cls,
-        pn: Mapping[str, Any],
+        pn: Mapping[str, object],
         inlets: Union[None, str, ArrayLike] = None,
         outlets: Union[None, str, ArrayLike] = None,
         *,
         diameter: str = "throat.diameter",
         conductance: Optional[str] = None,
         unit_mm: float = 1000.0,
-        **options: Any,
+        exit: str = "flux",
+        rho: float = 0.0,
+        count: Optional[int] = None,
+        reference_mm: float = 1.0,
     ) -> Network:
         """A network of OpenPNM, or a dict with the same keys.
 
@@ -309,7 +334,7 @@ class Network:
             without it.
         unit_mm : float
             Length (mm) of the unit of `pn`: OpenPNM's is the metre.
-        **options
+        exit, rho, count, reference_mm
             As for the class.
 
         Returns
@@ -339,26 +364,44 @@ class Network:
             _side(pn, outlets, "outlets", _OUT),
             conductance=None if conductance is None else np.asarray(pn[conductance]),
             coords=coords,
-            **options,
+            exit=exit,
+            rho=rho,
+            count=count,
+            reference_mm=reference_mm,
         )
 
     @classmethod
     def from_porespy(
         cls,
-        net: Mapping[str, Any],
+        net: Mapping[str, object],
         inlets: Union[None, str, ArrayLike] = None,
         outlets: Union[None, str, ArrayLike] = None,
         *,
         diameter: str = "throat.inscribed_diameter",
         unit_mm: float = 1.0,
-        **options: Any,
+        conductance: Optional[str] = None,
+        exit: str = "flux",
+        rho: float = 0.0,
+        count: Optional[int] = None,
+        reference_mm: float = 1.0,
     ) -> Network:
         """A network that PoreSpy extracted, as ``porespy.networks.snow2(...).network``.
 
         As :meth:`from_openpnm`, with PoreSpy's name of the diameter and the length (mm) of the unit of its
         ``voxel_size``.
         """
-        return cls.from_openpnm(net, inlets, outlets, diameter=diameter, unit_mm=unit_mm, **options)
+        return cls.from_openpnm(
+            net,
+            inlets,
+            outlets,
+            diameter=diameter,
+            conductance=conductance,
+            unit_mm=unit_mm,
+            exit=exit,
+            rho=rho,
+            count=count,
+            reference_mm=reference_mm,
+        )
 
     @property
     def count(self) -> int:
@@ -499,7 +542,7 @@ class Network:
         of_throat = np.where(ends[:, 0] < 0, -1, layer[ends[:, 0]])
         return plot_network(self.diameter, of_throat, None if blocked is None else np.asarray(blocked, dtype=bool), ax)
 
-    def to_openpnm(self) -> Dict[str, NDArray[Any]]:
+    def to_openpnm(self) -> Dict[str, Union[Floats, Ints, NDArray[np.bool_]]]:
         """The network as a dict with OpenPNM's keys, lengths in m.
 
         Constrictions that lead outside end in boundary pores of their own, so that every conns names two pores.
@@ -520,7 +563,7 @@ class Network:
         is_in[inner : inner + len(before)] = True
         is_out[self.outlets] = True
         is_out[inner + len(before) :] = True
-        found: Dict[str, NDArray[Any]] = {
+        found: Dict[str, Union[Floats, Ints, NDArray[np.bool_]]] = {
             "throat.conns": conns,
             "throat.diameter": self.diameter * 1e-3,
             "pore.inlets": is_in,
@@ -549,7 +592,7 @@ class Network:
     def __hash__(self) -> int:
         return hash(self.fingerprint)
 
-    def __reduce__(self) -> Tuple[Any, ...]:
+    def __reduce__(self) -> Tuple[object, ...]:
         return _remade, (type(self), *self._made)
 
     def __repr__(self) -> str:
@@ -574,15 +617,15 @@ class Network:
         return box("Network", facts)
 
 
-def _remade(kind: Any, made: str, arguments: Dict[str, Any]) -> Network:
-    network: Network = (getattr(kind, made) if made else kind)(**arguments)
-    return network
+def _remade(kind: Type[Network], made: str, arguments: Mapping[str, object]) -> Network:
+    maker: Callable[..., Network] = getattr(kind, made or "from_arrays")
+    return maker(**arguments)
 
 
-def _count(conns: Ints, inlets: Any, outlets: Any, coords: Any) -> int:
+def _count(conns: Ints, inlets: ArrayLike, outlets: ArrayLike, coords: Optional[ArrayLike]) -> int:
     """Voids of a network that does not say how many it has."""
     if coords is not None:
-        return len(coords)
+        return len(np.asarray(coords))
     counts = [int(conns.max(initial=-1)) + 1]
     for given in (inlets, outlets):
         array = np.asarray(given)
@@ -593,7 +636,7 @@ def _count(conns: Ints, inlets: Any, outlets: Any, coords: Any) -> int:
     return max(counts)
 
 
-def _side(pn: Mapping[str, Any], given: Any, name: str, labels: Sequence[str]) -> Any:
+def _side(pn: Mapping[str, object], given: Union[None, str, ArrayLike], name: str, labels: Sequence[str]) -> ArrayLike:
     """Pores of one side of a network, by label or as they are given."""
     if isinstance(given, str):
         labels = [given if given.startswith("pore.") else f"pore.{given}"]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, cast
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Floats, Ints
-from .records import Comparison, Design, Outcome, WalkOutcome
+from .columns import Counts, Layers, Series, Sizes, Walked
+from .records import Comparison, Design, Outcome, Specification, WalkOutcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes  # type: ignore[import-not-found,unused-ignore]
@@ -28,7 +29,7 @@ def axes(ax: Optional[Axes], width: float = 6.4) -> Axes:
     if ax is not None:
         return ax
     try:
-        pyplot: Any = import_module("matplotlib.pyplot")
+        pyplot = import_module("matplotlib.pyplot")
     except ImportError:
         raise ImportError("plot draws by matplotlib: install matplotlib") from None
     _, new = pyplot.subplots(figsize=(width, 4.0), layout="constrained")
@@ -85,27 +86,28 @@ def plot_network(
 
 
 def plot_result(
-    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], what: str, ax: Optional[Axes]
+    outcome: Outcome, tables: Tuple[Series, Layers, Sizes, Sizes], what: str, ax: Optional[Axes]
 ) -> Axes:
-    """One of the figures of a result."""
+    """One of the figures of a result, whose tables are its series, layers, retained and eroded sizes."""
+    series, layers, retained, eroded = tables
     if what == "progress":
-        return _progress(tables["series"], outcome["threshold"], ax)
+        return _progress(series, outcome["threshold"], ax)
     if what == "layers":
-        return _layers(tables["layers"], ax)
+        return _layers(layers, ax)
     if what == "curves":
-        return _curves(outcome, tables, ax)
+        return _curves(outcome, retained, eroded, ax)
     if what == "rules":
         return _rules(outcome, ax)
     raise ValueError(f"what = {what!r} is not allowed; one of {', '.join(FIGURES)}")
 
 
 def _mean_and_range(
-    table: Mapping[str, NDArray[Any]], run: int, along: str, value: NDArray[Any]
-) -> Tuple[NDArray[Any], List[float], List[float], List[float]]:
+    of_runs: Counts, run: int, along: Counts, value: Floats
+) -> Tuple[Counts, List[float], List[float], List[float]]:
     """Mean, least and greatest over the replicates of a run."""
-    of_run = table["run"] == run
-    places = np.unique(table[along][of_run])
-    groups = [value[of_run & (table[along] == place)] for place in places]
+    of_run = of_runs == run
+    places = np.unique(along[of_run])
+    groups = [value[of_run & (along == place)] for place in places]
     return (
         places,
         [float(group.mean()) for group in groups],
@@ -114,16 +116,16 @@ def _mean_and_range(
     )
 
 
-def _by_run(ax: Axes, table: Mapping[str, NDArray[Any]], along: str, value: NDArray[Any]) -> None:
-    for run in np.unique(table["run"]):
-        places, mean, low, high = _mean_and_range(table, int(run), along, value)
+def _by_run(ax: Axes, of_runs: Counts, along: Counts, value: Floats) -> None:
+    for run in np.unique(of_runs):
+        places, mean, low, high = _mean_and_range(of_runs, int(run), along, value)
         (line,) = ax.plot(places, mean, label=f"Run {run}, mean and range of replicates")
         ax.fill_between(places, low, high, alpha=0.2, color=line.get_color())
 
 
-def _progress(series: Mapping[str, NDArray[Any]], threshold: float, ax: Optional[Axes]) -> Axes:
+def _progress(series: Series, threshold: float, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
-    _by_run(drawn, series, "increment", 100 * series["eroded_mass_fraction"])
+    _by_run(drawn, series["run"], series["increment"], 100 * series["eroded_mass_fraction"])
     drawn.axhline(100 * threshold, color="black", linestyle="--", linewidth=1, label="Erosion begins")
     drawn.set_xlabel("Increment")
     drawn.set_ylabel("Eroded mass (% of the mass inserted)")
@@ -132,9 +134,9 @@ def _progress(series: Mapping[str, NDArray[Any]], threshold: float, ax: Optional
     return drawn
 
 
-def _layers(layers: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
+def _layers(layers: Layers, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
-    _by_run(drawn, layers, "layer", 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
+    _by_run(drawn, layers["run"], layers["layer"], 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
     drawn.set_xlabel("Layer, along the flow")
     drawn.set_ylabel("Blocked constrictions (%)")
     drawn.set_ylim(bottom=0)
@@ -143,7 +145,7 @@ def _layers(layers: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
 
 
 def _curves(
-    outcome: Outcome, tables: Mapping[str, Mapping[str, NDArray[Any]]], ax: Optional[Axes]
+    outcome: Outcome, retained: Sizes, eroded: Sizes, ax: Optional[Axes]
 ) -> Axes:
     drawn = axes(ax)
     inputs = outcome.get("inputs")
@@ -156,8 +158,7 @@ def _curves(
         lines["Constrictions, by number"] = inputs["filter"]["constrictions"]
     for label, points in lines.items():
         drawn.plot([point[0] for point in points], [point[1] for point in points], label=label)
-    for name, label in (("retained", "Retained, run 1"), ("eroded", "Eroded, run 1")):
-        table = tables[name]
+    for table, label in ((retained, "Retained, run 1"), (eroded, "Eroded, run 1")):
         chosen = (table["run"] == 1) & (table["replicate"] == 1) if len(table.get("run", ())) else np.zeros(0, bool)
         if chosen.any():
             chosen &= table["increment"] == table["increment"][chosen].max()
@@ -217,7 +218,33 @@ def plot_comparison(outcome: Comparison, ax: Optional[Axes]) -> Axes:
     return drawn
 
 
-def plot_design(outcome: Design, walks: Mapping[str, NDArray[Any]], ax: Optional[Axes]) -> Axes:
+def plot_specification(outcome: Specification, ax: Optional[Axes]) -> Axes:
+    """The curves of the base, as sampled and regraded, and both sides of the band."""
+    drawn = axes(ax)
+    several = len(outcome["curves"]) > 1
+    for number, curve in enumerate(outcome["curves"]):
+        name, colour = curve["curve"] if several else "Base", f"C{number % 10}"
+        regraded = curve.get("regraded")
+        _line(drawn, curve["gradation"], f"{name}, as sampled" if regraded else name, colour, "--" if regraded else "-")
+        if regraded:
+            _line(drawn, regraded, f"{name}, regraded", colour, "-")
+    band = outcome["band"]
+    if band is not None:
+        _line(drawn, band["fine_side"], "Filter, fine side", "black", "-")
+        _line(drawn, band["coarse_side"], "Filter, coarse side", "black", "-.")
+        outline = band["fine_side"] + band["coarse_side"][::-1]
+        drawn.fill([point[0] for point in outline], [point[1] for point in outline], color="black", alpha=0.1)
+    _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
+    drawn.legend()
+    return drawn
+
+
+def _line(ax: Axes, points: Sequence[Sequence[float]], label: str, colour: str, style: str) -> None:
+    """A curve of points (x, y)."""
+    ax.plot([point[0] for point in points], [point[1] for point in points], label=label, color=colour, linestyle=style)
+
+
+def plot_design(outcome: Design, walks: Walked, ax: Optional[Axes]) -> Axes:
     """Eroded mass of the first run against D15F/D85B, and the boundaries of no and of continuing erosion."""
     drawn = axes(ax)
     for row in outcome["boundaries"]:

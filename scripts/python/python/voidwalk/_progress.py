@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from types import TracebackType
-from typing import Any, Callable, Optional, Type, Union
+from typing import Callable, Optional, Protocol, Type, Union
 
 from ._voidwalk import Progress
 
@@ -12,15 +12,27 @@ from ._voidwalk import Progress
 Follower = Union[None, bool, Callable[[Progress], object]]
 
 
+class _Bar(Protocol):
+    """What is used of a bar of tqdm."""
+
+    total: Optional[float]
+    n: float
+
+    def set_postfix_str(self, s: str, refresh: bool) -> None: ...
+    def set_description_str(self, desc: str, refresh: bool) -> None: ...
+    def refresh(self) -> object: ...
+    def close(self) -> None: ...
+
+
 class Following:
     """Hands a follower on to the library, and closes a bar whatever ends the call."""
 
     def __init__(self, progress: Follower) -> None:
-        self.bar: Any = None
+        self.bar: Optional[_Bar] = None
         self.callback: Optional[Callable[[Progress], object]] = None
         if progress is True:
             try:
-                tqdm: Any = import_module("tqdm.auto")
+                tqdm = import_module("tqdm.auto")
             except ImportError:
                 return
             self.bar = tqdm.tqdm(unit="run", leave=False)
@@ -31,6 +43,8 @@ class Following:
             raise ValueError(f"progress = {progress!r} is not allowed; a function, True or None")
 
     def _show(self, progress: Progress) -> None:
+        if self.bar is None:
+            return
         self.bar.total = progress.total or None
         self.bar.n = progress.done
         if progress.stage == "walking":

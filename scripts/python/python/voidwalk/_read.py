@@ -5,19 +5,21 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import Union
+from typing import Union, cast
 
-from ._grains import Packing
+from ._grains import Packing, Reached
 from ._result import CampaignResult, Result, read_csv, read_run
+from ._specification import Specification, read_specification
 from ._studies import Comparison, Design
+from .columns import Walked
 
 __all__ = ["read"]
 
 
 def read(
     folder: Union[str, "os.PathLike[str]"],
-) -> Union[Result, CampaignResult, Comparison, Design, Packing]:
-    """What lies in a finished folder of a run, a campaign, a comparison, a design or a packing.
+) -> Union[Result, CampaignResult, Comparison, Design, Specification, Packing]:
+    """What lies in a finished folder of a run, a campaign, a comparison, a design, a specification or a packing.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ def read(
 
     Returns
     -------
-    Result, CampaignResult, Comparison, Design or Packing
+    Result, CampaignResult, Comparison, Design, Specification or Packing
     """
     place = Path(folder)
 
@@ -40,12 +42,15 @@ def read(
     if (place / "compare.json").is_file():
         return Comparison(json.loads(record("compare.json")), read_csv(place / "compare.csv"), place)
     if (place / "design.json").is_file():
-        return Design(json.loads(record("design.json")), read_csv(place / "design.csv"), place)
+        return Design(json.loads(record("design.json")), cast(Walked, read_csv(place / "design.csv")), place)
+    if (place / "specification.json").is_file():
+        return read_specification(place, record("specification.json"), place)
     if (place / "packing.json").is_file():
         packing = Packing.from_file(place / "grains.csv")
         recorded = json.loads(record("packing.json"))
-        packing.reached = {**recorded.get("after", {}), "seed": recorded.get("seed")}
+        packing.reached = cast(Reached, {**recorded.get("after", {}), "seed": recorded.get("seed")})
         return packing
     raise ValueError(
-        f"{place}: holds no outcome.json, cases.csv, compare.json, design.json or packing.json; name a finished folder"
+        f"{place}: holds no outcome.json, cases.csv, compare.json, design.json, specification.json or packing.json; "
+        "name a finished folder"
     )

@@ -7,14 +7,15 @@ import json
 import os
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Dict, List, Literal, Mapping, Optional, Tuple, Union, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _voidwalk
 from ._plots import Axes, plot_result
-from .records import Finding, Outcome, Replicate, RunSummary
+from .columns import Blockings, Column, Flow, Layers, RetainedByVoid, Series, Sizes, Table
+from .records import Finding, Outcome, Replicate, RunSummary, WalkOutcome
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -22,14 +23,17 @@ if TYPE_CHECKING:
 
 __all__ = ["CampaignResult", "Result"]
 
-#: Columns by their names.
-Table = Dict[str, NDArray[Any]]
-
 #: The facts of a case, by name.
 Row = Dict[str, Union[None, str, int, float]]
 
 #: Columns of the tables that are no whole numbers.
 _FRACTIONS = ("eroded_mass_fraction", "diameter_mm", "percent_finer_by_mass", "percent_finer_by_number", "k_over_k0")
+
+#: What a result draws.
+Figure = Literal["progress", "layers", "curves", "rules"]
+
+#: The names of its tables.
+TableName = Literal["series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings"]
 
 #: The tables of a result, and the file of each in the folder of a run.
 _TABLES = {
@@ -72,13 +76,13 @@ class Result:
     """
 
     outcome: Outcome
-    series: Table
-    layers: Table
-    retained: Table
-    eroded: Table
-    flow: Table
-    retained_by_void: Table
-    blockings: Table
+    series: Series
+    layers: Layers
+    retained: Sizes
+    eroded: Sizes
+    flow: Flow
+    retained_by_void: RetainedByVoid
+    blockings: Blockings
     blocked: Optional[NDArray[np.bool_]]
     folder: Optional[Path]
 
@@ -91,14 +95,17 @@ class Result:
         texts: Optional[Tuple[str, str, Optional[str]]] = None,
     ) -> None:
         self.outcome, self.blocked, self.folder, self._texts = outcome, blocked, folder, texts
-        self.series, self.layers = tables["series"], tables["layers"]
-        self.retained, self.eroded = tables["retained"], tables["eroded"]
-        self.flow = tables.get("flow", {})
-        self.retained_by_void, self.blockings = tables.get("retained_by_void", {}), tables.get("blockings", {})
+        self.series, self.layers = cast(Series, tables["series"]), cast(Layers, tables["layers"])
+        self.retained, self.eroded = cast(Sizes, tables["retained"]), cast(Sizes, tables["eroded"])
+        self.flow = cast(Flow, tables.get("flow", {}))
+        self.retained_by_void = cast(RetainedByVoid, tables.get("retained_by_void", {}))
+        self.blockings = cast(Blockings, tables.get("blockings", {}))
 
     @property
     def verdict(self) -> str:
-        """Class of erosion: ``"no erosion"``, ``"some erosion"``, ``"continuing erosion"`` or ``"undecided"``."""
+        """Class of erosion, by the mass eroded over the mass inserted: ``"no erosion"`` (less than 7.5 % in the first
+        run), ``"some erosion"`` (more in the first run, less in the second: the filter seals), ``"continuing
+        erosion"`` (more in both), or ``"undecided"``."""
         return str(self.outcome["verdict"])
 
     @property
@@ -158,11 +165,17 @@ class Result:
         >>> row["verdict"], row["n_base"], row["d85b_mm"]
         ('continuing erosion', 1000, 0.2)
         """
-        outcome: Dict[str, Any] = dict(self.outcome)
+        outcome = self.outcome
         inputs = outcome.get("inputs")
-        base = outcome["base"] if inputs is None else inputs["base"]
-        network = outcome["network"] if inputs is None else inputs["network"]
-        d15f = outcome.get("d15f_mm") if inputs is None else inputs["filter"]["d15_mm"]
+        d85b: Optional[float]
+        thickness: Optional[float]
+        if inputs is None:
+            walked = cast(WalkOutcome, outcome)
+            d85b, d15f = walked["base"]["d85_mm"], walked.get("d15f_mm")
+            voids, thickness = walked["network"]["voids"], None
+        else:
+            d85b, d15f = inputs["base"]["d85_mm"], inputs["filter"]["d15_mm"]
+            voids, thickness = inputs["network"]["voids"], inputs["network"].get("thickness_mm")
         row: Row = {
             "verdict": self.verdict,
             "confidence": self.confidence,
@@ -170,11 +183,11 @@ class Result:
             "replicates": len(self.replicates),
             "n_base": outcome["n_base"],
             "grains_per_void": outcome["grains_per_void"],
-            "d85b_mm": base["d85_mm"],
+            "d85b_mm": d85b,
             "d15f_mm": d15f,
-            "d15f_over_d85b": None if d15f is None else d15f / base["d85_mm"],
-            "voids": network["voids"],
-            "thickness_mm": network.get("thickness_mm"),
+            "d15f_over_d85b": None if d15f is None or d85b is None else d15f / d85b,
+            "voids": voids,
+            "thickness_mm": thickness,
             "seed": outcome["seed"],
         }
         for run in self.summary:
@@ -184,7 +197,7 @@ class Result:
             row[f"blocked_{run['run']}"] = run["blocked_fraction"]["mean"]
         return row
 
-    def plot(self, what: str = "progress", ax: Optional[Axes] = None) -> Axes:
+    def plot(self, what: Figure = "progress", ax: Optional[Axes] = None) -> Axes:
         """Draws a figure of the walk by matplotlib.
 
         Parameters
@@ -199,17 +212,16 @@ class Result:
         -------
         matplotlib.axes.Axes
         """
-        tables = {name: getattr(self, name) for name in ("series", "layers", "retained", "eroded")}
-        return plot_result(self.outcome, tables, what, ax)
+        return plot_result(self.outcome, (self.series, self.layers, self.retained, self.eroded), what, ax)
 
-    def to_pandas(self, table: str = "series") -> "pandas.DataFrame":
+    def to_pandas(self, table: TableName = "series") -> "pandas.DataFrame":
         """One of the tables (series, layers, retained, eroded, flow, ...) as a pandas.DataFrame."""
         if table not in _TABLES:
             raise ValueError(f"table = {table} is not allowed; one of {', '.join(_TABLES)}")
         frame: pandas.DataFrame = import_module("pandas").DataFrame(getattr(self, table))
         return frame
 
-    def to_xarray(self, table: str = "series") -> "xarray.Dataset":
+    def to_xarray(self, table: TableName = "series") -> "xarray.Dataset":
         """One of the tables as an xarray.Dataset over replicate, run and increment, or layer, size, void."""
         over = {
             "layers": ["replicate", "run", "layer"],
@@ -218,8 +230,7 @@ class Result:
             "retained_by_void": ["run", "increment", "void"],
             "blockings": ["run", "increment", "constriction"],
         }
-        frame: Any = self.to_pandas(table)
-        found: xarray.Dataset = frame.set_index(over.get(table, ["replicate", "run", "increment"])).to_xarray()
+        found: xarray.Dataset = self.to_pandas(table).set_index(over.get(table, ["replicate", "run", "increment"])).to_xarray()
         return found
 
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
@@ -329,15 +340,19 @@ class CampaignResult:
         return f"CampaignResult({len(self)} cases in {self.folder})"
 
 
-def _column(name: str, cells: List[str]) -> NDArray[Any]:
+def _column(name: str, cells: List[str]) -> Column:
     """A column of a CSV file: of whole numbers, of numbers (no number where a cell is empty), or of words."""
-    kinds: List[Any] = [np.float64] if name in _FRACTIONS else [np.int64 if name == "void" else np.uint64, np.float64]
-    for kind in kinds:
-        try:
-            return np.array([float("nan") if kind is np.float64 and c == "" else c for c in cells]).astype(kind)
-        except ValueError:
-            continue
-    return np.array(cells)
+    try:
+        if name == "void":
+            return np.array(cells).astype(np.int64)
+        if name not in _FRACTIONS:
+            return np.array(cells).astype(np.uint64)
+    except ValueError:
+        pass
+    try:
+        return np.array([float("nan") if c == "" else c for c in cells]).astype(np.float64)
+    except ValueError:
+        return np.array(cells)
 
 
 def read_csv(path: Path) -> Table:

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _voidwalk
+from .settings import SceneSettings
 
 __all__ = ["Scene", "init_text", "scene_text"]
 
 #: What a setting may be: a number, a word, a path, a list of them, or a table.
 Setting = Union[None, bool, float, str, "os.PathLike[str]", Sequence[object], Mapping[str, object]]
 
-#: Settings by their names, as ``{"base.cu": 3}``.
-Settings = Mapping[str, Setting]
+#: Settings by their names, as ``{"base.cu": 3}``, or tables of them by section; each value is a :data:`Setting`.
+Settings = Mapping[str, object]
 
 #: A scene's file, what it would say, or nothing for the built-in scene.
 Stated = Union[None, str, "os.PathLike[str]", Settings]
@@ -73,9 +74,9 @@ class Scene:
         return new
 
     @property
-    def settings(self) -> Dict[str, Any]:
+    def settings(self) -> SceneSettings:
         """Every setting that the scene has: a dict that changes nothing when it is changed."""
-        settings: Dict[str, Any] = json.loads(self._native.to_json())
+        settings: SceneSettings = json.loads(self._native.to_json())
         return settings
 
     def to_toml(self) -> str:
@@ -88,12 +89,12 @@ class Scene:
     def __hash__(self) -> int:
         return hash(self.to_toml())
 
-    def __reduce__(self) -> Tuple[Any, ...]:
+    def __reduce__(self) -> Tuple[object, ...]:
         return type(self).from_toml, (self.to_toml(), self._native.name)
 
     def __repr__(self) -> str:
         said = self.settings
-        parts = [f"{key} {said[key]}" for key in ("seed", "replicates") if key in said]
+        parts = [f"{key} {value}" for key, value in said.items() if key in ("seed", "replicates")]
         return f"Scene({self._native.name}: {', '.join(parts)})"
 
 
@@ -126,7 +127,7 @@ def as_json(table: Settings) -> str:
         raise ValueError(f"scene: {error}") from None
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     """Values of arrays and paths as JSON knows them."""
     if isinstance(value, np.generic):
         return value.item()
@@ -137,11 +138,13 @@ def _plain(value: Any) -> Any:
     raise ValueError(f"{value!r} is not allowed in a scene; numbers, words, lists and tables are")
 
 
-def _stated(value: Any) -> Any:
+def _stated(settings: Mapping[str, object]) -> Dict[str, object]:
     """A dict without the settings that are ``None``: those are not given."""
-    if isinstance(value, Mapping):
-        return {str(key): _stated(of) for key, of in value.items() if of is not None}
-    return value
+
+    def of(value: object) -> object:
+        return _stated(value) if isinstance(value, Mapping) else value
+
+    return {str(key): of(value) for key, value in settings.items() if value is not None}
 
 
 def scene_text(scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None) -> str:

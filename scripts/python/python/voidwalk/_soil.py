@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Protocol, Tuple, Union
+from typing import Optional, Protocol, Tuple, Union
 
 from numpy.typing import ArrayLike
 
@@ -28,7 +28,7 @@ class Frame(Protocol):
     """Columns that are had by their names, as of a pandas.DataFrame."""
 
     def __contains__(self, name: object, /) -> bool: ...
-    def __getitem__(self, name: Any, /) -> Any: ...
+    def __getitem__(self, name: str, /) -> ArrayLike: ...
 
 
 class Gradation:
@@ -242,7 +242,7 @@ class Gradation:
         """
         return self._native.base_particles(filter._native, mass_ratio, grains_per_void, voids)
 
-    def __reduce__(self) -> Tuple[Any, ...]:
+    def __reduce__(self) -> Tuple[object, ...]:
         sizes, percents = self.points()
         if len(sizes) == 2 and sizes[0] == sizes[1]:
             return Gradation.single, (float(sizes[0]),)
@@ -363,7 +363,7 @@ class Curve:
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __reduce__(self) -> Tuple[Any, ...]:
+    def __reduce__(self) -> Tuple[object, ...]:
         return _curve, (*self.points(), self.grains_per_void, self.filter)
 
     def __repr__(self) -> str:

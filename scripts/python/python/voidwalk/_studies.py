@@ -9,16 +9,17 @@ from importlib import import_module
 from pathlib import Path
 from typing import (
     TYPE_CHECKING,
-    Any,
     Callable,
     Dict,
     Iterable,
     List,
+    Literal,
     Mapping,
     Optional,
     Sequence,
     Tuple,
     Union,
+    cast,
 )
 
 from . import _voidwalk
@@ -33,11 +34,13 @@ from .records import (
     DesignRow,
     PercolationStudy,
 )
-from ._result import Result, Row, Table, page_of, read_csv
+from ._boxes import box
+from ._result import Result, Row, page_of, read_csv
 from ._scene import Scene, Settings, Stated
 from ._soil import Gradation
 from ._tables import Soil, changes, gradation, told, workplace
 from ._walk import manner, run
+from .columns import Table, Walked
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -69,12 +72,15 @@ class Comparison:
 
     @property
     def cases(self) -> List[ComparedCase]:
-        """The cases, in the order in which they were named: verdict, confidence, reasons, eroded mass."""
+        """The cases, in the order in which they were named, each a dict: name, verdict, confidence, reasons, and in
+        runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
         return self.outcome["cases"]
 
     @property
     def pairs(self) -> List[ComparedPair]:
-        """Every two cases by run: the difference of their eroded masses with its intervals."""
+        """Every two cases by run, each a dict: first, second, run, difference (eroded mass fraction of the first less
+        that of the second, with mean, sd, low and high), and differ (whether all 95 % intervals taken together leave 0
+        out). See :class:`voidwalk.records.ComparedPair`."""
         return self.outcome["pairs"]
 
     def to_pandas(self) -> "pandas.DataFrame":
@@ -107,6 +113,13 @@ class Comparison:
         rows = "; ".join(f"{case['name']}: {case['verdict']}, {case['confidence']}" for case in self.cases)
         return f"Comparison({rows})"
 
+    def _repr_html_(self) -> str:
+        rows = []
+        for case in self.cases:
+            first = next((f"{100 * run['mean']:.2f} %" for run in case["runs"]), "")
+            rows.append((case["name"], case["verdict"], case["confidence"], first))
+        return box("Comparison", {}, ("Case", "Verdict", "Confidence", "Mass eroded, run 1"), rows)
+
 
 class Design:
     """How coarse a filter may be for a base; or, inversely, how fine a base may be.
@@ -122,10 +135,10 @@ class Design:
     """
 
     outcome: DesignRecord
-    walks: Table
+    walks: Walked
     folder: Optional[Path]
 
-    def __init__(self, outcome: DesignRecord, walks: Table, folder: Optional[Path] = None) -> None:
+    def __init__(self, outcome: DesignRecord, walks: Walked, folder: Optional[Path] = None) -> None:
         self.outcome, self.walks, self.folder = outcome, walks, folder
 
     @property
@@ -186,6 +199,21 @@ class Design:
     def __repr__(self) -> str:
         return f"Design({self.answer}; {self.confidence})"
 
+    def _repr_html_(self) -> str:
+        def ratio(row: DesignRow, name: Literal["no_erosion", "continuing"]) -> str:
+            boundary = row[name]
+            return "" if boundary is None else f"{boundary['median']:.2f}"
+
+        facts = {"Confidence": self.confidence, **{"Reason": reason for reason in self.reasons[:1]}}
+        heading = ("Density", "Thickness", "No erosion up to D15F/D85B", "Continuing erosion from D15F/D85B")
+        if self.outcome["inverse"]:
+            heading = ("Density", "Thickness", "No erosion down to D15F/D85B", "Continuing erosion below D15F/D85B")
+        rows = [
+            (row["density"], row["thickness"], ratio(row, "no_erosion"), ratio(row, "continuing"))
+            for row in self.boundaries
+        ]
+        return box(self.answer or "Design", facts, heading, rows)
+
 
 def compare(
     base: Union[None, Soil, Mapping[str, Soil], Sequence[Soil]] = None,
@@ -215,7 +243,8 @@ def compare(
     Parameters
     ----------
     base, filter : soil, or several
-        As for :func:`judge`. One of them is a list of two to six files, or a dict of soils by name.
+        As for :func:`judge`. One of them is a list of two to six files, or a dict of two to six soils by name, as
+        ``{"as built": ([0.5, 2], [0, 100]), "finer": "finer.csv"}``.
     out : path-like, optional
         Folder for the results; a comparison that was stopped there goes on. Without it everything stays in
         memory.
@@ -398,7 +427,9 @@ def design(
             callback,
         )
         return Design(
-            json.loads(place.named(said)), read_csv(place_of_results / "design.csv"), None if out is None else place_of_results
+            json.loads(place.named(said)),
+            cast(Walked, read_csv(place_of_results / "design.csv")),
+            None if out is None else place_of_results,
         )
 
 
@@ -496,12 +527,14 @@ def study(
     True
     """
     try:
-        made: Any = import_module("pandas")
+        made = import_module("pandas")
     except ImportError:
         raise ImportError("study gives a pandas.DataFrame: install pandas") from None
+    listed: List[Dict[str, object]]
     if isinstance(cases, Mapping):
-        values = [list(of) for of in cases.values()]
-        listed = [dict(zip(cases, levels)) for levels in itertools.product(*values)]
+        factors = cast(Mapping[str, Iterable[object]], cases)
+        values = [list(of) for of in factors.values()]
+        listed = [dict(zip(factors, levels)) for levels in itertools.product(*values)]
     else:
         listed = [dict(case) for case in cases]
     walked: Iterable[Dict[str, object]] = listed
@@ -515,7 +548,7 @@ def study(
         if callable(walk):
             result = walk(**case)
         else:
-            result = run(walk, settings=case)  # type: ignore[arg-type]
+            result = run(walk, settings=case)
         row: Row = result.row()
         rows.append({**case, **row})
     frame: pandas.DataFrame = made.DataFrame(rows)

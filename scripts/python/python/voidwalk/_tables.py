@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _voidwalk
@@ -28,10 +29,12 @@ def gradation(name: str, soil: Soil) -> Gradation:
         return soil
     if isinstance(soil, (str, os.PathLike)):
         return Gradation.from_file(soil)
-    if isinstance(soil, (tuple, list)) and len(soil) == 2:
+    if isinstance(soil, (tuple, list)) and len(soil) == 2 and all(np.ndim(column) == 1 for column in soil):
         return Gradation(*soil)
+    given = repr(soil) if isinstance(soil, (tuple, list)) and len(soil) < 4 else type(soil).__name__
     raise ValueError(
-        f"{name} = {type(soil).__name__} is not allowed; a file, a Gradation, or sizes (mm) and percents finer"
+        f"{name} = {given} is not allowed; a file, a Gradation, or a pair of sizes (mm) and percents finer, as "
+        "([0.1, 0.5], [0, 100])"
     )
 
 
@@ -100,7 +103,7 @@ def workplace() -> Iterator[Workplace]:
 
 def changes(settings: Optional[Settings], options: Mapping[str, Tuple[str, Optional[Setting]]]) -> List[str]:
     """Settings and arguments that stand for one, as the library takes them."""
-    all_of_them: Dict[str, Optional[Setting]] = dict(settings or {})
+    all_of_them: Dict[str, object] = dict(settings or {})
     for argument, (key, value) in options.items():
         if value is None:
             continue

@@ -1,17 +1,20 @@
 """What the classes of voidwalk call: the library, with arrays for columns and JSON for records."""
 
 import os
-from typing import Any, Callable, Dict, List, Optional, Tuple, Union, final
+from typing import Callable, Dict, List, Optional, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ._grains import Reached
+from .columns import Table
 
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Path = Union[str, os.PathLike[str]]
 _Cell = Optional[Tuple[float, float, float]]
 _Grains = Tuple[_Floats, _Floats, _Cell]
-_Tables = Dict[str, Dict[str, NDArray[Any]]]
+_Tables = Dict[str, Table]
 #: Memory (bytes), threads, how often progress is saved, and what the manifest says.
 _Manner = Tuple[Optional[int], Optional[int], Optional[str], str]
 #: Density, pack, quick, as sampled, as given, and settings.
@@ -48,6 +51,8 @@ __all__ = [
     "percolation",
     "schema",
     "soils",
+    "specification",
+    "specification_says",
     "replicate_seed",
     "walk",
     "Progress",
@@ -175,13 +180,13 @@ def pack(
     seed: int,
     threads: Optional[int],
     progress: _Callback,
-) -> Tuple[_Grains, Dict[str, float]]: ...
+) -> Tuple[_Grains, Reached]: ...
 def read_packing(
     path: _Path, unit: Optional[str], cell: Optional[str]
 ) -> Tuple[_Grains, List[str]]: ...
 def measure(
     grains: _Grains, merge_overlap: float, on_both_hulls: bool, threads: Optional[int]
-) -> Tuple[Dict[str, NDArray[Any]], str]: ...
+) -> Tuple[Dict[str, Union[_Floats, _Ints]], str]: ...
 def replicate_seed(seed: int, replicate: int) -> int: ...
 def walk(
     networks: List[Network],
@@ -209,6 +214,7 @@ def rules(
     dispersive: bool,
     joint_mm: Optional[float],
     as_given: bool,
+    authority: Optional[str],
 ) -> str: ...
 def command(words: List[str], again: List[str]) -> int: ...
 def init_text() -> str: ...
@@ -271,6 +277,10 @@ def design(
     manner: _Manner,
     progress: _Callback,
 ) -> str: ...
+def specification(
+    base: _Path, dispersive: bool, sieves: str, out: _Path, overwrite: bool, progress: _Callback
+) -> str: ...
+def specification_says(record: str) -> Tuple[str, Optional[str], Optional[str], List[Optional[bool]]]: ...
 def percolation(
     shapes: List[Tuple[int, int, int]],
     realisations: int,

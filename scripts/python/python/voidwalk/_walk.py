@@ -6,7 +6,7 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ._progress import Follower, Following
 from ._result import CampaignResult, Result, read_run
 from ._scene import Scene, Settings, Stated, as_json, native_scene
 from ._soil import Gradation
+from ._tables import Soil, gradation
 
 __all__ = ["campaign", "replicate_seed", "resume", "run", "walk"]
 
@@ -34,7 +35,7 @@ def replicate_seed(seed: int, replicate: int) -> int:
 
 def walk(
     network: Union[Network, Callable[[int], Network]],
-    base: Union[Gradation, float],
+    base: Union[Soil, float],
     *,
     n_base: Optional[int] = None,
     filter: Optional[Gradation] = None,
@@ -59,8 +60,8 @@ def walk(
     ----------
     network : Network or callable
         The network of all replicates; or what makes the network of each from its seed, as the paper does.
-    base : Gradation or float
-        The base, or the one size (mm) of its particles.
+    base : Gradation, path-like, pair of array_like, or float
+        The base, as for :func:`judge`, or the one size (mm) of its particles.
     n_base : int, optional
         Base particles of a run. The class of erosion follows from their number: without it that of the paper's
         Eq. (2), for which `filter` and `grains_per_void` are given or known to the network.
@@ -133,12 +134,10 @@ def walk(
     >>> vw.walk(made, base, n_base=20_000, replicates=3).verdict
     'continuing erosion'
     """
-    if isinstance(base, Gradation):
-        soil = base
-    elif isinstance(base, (int, float, np.integer, np.floating)):
+    if isinstance(base, (int, float, np.integer, np.floating)):
         soil = Gradation.single(float(base))
     else:
-        raise ValueError(f"base = {base!r} is not allowed; a Gradation, or the one size (mm) of its particles")
+        soil = gradation("base", base)
     seed, count = whole("seed", seed), whole("replicates", replicates, 1)
     if count > 100_000:
         raise ValueError(f"replicates = {count} is not allowed; a whole number from 1 to 100000")
