@@ -100,8 +100,8 @@ impl Case {
         let needs = scene.law().is_some_and(|law| law.of_concentration);
         match needs && self.concentration(self.n_base).is_none() {
             true => {
-                let problem = "walk.concentration is needed: how densely the base arrives follows from the \
-                               filter's void ratio and the mass of the base, which are not known here";
+                let problem = "walk.concentration is needed, as a number: how densely the base arrives follows from \
+                               the filter's void ratio and the mass of the base, which are not known here";
                 Err(scene.clash(problem).into())
             }
             false => Ok(()),

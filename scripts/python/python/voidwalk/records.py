@@ -9,6 +9,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "AppliedRule",
+    "ArchingByVoidRecord",
     "ArchingRecord",
     "Band",
     "BandSize",
@@ -666,9 +667,16 @@ class Evidence(_Evidence, total=False):
     bound: Optional[Literal["at_least", "at_most"]]
 
 
-class ArchingRecord(TypedDict):
-    """A law by which particles arch in a constriction that they fit."""
+class ArchingByVoidRecord(TypedDict):
+    """How the concentration of each void is worked out."""
 
+    #: Diameter of a sphere with the volume of a void, mm.
+    void_mm: float
+    #: Which size counts: "own" or "void-mean".
+    size: str
+
+
+class _ArchingRecord(TypedDict):
     #: Its name in a scene.
     law: str
     #: Where it was published.
@@ -677,8 +685,16 @@ class ArchingRecord(TypedDict):
     basis: str
     #: Sizes of a constriction by that of a particle between which arches form.
     range_of_ratio: List[float]
-    #: Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense flow.
+    #: Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense flow,
+    #: or where each void has its own.
     concentration: Optional[float]
+
+
+class ArchingRecord(_ArchingRecord, total=False):
+    """A law by which particles arch in a constriction that they fit."""
+
+    #: How the concentration of each void is worked out, where it is.
+    by_void: Optional[ArchingByVoidRecord]
 
 
 class _Sensitivity(TypedDict):
