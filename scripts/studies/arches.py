@@ -46,8 +46,8 @@ def by_void_cells():
 
 def cells():
     """One pair by thickness and width of the network; then every filter and base by law, beads, and one pair by concentration."""
-    for layers, across in [(60, 20), (30, 10), (120, 10)]:
-        for law in LAWS[:2]:
+    for law in LAWS[:2]:
+        for layers, across in [(30, 10), (120, 10), (60, 20)]:
             yield 1.5, "loose", 1.5, law, "", layers, across
     for law in LAWS:
         yield 1.2, "dense", 1.2, law, "", 60, 10

@@ -30,7 +30,7 @@ RUNS = ["first", "second"]
 FOUND = ["", "_least", "_most", "_holds_to", "_erodes_from"]
 COLUMNS = CELL + [run + what for run in RUNS for what in FOUND] + ["k_over_k0", "walked_concentration", "replicates", "cpu_seconds"]
 REPLICATES, LAYERS, CLOSE, LONGEST = 5, 60, 1.04, 90.0
-FARTHEST = 16.0
+FARTHEST = 16.1
 # Friction and number of grains of the packings of the graphs, as in the library.
 PACKED = {("1.5", "loose"): (0.3, 3000), ("1.5", "dense"): (0.0, 3000), ("3", "loose"): (0.3, 6000)}
 # What base brings into the first layer of a filter of Cu 6, whose packing the library has not whole: void ratio 0.34 (Table 2 of the paper). Of
@@ -228,15 +228,15 @@ def next_ratio(walked, begin):
     ratios = sorted(walked)
     holds = [ratio for ratio in ratios if max(walked[ratio]) < THRESHOLD]
     erodes = [ratio for ratio in ratios if min(walked[ratio]) >= THRESHOLD]
-    if not holds:
-        return None if ratios[0] < 1.0 else ratios[0] / 1.15
-    if not erodes:
-        return None if ratios[-1] * 1.15 > FARTHEST else ratios[-1] * 1.15
-    mean = [ratio for ratio in ratios if statistics.mean(walked[ratio]) >= THRESHOLD]
-    high = mean[0]
-    below = [ratio for ratio in ratios if ratio < high]
-    if not below:
+    if not holds and ratios[0] > 1.0:
         return ratios[0] / 1.15
+    if not erodes and ratios[-1] * 1.15 <= FARTHEST:
+        return ratios[-1] * 1.15
+    mean = [ratio for ratio in ratios if statistics.mean(walked[ratio]) >= THRESHOLD]
+    below = [ratio for ratio in ratios if mean and ratio < mean[0]]
+    if not below:
+        return None
+    high = mean[0]
     return math.sqrt(below[-1] * high) if high / below[-1] > CLOSE else None
 
 

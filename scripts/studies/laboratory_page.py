@@ -165,26 +165,150 @@ def figure(cells):
     return "\n".join([*parts, "</svg>\n"])
 
 
-def sums(cells):
-    """For each model: how many cells of sands, from where to where, and how many lie in the range of tests."""
+def paragraph(words, first="", rest=""):
+    return textwrap.fill(words, 150, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
+
+
+def bullet(words):
+    return paragraph(words, "- ", "  ")
+
+
+def span(values, digits=1):
+    low, high = (f"{end(values):.{digits}f}" for end in (min, max))
+    return low if low == high else f"{low} to {high}"
+
+
+def model_of(*parts):
+    return next(model for model in MODELS if model[1:] == parts)
+
+
+SIEVING = model_of("lattice", "area", "none", "closed")
+SUSPENSION = model_of("lattice", "area", "marin-2018", "closed")
+FLOWING = model_of("lattice", "flux", "none", "closed")
+FLOWING_SUSPENSION = model_of("lattice", "flux", "marin-2018", "closed")
+
+
+def in_range(cells, model):
+    """How many cells of sands have a boundary in the range of tests, below and above it, and how many there are."""
+    values = [value(row) for _, row in cells.sands(model)]
+    return sum(SANDS[0] <= v <= SANDS[1] for v in values), sum(v < SANDS[0] for v in values), sum(v > SANDS[1] for v in values), len(values)
+
+
+def by_model(cells):
+    """A line a model: where its boundaries lie beside the range of tests, and what is left of the permeability."""
     for model in MODELS:
-        for run, limit in (("first", None), ("second", CONTINUING)):
-            of_model = cells.sands(model, run)
-            if of_model:
-                values = [value(row, run) for _, row in of_model]
-                inside = sum(SANDS[0] <= v <= SANDS[1] for v in values)
-                yield model, run, len(values), min(values), max(values), inside
+        found = cells.sands(model)
+        if not found:
+            yield f"**{model[0]}**: not computed."
+            continue
+        inside, below, above, count = in_range(cells, model)
+        values = [value(row) for _, row in found]
+        centre = (SANDS[0] * SANDS[1]) ** 0.5
+        open_end = " or beyond" if any(not row.get("first") for _, row in found) else ""
+        words = (f"**{model[0]}**: {span(values)}{open_end} in {count} cell{'s' if count > 1 else ''} of sands, {span([v / centre for v in values], 2)} times the centre "
+                 f"of the range; {below} below it, {inside} within, {above} above.")
+        second = [(pair, row) for pair, row in found if row.get("second")]
+        if second:
+            limits = [value(row, "second") / (CONTINUING * float(pair[2]) ** 0.2) for pair, row in second]
+            words += f" Continuing erosion at {span(limits, 2)} times 9 D95B ({len(second)})."
+        kept = [float(row["k_over_k0"]) for _, row in found if row.get("k_over_k0")]
+        if kept:
+            words += f" k/k0 just below the boundary: {span(kept, 2) if max(kept) >= 0.005 else '0'}."
+        yield words
+
+
+def change(cells, model, other, what):
+    """What a change of the model does to the boundary, in the pairs that both have."""
+    both = [(pair, row, cells.of(other, pair)) for pair, row in cells.sands(model)]
+    times = [value(new) / value(row) for _, row, new in both if row.get("first") and new and new.get("first")]
+    if times:
+        yield f"{what} times {span(times, 2)} ({len(times)} pair{'s' if len(times) > 1 else ''})"
+
+
+def largest_words(cells):
+    """Largest particles beside Kenney's, with and without arches."""
+    for law, what in (("none", "without arches"), ("marin-2018", "with arches by `marin-2018`")):
+        ratios = [float(cells.largest[cu, law]["first"]) / number for cu, number in KENNEY.items() if (cu, law) in cells.largest]
+        yield f"{what} {', '.join(f'{times:.2f}' for times in ratios)}"
+
+
+def page(cells, name, head):
+    of = cells.of
+    one, beads = of(SIEVING, ONE_SIZE), of(SIEVING, BEADS)
+    inside, below, above, count = in_range(cells, SUSPENSION)
+    sieving = [value(row) for _, row in cells.sands(SIEVING)]
+    plain, arched = (list(largest_words(cells))[k] for k in (0, 1))
+    lines = ["# Which model explains which test", "",
+             paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the 6.8 to 10 "
+                       f"of tests in each, and lets one size through from {value(one):.1f} on, where tests caught it at 9.1. Arches by `marin-2018` put it at "
+                       f"{span([value(row) for _, row in cells.sands(SUSPENSION)])} or beyond: {inside} of {count} cells lie within the range, {above} beyond. That is no "
+                       "agreement: it hangs on how densely the base arrives, which follows from the increments of the walk. With water the same arches put it at "
+                       f"{value(of(FLOWING_SUSPENSION, PAIRS[0])):.1f}, in a filter that is sealed, as no filter of a test is.**"), head, "",
+             f"![Boundaries of models against the range of tests]({name}.svg)", "",
+             "## Tests", ""]
+    lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
+    lines += ["", "## Table", "",
+              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
+                        "the greatest ratio walked. \"From\": the last replicate holds there. Other sands: the filters Cu 1.5 and 3, loose and dense, and Cu 6, loose, with bases of Cu 1.5, 3 and "
+                        f"4.5, as far as they were computed (how many). **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
+    lines += table(cells)
+    lines += ["", paragraph("\\* not read in a source, in no count."), "", "## By model", "",
+              paragraph("The centre of the range is 8.2 D85B. Filters of tests are described by D15F alone, so every filter here stands beside the same range."), ""]
+    lines += map(bullet, by_model(cells))
+    lines += ["", "## What follows", ""]
+    flow = "; ".join(part for args in [
+        (SIEVING, FLOWING, "water on the lattice, without arches,"),
+        (SUSPENSION, FLOWING_SUSPENSION, "with arches"),
+        (FLOWING, model_of("graph", "flux", "none", "closed"), "the packing's own voids instead of the lattice, with water,"),
+        (FLOWING_SUSPENSION, model_of("graph", "flux", "marin-2018", "closed"), "with arches"),
+        (FLOWING, model_of("lattice", "flux", "none", "open"), "openings, with water,"),
+        (FLOWING_SUSPENSION, model_of("lattice", "flux", "marin-2018", "open"), "with arches"),
+    ] for part in change(cells, *args))
+    follows = [
+        f"**What changes the boundary**: {flow}.",
+        f"**One size in suspension** (Sherard et al.: about 0.11 D15F, so 9.1): sieving lets it through from {shown(one)} on. Three touching grains of a uniform "
+        f"filter leave more than 0.11 D15F, so that no sieving by spheres can catch it there. Arches by `marin-2018`: {shown(of(SUSPENSION, ONE_SIZE)) or 'not computed'} at "
+        "the concentration that is worked out; the concentration of these tests was not read. At 0.006 that law puts sands of Cu 1.5 at 4.7 (`arches.md`).",
+        f"**Kenney's tests**: the largest particle that passes filters of Cu 1.2, 3 and 6 is, by that of tests, {plain}; {arched}. So the walk without arches "
+        "returns the uniform filter within a tenth, and lets particles through the broader ones that tests held. The issue of this study holds that these tests were "
+        "vibrated, which breaks arches; that was not read. If they were, something other than arches holds the broader ones.",
+        f"**Glass beads** (not counted): sieving {shown(beads)}, `marin-2018` {shown(of(SUSPENSION, BEADS))}, the two bounds beyond 15. None knows the gradient that decided "
+        "between 8 and 12.",
+        "**With closed constrictions and water a filter that \"holds\" is sealed**: k/k0 is 0 just below the boundary in every such cell that holds by arches. Base that cannot enter counts as held, so such "
+        "a boundary is none of a test.",
+        "**Not fitted**: no law and no setting was fitted to a test. **Not counted**: the paper's own cases (the same model), beads (not read), and every row of arches as "
+        "evidence for its law, since its concentration is an assumption of the walk's increments.",
+    ]
+    lines += map(bullet, follows)
+    lines += ["", "## What would refute each", ""]
+    lines += map(bullet, [
+        "**Sieving**: refuted, unless the grains' shape does it: smooth spheres of one size that are caught beyond 5.4 D15F/D85B, diluted so that they arrive one by one.",
+        "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from 11.6 to 4.7. Or a dense filter that holds no "
+        "coarser ratio than a loose one of the same D15F.",
+        "**`zuriguel-2005`, `critical-3`**: a sand or beads that erode before 12. They are upper bounds and claim no more.",
+        "**Closed constrictions**: any filter that holds and still drains.",
+        "**Openings with water**: k/k0 of a filter after it stopped eroding. No test with that number was found.",
+        "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios. The two differ most where water flows.",
+    ])
+    lines += ["", "## Not computed", "",
+              bullet("Empty cells of the table; filters of Cu 6 dense; beads and one size by water and on the graph; concentration by void beside tests (`arches.md`)."),
+              bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
+              bullet("Skill on single tests: no table of single tests (base, filter, held or not) could be read. Searched again on 2026-11-25: Honjo (1985), Raut (2006) and "
+                     "Indraratna et al. (2007) have such tables, and only their first pages could be read.")]
+    return "\n".join(lines) + "\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, commit ddfd4ba.", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
-    print("\n".join(table(cells)))
-    for line in sums(cells):
-        print(line[0][0], *line[1:])
+    name = Path(options.out).name
+    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5.")
+    command = f"    scripts/studies/laboratory.py --work FOLDER --out results/{name}    # goes on where it was stopped\n    scripts/studies/laboratory_page.py --out results/{name}"
+    Path(f"{options.out}.md").write_text(page(cells, name, f"{head}\n\n{command}"))
 
 
 if __name__ == "__main__":

@@ -103,6 +103,7 @@ fn what_cannot_be_is_refused() {
 }
 
 const BY_VOID: [&str; 4] = ["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-void"];
+const SHORT: [&str; 4] = ["--set", "runs=1", "--set", "replicates=1"];
 
 /// What the walk brings into each void: written with the volume of a void, the same for any threads.
 #[test]
@@ -110,7 +111,7 @@ fn by_void_the_walk_brings_its_own_concentration() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     fs::write(at.join("s.toml"), SCENE).unwrap();
-    let of = |name: &str, more: &[&str]| walked(at, name, &[&BY_VOID[..], more].concat());
+    let of = |name: &str, more: &[&str]| walked(at, name, &[&BY_VOID[..], &SHORT, more].concat());
     let one = of("one", &["--threads", "1"]);
     assert_eq!(one["arching"]["by_void"]["size"], "own");
     assert!(one["arching"]["concentration"].is_null());
