@@ -225,7 +225,8 @@ impl<'a> Reference<'a> {
         for particle in self.moving.iter().filter(|particle| particle.diameter > self.passive_limit) {
             let (number, cubes): &mut (u32, f64) = crowd.entry(particle.void).or_default();
             *number += 1;
-            *cubes += f64::from(particle.diameter) * f64::from(particle.diameter) * f64::from(particle.diameter);
+            *cubes +=
+                f64::from(particle.diameter) * f64::from(particle.diameter) * f64::from(particle.diameter);
         }
         crowd
     }

@@ -123,7 +123,8 @@ fn by_void_the_walk_brings_its_own_concentration() {
     assert_eq!(mean["arching"]["by_void"]["size"], "void-mean");
     assert_ne!(mean["summary"], one["summary"]);
     // What an increment brings into a layer, by the volume of the layer's voids, is what the default works out.
-    let single = ["--set", "walk.arching=marin-2018", "--set", "base.single_mm=0.1", "--set", "filter.d0_mm=1"];
+    let single =
+        ["--set", "walk.arching=marin-2018", "--set", "base.single_mm=0.1", "--set", "filter.d0_mm=1"];
     let scene = SCENE.replace("cu = 1.5\nd15f_over_d85b = 7\n", "");
     fs::write(at.join("s.toml"), scene).unwrap();
     let first = walked(at, "first", &single)["arching"]["concentration"].as_f64().unwrap();
@@ -141,7 +142,10 @@ fn by_void_is_refused_where_it_says_nothing() {
     let refusal = |more: &[&str], says: &str| refusal_at(at, more, says);
     refusal(&["--set", "walk.arching=zuriguel-2005", "--set", "walk.concentration=by-void"], "says nothing");
     refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-voids"], "or \"by-void\"");
-    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.7"], "a part from 0 to 0.64");
+    refusal(
+        &["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.7"],
+        "a part from 0 to 0.64",
+    );
     refusal(
         &["--set", "walk.arching=marin-2018", "--set", "walk.arch_size=void-mean"],
         "says nothing unless walk.concentration is \"by-void\"",

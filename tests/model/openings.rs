@@ -8,8 +8,8 @@ use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{
-    ArchSize, Arching, ByVoid, Clogged, Isa, Law, Narrowing, SavedState, SizeClasses, State, Supply, Walk, WalkControl,
-    residual_opening,
+    ArchSize, Arching, ByVoid, Clogged, Isa, Law, Narrowing, SavedState, SizeClasses, State, Supply, Walk,
+    WalkControl, residual_opening,
 };
 
 fn of(csv: &str) -> Network {

@@ -95,15 +95,14 @@ fn compare(network: &Network, supply: &Supply, clogged: Clogged, seed: u64, run:
 
 /// No arches in half of the cases, else one of the laws, at one concentration or at that of each void.
 fn law() -> impl Strategy<Value = Option<Arc<Arching>>> {
-    (0..2 * LAWS.len(), prop::sample::select(vec![None, Some(ArchSize::Own), Some(ArchSize::VoidMean)])).prop_map(
-        |(k, by_void)| {
+    (0..2 * LAWS.len(), prop::sample::select(vec![None, Some(ArchSize::Own), Some(ArchSize::VoidMean)]))
+        .prop_map(|(k, by_void)| {
             let law = LAWS.get(k)?;
             Some(Arc::new(match by_void {
                 None => Arching::new(law, 0.3),
                 Some(size) => Arching::by_void(law, ByVoid { void_cube: 30.0, size }),
             }))
-        },
-    )
+        })
 }
 
 proptest! {
