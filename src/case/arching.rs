@@ -34,8 +34,8 @@ impl Case {
     }
 
     /// How the concentration of each void of the lattice follows from the particles in it. The voids have
-    /// equal volumes; the filter's grains have the volume of the base by the mass ratio, as both have the same
-    /// density.
+    /// equal volumes. The filter's grains have the volume of the base by the mass ratio, as both are equally
+    /// dense.
     fn by_void(&self) -> Option<ByVoid> {
         let of_base = self.n_base as f64 * self.sampler.whole().mean_cube()?;
         let of_voids = of_base / self.mass_ratio? * self.void_ratio()?;
@@ -100,8 +100,9 @@ impl Case {
         let needs = scene.law().is_some_and(|law| law.of_concentration);
         match needs && self.concentration(self.n_base).is_none() {
             true => {
-                let problem = "walk.concentration is needed, as a number: how densely the base arrives follows \
-                               from the filter's void ratio and the mass of the base, which are not known here";
+                let problem = "walk.concentration is needed, as a number: how densely the base arrives \
+                               follows from the filter's void ratio and the mass of the base, which are not \
+                               known here";
                 Err(scene.clash(problem).into())
             }
             false => Ok(()),
