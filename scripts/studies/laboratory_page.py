@@ -269,7 +269,7 @@ def page(cells, name, head):
                         f"4.5, as far as they were computed (how many). **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
     lines += ["", paragraph("\\* not read in a source, in no count."), "", "## By model", "",
-              paragraph("The centre of the range is 8.2 D85B. Filters of tests are described by D15F alone, so every filter here stands beside the same range. Bases here are straight on a sieve diagram; the curves of the tested ones were not read."), ""]
+              paragraph("The centre of the range is 8.2 D85B. Table 9.2 describes filters by D15F alone, so every filter here stands beside the same range. Bases here are straight on a sieve diagram; the curves of the tested ones were not read."), ""]
     lines += map(bullet, by_model(cells))
     lines += ["", "## What follows", ""]
     flow = "; ".join(part for args in [
@@ -286,8 +286,9 @@ def page(cells, name, head):
         f"filter leave more than 0.11 D15F, so that no sieving by spheres can catch it there. Arches by `marin-2018`: {shown(of(SUSPENSION, ONE_SIZE)) or 'not computed'} at "
         "the concentration that is worked out; the concentration of these tests was not read. At 0.006 that law puts sands of Cu 1.5 at 4.7 (`arches.md`).",
         f"**Kenney's tests**: the largest particle that passes filters of Cu 1.2, 3 and 6 is, by that of tests, {plain}; {arched}. So the walk without arches "
-        "returns the uniform filter within a tenth, and lets particles through the broader ones that tests held. The issue of this study holds that these tests were "
-        "vibrated, which breaks arches; that was not read. If they were, something other than arches holds the broader ones.",
+        "returns the uniform filter within a tenth, and lets particles through the broader ones that tests held. That these tests were "
+        "vibrated, which breaks arches, was not read in a source. If they were, something other than arches holds the broader ones, or the lattice leads too many particles to "
+        "its widest constrictions; this was not tested.",
         f"**Glass beads** (not counted): sieving {shown(beads)}, `marin-2018` {shown(of(SUSPENSION, BEADS))}, the two bounds beyond 15. None knows the gradient that decided "
         "between 8 and 12.",
         *sealed(cells),
@@ -302,7 +303,7 @@ def page(cells, name, head):
         "coarser ratio than a loose one of the same D15F.",
         "**`zuriguel-2005`, `critical-3`**: a sand or beads that erode before 12. They are upper bounds and claim no more.",
         "**Closed constrictions or openings, with water**: k/k0 of a filter after it stopped eroding, which is 0 for the first. No test with that number was found.",
-        "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios. The two differ most where water flows.",
+        "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
     ])
     lines += ["", "## Not computed", "",
               bullet("Empty cells of the table; filters of Cu 6 dense; beads and one size by water and on the graph; concentration by void beside tests (`arches.md`)."),
