@@ -109,9 +109,12 @@ def table(cells):
     for model in MODELS:
         of = lambda pair: shown(cells.of(model, pair))
         others = [row for pair, row in cells.sands(model) if pair not in first]
-        beyond = "beyond " if any(not row.get("first") for row in others) else ""
-        numbers = [value(row) for row in others]
-        spread = f"{min(numbers):.2f} to {beyond}{max(numbers):.2f} ({len(numbers)})" if numbers else ""
+        # Where one holds at the greatest ratio walked, the most is beyond all that is known.
+        numbers = [value(row) for row in others if row.get("first")]
+        beyond = [value(row) for row in others if not row.get("first")]
+        ends = [f"{min(numbers):.2f}"] if numbers else []
+        ends += [f"beyond {min(beyond):.1f}"] if beyond else [f"{max(numbers):.2f}"] if len(numbers) > 1 else []
+        spread = f"{' to '.join(ends)} ({len(others)})" if others else ""
         largest = [largest_shown(cells, of_filter, model) for of_filter in LARGEST]
         row = [model[0], *map(of, first), spread, of(ONE_SIZE), of(BEADS), *largest]
         lines.append("| " + " | ".join(row) + " |")
