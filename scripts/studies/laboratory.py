@@ -218,7 +218,9 @@ def guess(cell):
     """The ratio at which a cell's search begins."""
     exit, law = cell[5:7]
     without = 3.2 if exit == "flux" else 4.6
-    return without if law == NONE else 8.0
+    # Openings with water let arches hold less, and every particle is walked.
+    with_arches = 5.0 if exit == "flux" and cell[8] == "open" else 8.0
+    return without if law == NONE else with_arches
 
 
 def next_ratio(walked, begin):

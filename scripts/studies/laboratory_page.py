@@ -214,7 +214,8 @@ def by_model(cells):
         values = [value(row) for _, row in found]
         centre = (SANDS[0] * SANDS[1]) ** 0.5
         open_end = " or beyond" if any(not row.get("first") for _, row in found) else ""
-        words = (f"**{model[0]}**: {span(values)}{open_end} in {count} cell{'s' if count > 1 else ''} of sands, {span([v / centre for v in values], 2)} times the centre "
+        cells_of = f"{count} cell{'s' if count > 1 else ''} of sands"
+        words = (f"**{model[0]}**: {span(values)}{open_end} in {cells_of}, {span([v / centre for v in values], 2)} times the centre "
                  f"of the range; {below} below it, {inside} within, {above} above.")
         second = [(pair, row) for pair, row in found if row.get("second")]
         if second:
