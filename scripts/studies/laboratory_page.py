@@ -310,7 +310,7 @@ def page(cells, name, head):
         "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
     ])
     lines += ["", "## Not computed", "",
-              bullet("Empty cells of the table; filters of Cu 6 dense; beads and one size by water and on the graph; concentration by void beside tests (`arches.md`)."),
+              bullet("Empty cells of the table; filters of Cu 6 dense; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
               bullet("Skill on single tests: no table of single tests (base, filter, held or not) could be read. Searched again on 2026-11-25: Honjo (1985), Raut (2006) and "
                      "Indraratna et al. (2007) have such tables, and only their first pages could be read.")]
