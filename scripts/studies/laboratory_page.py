@@ -261,7 +261,7 @@ def page(cells, name, head):
              paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the 6.8 to 10 "
                        f"of tests in each, and lets one size through from {value(one):.1f} on, where tests caught it at 9.1. Arches by `marin-2018` put it at "
                        f"{span([value(row) for _, row in cells.sands(SUSPENSION)])} or beyond: {inside} of {count} cells lie within the range, {above} beyond. That is no "
-                       "agreement: it hangs on how densely the base arrives, which follows from the increments of the walk. With water the same arches put it at "
+                       "agreement: it hangs on how densely the base arrives, which follows from the increments of the walk. With water the same arches put that of base and filter Cu 1.5, loose, at "
                        f"{value(of(FLOWING_SUSPENSION, PAIRS[0])):.1f}, where no water flows through the filter any more, and with openings, by which it flows, at "
                        f"{value(of(FLOWING_OPEN, PAIRS[0])):.1f}.**"), head, "",
              f"![Boundaries of models against the range of tests]({name}.svg)", "",
@@ -302,7 +302,8 @@ def page(cells, name, head):
     lines += map(bullet, follows)
     lines += ["", "## What would refute each", ""]
     lines += map(bullet, [
-        "**Sieving**: refuted, unless the grains' shape does it: smooth spheres of one size that are caught beyond 5.4 D15F/D85B, diluted so that they arrive one by one.",
+        "**Sieving** lies below every test already. The shape of grains, which it lacks, could be why: smooth spheres of one size that are caught beyond D15F/D85B 5.4, "
+        "though they arrive one by one, would refute it.",
         "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from 11.6 to 4.7. Or a dense filter that holds no "
         "coarser ratio than a loose one of the same D15F.",
         "**`zuriguel-2005`, `critical-3`**: a sand or beads that erode before 12. They are upper bounds and claim no more.",
@@ -313,7 +314,7 @@ def page(cells, name, head):
               bullet("Empty cells of the table; filters of Cu 6 dense; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
               bullet("Skill on single tests: no table of single tests (base, filter, held or not) could be read. Searched again on 2026-11-25: Honjo (1985), Raut (2006) and "
-                     "Indraratna et al. (2007) have such tables, and only their first pages could be read.")]
+                     "Indraratna et al. (2007) speak of such data, and only their first pages could be read.")]
     return "\n".join(lines) + "\n"
 
 
