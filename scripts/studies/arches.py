@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """Where arches put the boundary of no erosion: D15F/D85B at which 7.5 % of the base erodes in the first run, by law.
 
-    scripts/studies/arches.py --out results/arches.csv [--binary target/release/voidwalk] [--threads 2]
+    scripts/studies/arches.py --out results/arches.csv [--by-void results/arches-by-void.csv] [--binary target/release/voidwalk] [--threads 2]
 
 Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids unless the cell says otherwise, five replicates at each
 ratio. A ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 16. `no_erosion` is where the mean crosses 7.5 %, `least` and `most` where
 the first and the last of the five replicates do, by interpolation between the ratios walked. Cells that are in the CSV already are not walked again.
+
+`--by-void`: what erodes by `marin-2018` where the concentration is that of the first layer and where it is that of each void, by either size; 10 x 10
+x 30 voids, five replicates.
 """
 
 import argparse
@@ -28,8 +31,24 @@ CLOSE = 1.02
 MOST = 16.0
 
 
+# Where the concentration comes from, and which size counts.
+ARRIVALS = [("first layer", ""), ("by-void", "own"), ("by-void", "void-mean")]
+BY_VOID_CELL = ["filter_cu", "density", "base_cu", "d15f_over_d85b", "concentration", "arch_size"]
+BY_VOID_COLUMNS = BY_VOID_CELL + ["eroded_percent", "least", "most"]
+
+
+def by_void_cells():
+    """One filter, two bases, by where the concentration comes from."""
+    for base_cu, ratio in [(1.5, 6), (1.5, 5), (3, 5)]:
+        for concentration, size in ARRIVALS:
+            yield 1.5, "loose", base_cu, ratio, concentration, size
+
+
 def cells():
-    """Every filter and base by law; beads; then one pair by concentration, thickness and width."""
+    """One pair by thickness and width of the network; then every filter and base by law, beads, and one pair by concentration."""
+    for law in LAWS[:2]:
+        for layers, across in [(30, 10), (120, 10), (60, 20)]:
+            yield 1.5, "loose", 1.5, law, "", layers, across
     for law in LAWS:
         yield 1.2, "dense", 1.2, law, "", 60, 10
     for base_cu in BASES:
@@ -39,9 +58,6 @@ def cells():
         if base_cu == BASES[0]:
             for concentration in CONCENTRATIONS:
                 yield 1.5, "loose", base_cu, "marin-2018", concentration, 60, 10
-            for layers, across in [(30, 10), (120, 10), (60, 20)]:
-                for law in LAWS[:2]:
-                    yield 1.5, "loose", base_cu, law, "", layers, across
 
 
 class Walks:
@@ -85,10 +101,21 @@ class Walks:
         law = outcome.get("arching") or {}
         return [run["eroded_mass_fraction"] for run in runs], arched, law.get("concentration")
 
+    def by_void(self, cell):
+        """What erodes, in percent: mean, least and most."""
+        *pair, ratio, concentration, size = cell
+        settings = self.settings((*pair, "marin-2018", "", 30, 10), ratio)
+        if size:
+            settings |= {"walk.concentration": concentration, "walk.arch_size": size}
+        shares = [100 * replicate["runs"][0]["eroded_mass_fraction"] for replicate in self.outcome(settings)["replicates"]]
+        row = {"eroded_percent": sum(shares) / len(shares), "least": min(shares), "most": max(shares)}
+        return dict(zip(BY_VOID_CELL, cell)) | {name: round(value, 2) for name, value in row.items()}
+
     def boundary(self, cell):
         began = time.monotonic()
         holds, erodes, arched, walked = None, None, 0.0, {}
-        ratio = 4.0
+        # Near where arches of this law put it, which saves walks of fine bases.
+        ratio = 8.0 if cell[3] == "marin-2018" else 4.0
         while holds is None or erodes is None or erodes / holds > self.close:
             shares, of_arches, concentration = self.eroded(cell, ratio)
             walked[ratio] = shares
@@ -145,11 +172,15 @@ def each(out, names, columns, cells, row_of):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--by-void", type=Path)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="2")
     options = parser.parse_args()
-    each(options.out, CELL, COLUMNS, cells(), Walks(options).boundary)
+    if options.by_void:
+        each(options.by_void, BY_VOID_CELL, BY_VOID_COLUMNS, by_void_cells(), Walks(options).by_void)
+    if options.out:
+        each(options.out, CELL, COLUMNS, cells(), Walks(options).boundary)
 
 
 if __name__ == "__main__":

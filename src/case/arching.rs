@@ -2,19 +2,21 @@
 
 use std::sync::Arc;
 
+use libm::cbrt;
+
 use super::{Case, CaseError};
 use crate::outcome::Modelled;
-use crate::outcome::record::ArchingRecord;
+use crate::outcome::record::{ArchingByVoidRecord, ArchingRecord};
 use crate::verdict::{Finding, finding};
-use crate::walk::Arching;
-
-/// Concentration of grains that lie densely: none arrive more densely.
-const DENSEST: f64 = 0.64;
+use crate::walk::{Arching, ByVoid, Concentration, DENSEST};
 
 impl Case {
     /// The law of its arches, with as many base particles as these; `None` where particles do not arch.
     pub fn arching(&self, n_base: u64) -> Option<Arc<Arching>> {
         let law = self.scene.law()?;
+        if self.scene.concentration_is_by_void() {
+            return Some(Arc::new(Arching::by_void(law, self.by_void()?)));
+        }
         let concentration = if law.of_concentration { self.concentration(n_base)? } else { DENSEST };
         Some(Arc::new(Arching::new(law, concentration)))
     }
@@ -23,12 +25,22 @@ impl Case {
     /// the first layer, unless the scene says it. A particle makes one move an increment, so that those of an
     /// increment are in one layer together.
     fn concentration(&self, n_base: u64) -> Option<f64> {
-        if self.scene.exits.concentration.is_some() {
-            return self.scene.exits.concentration;
+        if let Some(Concentration::Stated(stated)) = self.scene.exits.concentration {
+            return Some(stated);
         }
         let times = n_base as f64 / self.n_base as f64;
         let of_base = self.mass_ratio? * times / self.increments() as f64;
         Some((of_base * self.counts[3] as f64 / self.void_ratio()?).min(DENSEST))
+    }
+
+    /// How the concentration of each void of the lattice follows from the particles in it. The voids have
+    /// equal volumes. The filter's grains have the volume of the base by the mass ratio, as both are equally
+    /// dense.
+    fn by_void(&self) -> Option<ByVoid> {
+        let of_base = self.n_base as f64 * self.sampler.whole().mean_cube()?;
+        let of_voids = of_base / self.mass_ratio? * self.void_ratio()?;
+        let size = self.scene.exits.arch_size.unwrap_or_default();
+        Some(ByVoid { void_cube: of_voids / self.counts[0] as f64, size })
     }
 
     /// Volume of the voids of the filter by that of its grains, where it is known.
@@ -43,12 +55,18 @@ impl Case {
     /// What is written of its arches.
     pub fn arching_record(&self) -> Option<ArchingRecord> {
         let law = self.scene.law()?;
+        let by_void = self.by_void().filter(|_| self.scene.concentration_is_by_void());
+        let stated = self.concentration(self.n_base).filter(|_| law.of_concentration && by_void.is_none());
         Some(ArchingRecord {
             law: law.name.into(),
             source: law.source.into(),
             basis: law.basis.into(),
             range_of_ratio: [1.0, law.widest],
-            concentration: self.concentration(self.n_base).filter(|_| law.of_concentration),
+            concentration: stated,
+            by_void: by_void.map(|of| ArchingByVoidRecord {
+                void_mm: cbrt(of.void_cube) * self.unit_mm,
+                size: of.size.name().into(),
+            }),
         })
     }
 
@@ -82,8 +100,9 @@ impl Case {
         let needs = scene.law().is_some_and(|law| law.of_concentration);
         match needs && self.concentration(self.n_base).is_none() {
             true => {
-                let problem = "walk.concentration is needed: how densely the base arrives follows from the \
-                               filter's void ratio and the mass of the base, which are not known here";
+                let problem = "walk.concentration is needed, as a number: how densely the base arrives \
+                               follows from the filter's void ratio and the mass of the base, which are not \
+                               known here";
                 Err(scene.clash(problem).into())
             }
             false => Ok(()),

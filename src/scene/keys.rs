@@ -11,7 +11,7 @@ use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, Leaf, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
-use crate::walk::{BlockedAs, Engine, LawName, Sampling};
+use crate::walk::{ArchSize, BlockedAs, Concentration, DENSEST, Engine, LawName, Sampling};
 
 section! {
     /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
@@ -164,8 +164,16 @@ section! {
         pub arching: Option<LawName> = None, off "\"zuriguel-2005\"",
             words(&LawName::ALL.map(LawName::name));
         /// How densely the base arrives, for a law that depends on it: volume of particles by volume of
-        /// voids. Default: what an increment brings into the first layer of voids.
-        pub concentration: Option<f64> = None, off "0.05", within(0.0..=0.64, "a part from 0 to 0.64");
+        /// voids. Default: what an increment brings into the first layer of voids. "by-void", on a lattice:
+        /// what the walk brings into each void in each increment.
+        pub concentration: Option<Concentration> = None, off "\"by-void\"", only(
+            "a part from 0 to 0.64, or \"by-void\"",
+            |of| !matches!(of, Concentration::Stated(part) if !(0.0..=DENSEST).contains(part)),
+        ).offering(&["by-void"]);
+        /// Which size counts where the concentration is "by-void": the particle's "own", or that of the mean
+        /// volume of the particles in its void ("void-mean"). Default: "own".
+        pub arch_size: Option<ArchSize> = None, off "\"void-mean\"",
+            words(&ArchSize::ALL.map(ArchSize::name));
         /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that
         /// blocks it, for finer particles and water. Default: "closed". Openings need every particle walked
         /// one by one, so that fine bases take longer.
@@ -497,6 +505,10 @@ impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
 impl Leaf for LawName {}
 impl Leaf for BlockedAs {}
+impl Leaf for ArchSize {}
+impl Leaf for Concentration {
+    const TOML_TYPE: &'static str = "float or string";
+}
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

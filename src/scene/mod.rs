@@ -34,7 +34,7 @@ pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
 use crate::schema::{GivenSettings, KeyInfo, Names};
-use crate::walk::{BlockedAs, Engine, Law};
+use crate::walk::{BlockedAs, Concentration, Engine, Law};
 use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
@@ -343,6 +343,13 @@ impl Scene {
         if !self.law().is_some_and(|law| law.of_concentration) {
             wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")?;
         }
+        if !self.concentration_is_by_void() {
+            wrong(&["walk.arch_size"], "says nothing unless walk.concentration is \"by-void\"")?;
+        } else if !matches!(self.network.source(), NetworkSource::Cubic(_)) {
+            let problem = "a part from 0 to 0.64: \"by-void\" needs the voids of a lattice, which are all of \
+                           one volume";
+            return Err(s.refuse("walk.concentration", problem));
+        }
         Ok(())
     }
 
@@ -354,6 +361,11 @@ impl Scene {
     /// The law by which particles arch, where they do.
     pub fn law(&self) -> Option<&'static Law> {
         self.exits.arching?.law()
+    }
+
+    /// Whether laws of arching go by the concentration that the walk brings into each void.
+    pub fn concentration_is_by_void(&self) -> bool {
+        matches!(self.exits.concentration, Some(Concentration::Walked(_)))
     }
 
     /// How particles choose among the exits of a void.

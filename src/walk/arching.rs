@@ -15,9 +15,10 @@
 //! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
 //! [`Arching::widest`].
 
+use libm::{exp, lgamma, log, pow};
 use serde::{Deserialize, Serialize};
 
-use libm::{exp, lgamma, log, pow};
+use super::crowding::ByVoid;
 
 /// A published law of clogging.
 ///
@@ -161,12 +162,14 @@ const STEPS: usize = 1 << 14;
 /// Bits of a draw that decide.
 const BITS: u32 = 48;
 
-/// A law as a walk reads it, at one concentration.
+/// A law as a walk reads it, at one concentration or at that of each void.
 #[derive(Clone, Debug)]
 pub struct Arching {
     law: &'static Law,
-    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
+    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest. Empty
+    /// where the concentration is that of each void.
     table: Vec<f64>,
+    by_void: Option<ByVoid>,
 }
 
 impl Arching {
@@ -178,7 +181,27 @@ impl Arching {
             let ratio = 1.0 + step * k as f64;
             (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration)
         };
-        Self { law, table: (0..=STEPS).map(at).collect() }
+        Self { law, table: (0..=STEPS).map(at).collect(), by_void: None }
+    }
+
+    /// A law at the concentration of each void (module `crowding`).
+    pub fn by_void(law: &'static Law, by_void: ByVoid) -> Self {
+        Self { law, table: Vec::new(), by_void: Some(by_void) }
+    }
+
+    /// How the concentration of each void is worked out, where it is.
+    pub fn of_void(&self) -> Option<&ByVoid> {
+        self.by_void.as_ref()
+    }
+
+    /// A constriction may stop a particle, whatever lies beside it, up to this many times as wide as it.
+    pub fn stops_alone(&self) -> f64 {
+        if self.by_void.is_some() { 1.0 } else { self.law.widest }
+    }
+
+    /// The law itself.
+    pub fn law(&self) -> &'static Law {
+        self.law
     }
 
     /// `R` from which nothing arches.
@@ -197,13 +220,22 @@ impl Arching {
         f64::from(width) < self.law.widest * f64::from(diameter)
     }
 
-    /// Particles of the arch that a particle of this size starts in this constriction by this word; `None`
-    /// where it starts none.
+    /// Particles of the arch that a particle of this size starts in this constriction by this word, in a void
+    /// with this number of particles and sum of their diameters cubed; `None` where it starts none.
     #[inline]
-    pub(super) fn begun(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
-        let ratio = f64::from(width) / f64::from(diameter);
+    pub(super) fn begun(&self, width: f32, diameter: f32, word: u64, crowd: (u32, f64)) -> Option<u32> {
         let draw = (word >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
-        (draw < self.by_table(ratio)).then(|| in_arch(ratio))
+        let (ratio, probability) = match &self.by_void {
+            None => {
+                let ratio = f64::from(width) / f64::from(diameter);
+                (ratio, self.by_table(ratio))
+            }
+            Some(by_void) => {
+                let (ratio, concentration) = by_void.asked(width, diameter, crowd.0, crowd.1);
+                (ratio, self.law.probability(ratio, concentration))
+            }
+        };
+        (draw < probability).then(|| in_arch(ratio))
     }
 
     /// The probability by the table: the law's at its steps, and between them by a straight line.

@@ -2,6 +2,7 @@
 
 use bitvec::slice::BitSlice;
 
+use super::crowding::Crowd;
 use super::openings::Ways;
 use super::{Arching, Isa};
 use crate::network::Network;
@@ -226,6 +227,8 @@ pub(super) struct OpenExits<'a> {
     pub passive_limit: f32,
     /// How particles arch; only with a table of the general form.
     pub arching: Option<&'a Arching>,
+    /// The particles in each void, where arches depend on them.
+    pub crowd: Option<&'a Crowd>,
 }
 
 impl ExitTable {

@@ -31,7 +31,8 @@
 //! no width.
 //!
 //! # Arches
-//! A particle that fits may jam with others (module `arching`) where a law of that is asked for.
+//! A particle that fits may jam with others (module `arching`) where a law of that is asked for. How densely
+//! they lie is stated, or counted in each void (module `crowding`).
 //!
 //! # Residual openings
 //! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
@@ -56,6 +57,7 @@ mod arching;
 mod bits;
 mod chunks;
 mod counts;
+mod crowding;
 mod directions;
 mod engine;
 mod error;
@@ -80,6 +82,7 @@ mod trapped;
 pub use arching::{Arching, LAWS, Law, LawName};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
+pub use crowding::{ArchSize, ByVoid, Concentration, DENSEST, WalkedConcentration};
 pub use directions::FlowRecord;
 pub use engine::{Engine, Finest, RunPlan, Shortcut};
 pub use error::WalkError;

@@ -8,8 +8,9 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
 use bitvec::vec::BitVec;
+use libm::cbrt;
 
-use super::{CHUNK, Supply};
+use super::{ArchSize, CHUNK, Supply};
 use crate::network::{END, ExitRule, Flow, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
 
@@ -58,11 +59,14 @@ pub struct Reference<'a> {
     pub history: Vec<(u64, usize)>,
     /// Completed moves.
     pub particle_moves: u64,
+    /// Size up to which particles are too fine for any arch.
+    passive_limit: f32,
 }
 
 impl<'a> Reference<'a> {
     /// Before the first increment.
     pub fn new(network: &'a Network, supply: &'a Supply, blocked: Vec<bool>, seed: u64, run: u64) -> Self {
+        let passive_limit = supply.passive_limit(network.finest_open(|c| blocked[c]));
         Self {
             network: Cow::Borrowed(network),
             flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0, 0)),
@@ -82,6 +86,7 @@ impl<'a> Reference<'a> {
             blocked,
             history: vec![],
             particle_moves: 0,
+            passive_limit,
         }
     }
 
@@ -104,6 +109,7 @@ impl<'a> Reference<'a> {
         let stopped_before = self.stopped.len();
         let mut still_moving = vec![];
         let mut begun = HashMap::new();
+        let crowd = self.crowd();
         let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
         for particle in std::mem::take(&mut self.moving) {
             let place = &mut place_in_chunk[particle.rank as usize / CHUNK];
@@ -123,7 +129,8 @@ impl<'a> Reference<'a> {
                 continue;
             }
             let chunk = particle.rank / CHUNK as u64;
-            if self.arches(chunk, *place - 1, exit, particle.diameter, &mut begun) {
+            let beside = crowd.get(&particle.void).copied().unwrap_or_default();
+            if self.arches((chunk, *place - 1), exit, particle.diameter, beside, &mut begun) {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
                 self.arched += 1;
@@ -212,18 +219,31 @@ impl<'a> Reference<'a> {
         });
     }
 
+    /// How many particles that are not too fine for any arch each void holds, and their diameters cubed.
+    fn crowd(&self) -> HashMap<u32, (u32, f64)> {
+        let mut crowd = HashMap::new();
+        for particle in self.moving.iter().filter(|particle| particle.diameter > self.passive_limit) {
+            let (number, cubes): &mut (u32, f64) = crowd.entry(particle.void).or_default();
+            *number += 1;
+            *cubes +=
+                f64::from(particle.diameter) * f64::from(particle.diameter) * f64::from(particle.diameter);
+        }
+        crowd
+    }
+
     /// Whether the particle at `place` of its chunk stays in an arch: the first by the law, and those that
-    /// follow it as far as the arch has room. `begun`: by chunk and exit, the room that is left.
+    /// follow it as far as the arch has room. `crowd`: what its void holds. `begun`: by chunk and exit, the
+    /// room that is left.
     fn arches(
         &self,
-        chunk: u64,
-        place: u64,
+        (chunk, place): (u64, u64),
         exit: usize,
         diameter: f32,
+        crowd: (u32, f64),
         begun: &mut HashMap<(u64, usize), u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
-        let ratio = f64::from(self.width(exit)) / f64::from(diameter);
+        let mut ratio = f64::from(self.width(exit)) / f64::from(diameter);
         if ratio >= arching.widest() {
             return false;
         }
@@ -233,7 +253,18 @@ impl<'a> Reference<'a> {
             return joins;
         }
         let word = self.key(Purpose::Arching, chunk).words().at(place);
-        let starts = ((word >> 16) as f64) < arching.by_table(ratio) * 2f64.powi(48);
+        let probability = match arching.of_void() {
+            None => arching.by_table(ratio),
+            Some(by_void) => {
+                let volume = |d: f64| d * d * d;
+                if by_void.size == ArchSize::VoidMean {
+                    ratio = f64::from(self.width(exit)) / cbrt(crowd.1 / f64::from(crowd.0));
+                }
+                let others = (crowd.1 - volume(f64::from(diameter))).max(0.0) / by_void.void_cube;
+                arching.law().probability(ratio, if crowd.0 == 1 { 0.0 } else { others.min(0.64) })
+            }
+        };
+        let starts = ((word >> 16) as f64) < probability * 2f64.powi(48);
         if starts {
             begun.insert((chunk, exit), (ratio * ratio + 1.0).round().max(2.0) as u32 - 1);
         }
@@ -333,7 +364,8 @@ impl<'a> Reference<'a> {
                 return false;
             }
             for exit in open {
-                let stops = self.supply.arching().map_or(1.0, |arching| arching.widest());
+                let arching = self.supply.arching().filter(|arching| arching.of_void().is_none());
+                let stops = arching.map_or(1.0, |arching| arching.widest());
                 let width = f64::from(self.width(exit));
                 if stops * f64::from(particle.diameter) > width || self.network.targets()[exit] == END {
                     return false;

@@ -42,7 +42,7 @@ impl Search {
             way_out: vec![false; voids],
             known: None,
             hint: 0,
-            stops_from: arching.map_or(1.0, Arching::widest),
+            stops_from: arching.map_or(1.0, Arching::stops_alone),
         }
     }
 

@@ -71,17 +71,19 @@ fn a_critical_ratio_is_sieving_with_larger_particles() {
     assert!(fine > 0.3 && coarse > 0.3, "{fine} {coarse}");
 }
 
+/// These settings are refused with these words, and nothing is written.
+fn refusal_at(at: &Path, more: &[&str], says: &str) {
+    refused(&call(at, &[&["run", "s.toml", "--out", "r"][..], more].concat()), says);
+    assert!(!at.join("r").exists());
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     fs::write(at.join("s.toml"), SCENE).unwrap();
     fs::write(at.join("c.csv"), "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.9\n").unwrap();
-    let refusal = |more: &[&str], says: &str| {
-        let said = call(at, &[&["run", "s.toml", "--out", "r"][..], more].concat());
-        refused(&said, says);
-        assert!(!at.join("r").exists());
-    };
+    let refusal = |more: &[&str], says: &str| refusal_at(at, more, says);
     refusal(&["--set", "walk.arching=zuriguel"], "\"zuriguel-2005\"");
     refusal(&["--set", "walk.concentration=0.1"], "walk.concentration");
     refusal(
@@ -92,10 +94,65 @@ fn what_cannot_be_is_refused() {
         ["--set", "walk.arching=marin-2018", "--set", "filter.curve=c.csv", "--set", "filter.cu=1.5"];
     refusal(
         &[&unknown[..], &["--set", "filter.grains_per_void=0.6"]].concat(),
-        "walk.concentration is needed",
+        "walk.concentration is needed, as a number",
     );
     let known =
         [&unknown[..], &["--set", "filter.grains_per_void=0.6", "--set", "walk.concentration=0.2"]].concat();
     let outcome = walked(at, "r", &known);
     assert_eq!(outcome["arching"]["concentration"], 0.2);
+}
+
+const BY_VOID: [&str; 4] = ["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-void"];
+const SHORT: [&str; 4] = ["--set", "runs=1", "--set", "replicates=1"];
+
+/// What the walk brings into each void: written with the volume of a void, the same for any threads.
+#[test]
+fn by_void_the_walk_brings_its_own_concentration() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), SCENE).unwrap();
+    let of = |name: &str, more: &[&str]| walked(at, name, &[&BY_VOID[..], &SHORT, more].concat());
+    let one = of("one", &["--threads", "1"]);
+    assert_eq!(one["arching"]["by_void"]["size"], "own");
+    assert!(one["arching"]["concentration"].is_null());
+    assert!(one["replicates"][0]["runs"][0]["arches"].as_u64().unwrap() > 0);
+    for threads in ["2", "3", "7"] {
+        assert_eq!(of("more", &["--threads", threads])["summary"], one["summary"], "{threads}");
+    }
+    let mean = of("mean", &["--set", "walk.arch_size=void-mean"]);
+    assert_eq!(mean["arching"]["by_void"]["size"], "void-mean");
+    assert_ne!(mean["summary"], one["summary"]);
+    // What an increment brings into a layer, by the volume of the layer's voids, is what the default works out.
+    let single =
+        ["--set", "walk.arching=marin-2018", "--set", "base.single_mm=0.1", "--set", "filter.d0_mm=1"];
+    let scene = SCENE.replace("cu = 1.5\nd15f_over_d85b = 7\n", "");
+    fs::write(at.join("s.toml"), scene).unwrap();
+    let first = walked(at, "first", &single)["arching"]["concentration"].as_f64().unwrap();
+    let by_void = walked(at, "void", &[&single[..], &["--set", "walk.concentration=by-void"]].concat());
+    let void = by_void["arching"]["by_void"]["void_mm"].as_f64().unwrap();
+    let of_void = by_void["n_base"].as_f64().unwrap() / 100.0 / 100.0;
+    assert!((of_void * (0.1 / void).powi(3) / first - 1.0).abs() < 1e-6, "{of_void} {void} {first}");
+}
+
+#[test]
+fn by_void_is_refused_where_it_says_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), SCENE).unwrap();
+    let refusal = |more: &[&str], says: &str| refusal_at(at, more, says);
+    refusal(&["--set", "walk.arching=zuriguel-2005", "--set", "walk.concentration=by-void"], "says nothing");
+    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-voids"], "or \"by-void\"");
+    refusal(
+        &["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.7"],
+        "a part from 0 to 0.64",
+    );
+    refusal(
+        &["--set", "walk.arching=marin-2018", "--set", "walk.arch_size=void-mean"],
+        "says nothing unless walk.concentration is \"by-void\"",
+    );
+    refusal(&[&BY_VOID[..], &["--set", "walk.arch_size=mean"]].concat(), "\"void-mean\"");
+    fs::write(at.join("n.csv"), "from,to,diameter_mm\nstart,0,\n0,end,0.2\n").unwrap();
+    let other = fs::read_to_string(at.join("s.toml")).unwrap();
+    fs::write(at.join("s.toml"), other.replace("nx = 10\nny = 10\nnz = 12\n", "file = \"n.csv\"\n")).unwrap();
+    refusal(&[&BY_VOID[..], &["--set", "base.n_base=100"]].concat(), "the voids of a lattice");
 }

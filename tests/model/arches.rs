@@ -8,13 +8,16 @@ use std::sync::Arc;
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{Arching, Law, SizeClasses, State, Supply, Tally, Walk};
+use voidwalk::walk::{ArchSize, Arching, ByVoid, Law, SizeClasses, State, Supply, Tally, Walk};
 
-/// Walks `n` particles of size 1, in so many increments.
+/// Walks `n` particles of size 1, in so many increments, by a law at a concentration of 0.2.
 fn walk(network: &str, law: &str, n: u64, increments: u64, seed: u64) -> Tally {
+    walk_by(network, Arching::new(Law::named(law).unwrap(), 0.2), n, increments, seed)
+}
+
+fn walk_by(network: &str, law: Arching, n: u64, increments: u64, seed: u64) -> Tally {
     let network = Network::from_csv(network.as_bytes(), "network.csv", 1.0).unwrap();
     let sampler = SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap();
-    let law = Arching::new(Law::named(law).unwrap(), 0.2);
     let supply = Supply::new(sampler, n, increments).arching_by(Some(Arc::new(law)));
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     let mut state = State::new(&network, &supply, SizeClasses::logarithmic(0.5, 2.0, 4), open, seed, 1);
@@ -23,7 +26,8 @@ fn walk(network: &str, law: &str, n: u64, increments: u64, seed: u64) -> Tally {
         walk.increment(&mut state).unwrap();
     }
     let tally = state.tally;
-    assert_eq!(tally.inserted, tally.eroded + tally.retained_in_constrictions + tally.retained_in_voids);
+    let held = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
+    assert_eq!(tally.inserted, tally.eroded + held);
     assert_eq!(tally.retained_in_constrictions, tally.retained_in_arches);
     assert!((tally.arched_mass - tally.retained_in_arches as f64).abs() < 1e-9);
     tally
@@ -120,4 +124,39 @@ fn an_arch_keeps_its_particles() {
     }
     let wide = walk("from,to,diameter_mm\nstart,0,\n0,end,3\n", "critical-3", 50, 1, 7);
     assert_eq!((wide.eroded, wide.arches), (50, 0));
+}
+
+/// One constriction, in front of which so many particles lie at once in a void of known volume. Each asks the
+/// law for the concentration of the others; the first that starts an arch keeps four of those after it.
+#[test]
+fn by_void_the_concentration_is_that_of_the_others() {
+    const NETWORK: &str = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
+    let law = Law::named("marin-2018").unwrap();
+    for size in ArchSize::ALL {
+        let by_void = || Arching::by_void(law, ByVoid { void_cube: 40.0, size });
+        for n in [2u64, 6, 13] {
+            let found: Vec<f64> =
+                (1..=SEEDS).map(|seed| walk_by(NETWORK, by_void(), n, 1, seed).eroded as f64).collect();
+            let p = law.probability(2.0, (n - 1) as f64 / 40.0);
+            let before = |k: u64| (1.0 - p).powi(k as i32);
+            let stays = |k: u64| (n - k).min(5) as f64;
+            is_near(&found, n as f64 - (0..n).map(|k| before(k) * p * stays(k)).sum::<f64>());
+            let all = mean(found.iter().map(|&eroded| f64::from(eroded == n as f64)));
+            let wanted = before(n);
+            let error = (wanted * (1.0 - wanted) / SEEDS as f64).sqrt();
+            assert!((all - wanted).abs() < 5.0 * error, "{n}: {all} and not {wanted}");
+        }
+        // One by one none has another beside it.
+        assert_eq!(walk_by(NETWORK, by_void(), 120, 120, 3).eroded, 120);
+    }
+}
+
+/// Particles that circle, each alone in its void, would never arch: they are trapped.
+#[test]
+fn who_circles_alone_is_trapped() {
+    let law = Law::named("marin-2018").unwrap();
+    let ring = "from,to,diameter_mm\nstart,0,\n0,1,2\n1,0,2\n1,end,0\n";
+    let by_void = Arching::by_void(law, ByVoid { void_cube: 40.0, size: ArchSize::Own });
+    let tally = walk_by(ring, by_void, 1, 1, 3);
+    assert_eq!((tally.trapped, tally.eroded), (1, 0));
 }

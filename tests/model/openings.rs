@@ -8,8 +8,8 @@ use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{
-    Arching, Clogged, Isa, Law, Narrowing, SavedState, SizeClasses, State, Supply, Walk, WalkControl,
-    residual_opening,
+    ArchSize, Arching, ByVoid, Clogged, Isa, Law, Narrowing, SavedState, SizeClasses, State, Supply, Walk,
+    WalkControl, residual_opening,
 };
 
 fn of(csv: &str) -> Network {
@@ -235,11 +235,17 @@ fn a_filter_that_holds_is_not_sealed() {
     assert!((1e-3..0.9).contains(&open), "{open}");
 }
 
+/// No arches, arches at one concentration, and at that of each void by either size.
+fn laws() -> [Option<Arching>; 4] {
+    let law = Law::named("marin-2018").unwrap();
+    let [own, mean] = ArchSize::ALL.map(|size| Arching::by_void(law, ByVoid { void_cube: 0.1, size }));
+    [None, Some(Arching::new(law, 0.2)), Some(own), Some(mean)]
+}
+
 /// A graded base that blocks, narrows and arches.
-fn graded(arches: bool, n: u64) -> Supply {
+fn graded(arches: &Option<Arching>, n: u64) -> Supply {
     let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.05, 2.5).unwrap(), 1.0).unwrap();
-    let law = Arc::new(Arching::new(Law::named("marin-2018").unwrap(), 0.2));
-    Supply::new(sampler, n, 25).arching_by(arches.then_some(law)).leaving_openings(true)
+    Supply::new(sampler, n, 25).arching_by(arches.clone().map(Arc::new)).leaving_openings(true)
 }
 
 fn networks() -> [Network; 2] {
@@ -266,7 +272,7 @@ fn shown(state: &State) -> String {
 #[test]
 fn threads_and_instructions_change_no_bit() {
     for network in &networks() {
-        for arches in [false, true] {
+        for arches in &laws() {
             let supply = graded(arches, 60_000);
             let run = |threads: usize, isa: Option<Isa>| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -298,9 +304,9 @@ fn a_walk_goes_on_from_every_increment() {
     const N: u64 = 10_000;
     let root = tempfile::tempdir().unwrap();
     let [lattice, flowing] = &networks();
-    for (kind, (network, arches)) in [(lattice, true), (lattice, false), (flowing, false)].iter().enumerate()
-    {
-        let supply = graded(*arches, N);
+    let cases = laws().map(|law| (lattice, law)).into_iter().chain([(flowing, None)]);
+    for (kind, (network, arches)) in cases.enumerate() {
+        let supply = graded(&arches, N);
         let mut clogged = Clogged::none(network);
         let mut narrowed = [0; 2];
         for run in [1, 2] {
@@ -328,7 +334,7 @@ fn a_walk_goes_on_from_every_increment() {
             }
             // A walk in which blocked constrictions are closed is another.
             let saved = newest(&at(5), "x", &Identity::default()).unwrap().0.unwrap();
-            let closed = graded(*arches, N).leaving_openings(false);
+            let closed = graded(&arches, N).leaving_openings(false);
             let classes = SizeClasses::logarithmic(0.05, 0.4, 8);
             let mut state = State::new(network, &closed, classes, Clogged::none(network), 5, run);
             assert!(state.restore(network, &closed, &saved).is_err());
@@ -351,7 +357,7 @@ fn again(history: &[Narrowing]) -> (usize, usize) {
 fn openings_of_no_walk_are_refused() {
     let root = tempfile::tempdir().unwrap();
     let [network, _] = networks();
-    let supply = graded(false, 2000);
+    let supply = graded(&None, 2000);
     let fresh = || {
         let classes = SizeClasses::logarithmic(0.05, 0.4, 8);
         State::new(&network, &supply, classes, Clogged::none(&network), 5, 1)

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::walk::reference::Reference;
-use voidwalk::walk::{Arching, CHUNK, Clogged, LAWS, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{ArchSize, Arching, ByVoid, CHUNK, Clogged, LAWS, SizeClasses, State, Supply, Walk};
 
 /// Diameters from a small set, so that ties, closed constrictions and blocking are frequent.
 fn diameters(count: usize, palette: &[f32], mut seed: u64) -> Vec<f32> {
@@ -93,9 +93,16 @@ fn compare(network: &Network, supply: &Supply, clogged: Clogged, seed: u64, run:
     state.into_clogged()
 }
 
-/// No arches in half of the cases, else one of the laws.
+/// No arches in half of the cases, else one of the laws, at one concentration or at that of each void.
 fn law() -> impl Strategy<Value = Option<Arc<Arching>>> {
-    (0..2 * LAWS.len()).prop_map(|k| LAWS.get(k).map(|law| Arc::new(Arching::new(law, 0.3))))
+    (0..2 * LAWS.len(), prop::sample::select(vec![None, Some(ArchSize::Own), Some(ArchSize::VoidMean)]))
+        .prop_map(|(k, by_void)| {
+            let law = LAWS.get(k)?;
+            Some(Arc::new(match by_void {
+                None => Arching::new(law, 0.3),
+                Some(size) => Arching::by_void(law, ByVoid { void_cube: 30.0, size }),
+            }))
+        })
 }
 
 proptest! {

@@ -178,8 +178,21 @@ pub struct ArchingRecord {
     /// Sizes of a constriction by that of a particle between which arches form.
     pub range_of_ratio: [f64; 2],
     /// Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense
-    /// flow.
+    /// flow, or where each void has its own.
     pub concentration: Option<f64>,
+    /// How the concentration of each void is worked out, where it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_void: Option<ArchingByVoidRecord>,
+}
+
+/// How the concentration of each void is worked out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ArchingByVoidRecord {
+    /// Diameter of a sphere with the volume of a void, mm.
+    pub void_mm: f64,
+    /// Which size counts: "own" or "void-mean".
+    pub size: String,
 }
 
 /// One new network, walked once or twice.

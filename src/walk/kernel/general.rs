@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use crate::network::{END, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, Purpose, Words, draw16};
 use crate::walk::Arching;
+use crate::walk::crowding::Crowd;
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 use crate::walk::sizes::cube;
@@ -13,18 +14,18 @@ use crate::walk::sizes::cube;
 pub(super) fn step(
     network: &Network,
     table: &General,
-    arching: Option<&Arching>,
+    arching: Option<(&Arching, Option<&Crowd>)>,
     key: Key,
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
 ) -> usize {
     match arching {
-        None => step_all(network, table, key, void, diameter, events, |_, _, _, _, _| false),
-        Some(arching) => {
-            let mut arches = Arches::new(arching, key);
-            step_all(network, table, key, void, diameter, events, |j, exit, width, d, events| {
-                arches.stop(j, exit, width, d, events)
+        None => step_all(network, table, key, void, diameter, events, |_, _, _, _| false),
+        Some((arching, crowd)) => {
+            let mut arches = Arches::new(arching, crowd, key);
+            step_all(network, table, key, void, diameter, events, |at, width, d, events| {
+                arches.stop(at, width, d, events)
             })
         }
     }
@@ -33,32 +34,33 @@ pub(super) fn step(
 /// The arches of one chunk in one increment.
 struct Arches<'a> {
     arching: &'a Arching,
+    /// The particles in each void, where the law depends on them.
+    crowd: Option<&'a Crowd>,
     words: Words,
     /// Constrictions in which an arch has begun, and how many more particles it takes.
     begun: HashMap<u32, u32>,
 }
 
 impl<'a> Arches<'a> {
-    fn new(arching: &'a Arching, key: Key) -> Self {
+    fn new(arching: &'a Arching, crowd: Option<&'a Crowd>, key: Key) -> Self {
         let words = Key { purpose: Purpose::Arching, ..key }.words();
-        Self { arching, words, begun: HashMap::new() }
+        Self { arching, crowd, words, begun: HashMap::new() }
     }
 
-    /// Whether the particle at `place`, which fits through this exit, stays in an arch there; it is then
-    /// counted.
+    /// Whether a particle, which fits through this exit, stays in an arch there; it is then counted.
     #[inline]
-    fn stop(&mut self, place: usize, exit: u32, width: f32, d: f32, events: &mut Events) -> bool {
-        self.arching.may(width, d) && self.joins(place, exit, width, d, events)
+    fn stop(&mut self, at: At, width: f32, d: f32, events: &mut Events) -> bool {
+        self.arching.may(width, d) && self.joins(at, width, d, events)
     }
 
-    fn joins(&mut self, place: usize, exit: u32, width: f32, d: f32, events: &mut Events) -> bool {
-        match self.begun.get_mut(&exit) {
+    fn joins(&mut self, at: At, width: f32, d: f32, events: &mut Events) -> bool {
+        match self.begun.get_mut(&at.exit) {
             Some(0) => return false,
             Some(left) => *left -= 1,
-            None => match self.arching.begun(width, d, self.words.at(place as u64)) {
+            None => match self.arching.begun(width, d, self.words.at(at.place as u64), self.crowd(at)) {
                 None => return false,
                 Some(particles) => {
-                    self.begun.insert(exit, particles - 1);
+                    self.begun.insert(at.exit, particles - 1);
                     events.arched.1 += 1;
                 }
             },
@@ -67,9 +69,22 @@ impl<'a> Arches<'a> {
         events.arched.2 += cube(d);
         true
     }
+
+    /// The particles in the void of one: how many, and the sum of their diameters cubed.
+    fn crowd(&self, at: At) -> (u32, f64) {
+        self.crowd.map_or((0, 0.0), |crowd| crowd.of_void(at.from))
+    }
 }
 
-/// The step, with what may stop a particle that fits: by place in the chunk, exit, its width, and size.
+/// Where a particle is: its place in the chunk, its void, and the exit that it chose.
+#[derive(Clone, Copy)]
+struct At {
+    place: usize,
+    from: u32,
+    exit: u32,
+}
+
+/// The step, with what may stop a particle that fits: by where it is, the width of its exit, and its size.
 #[inline(always)]
 fn step_all(
     network: &Network,
@@ -78,7 +93,7 @@ fn step_all(
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
-    mut is_stopped: impl FnMut(usize, u32, f32, f32, &mut Events) -> bool,
+    mut is_stopped: impl FnMut(At, f32, f32, &mut Events) -> bool,
 ) -> usize {
     let mut lanes = key.lanes();
     let extension = lanes.extension();
@@ -114,7 +129,7 @@ fn step_all(
                 }
             };
             let (target, width) = table.beyond[exit as usize];
-            if d > width || is_stopped(j, exit, width, d, events) {
+            if d > width || is_stopped(At { place: j, from, exit }, width, d, events) {
                 events.stopped.push((exit, d));
                 continue;
             }

@@ -14,10 +14,11 @@ mod tests;
 
 use super::Isa;
 use super::chunks::{self, ChunkColumns};
+use super::crowding::Crowd;
 use super::exits::{Form, OpenExits};
 use super::insert::Insertion;
 use super::merge::Events;
-use super::{ExitTable, State, Supply};
+use super::{Arching, ExitTable, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Purpose};
 use lattice::LatticeChunk;
@@ -40,19 +41,29 @@ pub(super) fn step(
         chunk: 0,
     };
     let insertion = Insertion::new(network, supply, table.isa(), state);
+    let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
+    let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
+    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
+    // Where arches depend on who is in a void, all are in before any moves.
+    let crowd = supply.arching().and_then(Arching::of_void).map(|_| {
+        let particles = &mut state.particles;
+        chunks::for_each(particles, size, events, receiving, effort, |mut of| insertion.append(&mut of));
+        let chunks = (0..particles.live.len()).map(|chunk| particles.chunk(chunk));
+        Crowd::of(chunks, state.passive_limit, network.voids())
+    });
     let exits = OpenExits {
         network,
         table,
         blocked: &state.blocked,
         passive_limit: state.passive_limit,
         arching: supply.arching(),
+        crowd: crowd.as_ref(),
     };
     let classes = &state.classes;
-    let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
-    let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
-    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
     chunks::for_each(&mut state.particles, size, events, receiving, effort, |mut columns| {
-        insertion.append(&mut columns);
+        if crowd.is_none() {
+            insertion.append(&mut columns);
+        }
         let ChunkColumns { chunk, void, diameter, live, events } = columns;
         let moving = *live as usize;
         if moving == 0 {
@@ -91,7 +102,8 @@ fn step_chunk(
             if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) }
         }
         Form::General(table) => {
-            general::step(exits.network, table, exits.arching, key, void, diameter, events)
+            let arching = exits.arching.map(|arching| (arching, exits.crowd));
+            general::step(exits.network, table, arching, key, void, diameter, events)
         }
     }
 }

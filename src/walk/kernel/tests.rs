@@ -45,6 +45,7 @@ fn after(scene: &Scene, key: Key, (isa, classed): Kernel, void: &[u32], diameter
         blocked: &state.blocked,
         passive_limit: state.passive_limit,
         arching: None,
+        crowd: None,
     };
     let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
     let mut events = Events::default();

@@ -1,0 +1,271 @@
+#!/usr/bin/env python3
+"""Models of filters beside tests: where the base begins to erode, with and without water, arches and openings; the largest particle that passes.
+
+    scripts/studies/laboratory.py --work FOLDER --out results/laboratory [--binary target/release/voidwalk] [--minutes 40]
+
+Walks the cells of PLAN in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
+again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
+
+Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
+Graph: the voids of five packings, one a replicate, as thick as 60 layers. Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first
+run and in the second, bracketed to 4 %: where the mean crosses, and where the first and the last replicate do, by interpolation. Ratios are walked
+until every replicate holds at the least and erodes at the greatest, or the cell has used its time. `k_over_k0`: at the end of the first run, at the
+greatest ratio below its boundary. Rows `largest`: the largest eroded particle by D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own
+largest particle did not pass.
+"""
+
+import argparse
+import json
+import math
+import resource
+import statistics
+import subprocess
+import tempfile
+from pathlib import Path
+
+from arches import THRESHOLD, Walks, crossing, each
+
+CELL = ["measure", "filter_cu", "density", "base_cu", "network", "exit", "law", "concentration", "blocked"]
+RUNS = ["first", "second"]
+FOUND = ["", "_least", "_most", "_holds_to", "_erodes_from"]
+COLUMNS = CELL + [run + what for run in RUNS for what in FOUND] + ["k_over_k0", "walked_concentration", "replicates", "cpu_seconds"]
+REPLICATES, LAYERS, CLOSE, LONGEST = 5, 60, 1.04, 90.0
+FARTHEST = 16.1
+# Friction and number of grains of the packings of the graphs, as in the library.
+PACKED = {("1.5", "loose"): (0.3, 3000), ("1.5", "dense"): (0.0, 3000), ("3", "loose"): (0.3, 6000)}
+# What base brings into the first layer of a filter of Cu 6, whose packing the library has not whole: void ratio 0.34 (Table 2 of the paper). Of
+# graphs: that of the same filter as a lattice.
+CONCENTRATIONS = {("6", "loose"): 0.05 * 0.01 * 60 / 0.34, ("1.5", "loose"): 0.0468, ("1.5", "dense"): 0.0583, ("3", "loose"): 0.0641}
+NONE, MARIN, ZURIGUEL, CRITICAL = "none", "marin-2018", "zuriguel-2005", "critical-3"
+SANDS = [("1.5", "loose"), ("1.5", "dense"), ("3", "loose"), ("3", "dense")]
+LOOSE, BEADS, BROAD = ("1.5", "loose"), ("1.2", "dense"), ("6", "loose")
+
+
+def plan():
+    """The cells, the most telling first, each once."""
+    return dict.fromkeys(cells())
+
+
+def cells():
+    """Models and tests; a group that comes again is filled in."""
+    def lattice(filters, bases, law=NONE, exit="area", blocked="closed", measure="boundary", concentration=""):
+        for of in filters:
+            for base in bases:
+                given = concentration or (round(CONCENTRATIONS[of], 4) if of == BROAD and law == MARIN else "")
+                yield measure, *of, base, "lattice", exit, law, given, blocked
+
+    def graph(filters, bases, law=NONE, blocked="closed"):
+        for of in filters:
+            for base in bases:
+                yield "boundary", *of, base, "graph", "flux", law, CONCENTRATIONS[of] if law == MARIN else "", blocked
+
+    tested = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
+    for law in (NONE, MARIN):
+        yield from lattice(tested, ["1.2"], law, measure="largest")
+    # What one run of the first column says of every model.
+    yield from lattice([LOOSE], ["1.5"])
+    yield from lattice([LOOSE], ["1.5"], NONE, "flux")
+    yield from lattice([LOOSE], ["1.5"], NONE, "flux", "open")
+    yield from lattice([LOOSE], ["1.5"], MARIN, "flux")
+    yield from graph([LOOSE], ["1.5"])
+    yield from graph([LOOSE], ["1.5"], MARIN)
+    # By area, which costs little: broader bases, broader and denser filters.
+    yield from lattice(SANDS, ["1.5", "3", "4.5"])
+    yield from lattice([BEADS], ["1.2"])
+    yield from lattice([BEADS], ["1"])
+    yield from lattice([LOOSE], ["3"], MARIN)
+    yield from lattice([("3", "loose")], ["3"], MARIN)
+    yield from lattice([("1.5", "dense")], ["3"], MARIN)
+    yield from lattice([LOOSE], ["4.5"], MARIN)
+    yield from lattice([("3", "loose")], ["4.5"], MARIN)
+    yield from lattice([("1.5", "dense")], ["1.5"], NONE, "area", "open")
+    yield from lattice([("3", "loose")], ["3"], NONE, "area", "open")
+    # With water, the models in which a filter is not sealed last, as they cost the most.
+    yield from lattice([LOOSE], ["3"], NONE, "flux")
+    yield from lattice([LOOSE], ["1.5"], MARIN, "flux", "open")
+    yield from graph([LOOSE], ["1.5"], NONE, "open")
+    yield from graph([LOOSE], ["3"])
+    yield from lattice([BEADS], ["1"], MARIN)
+    yield from lattice([BEADS], ["1.2"], NONE, "flux")
+    yield from graph([LOOSE], ["1.5"], MARIN, "open")
+    yield from lattice([LOOSE], ["3"], NONE, "flux", "open")
+    yield from lattice([LOOSE], ["3"], MARIN, "flux")
+    yield from graph([("3", "loose")], ["3"])
+    yield from lattice([("3", "dense")], ["3", "4.5"], MARIN)
+    yield from lattice([BROAD], ["1.5", "3", "4.5"])
+    yield from lattice([BEADS], ["1.2"], NONE, "area", "open")
+    yield from lattice([BEADS], ["1.2"], MARIN, "flux")
+    yield from lattice([("1.5", "dense")], ["1.5"], MARIN, "flux")
+    yield from graph([LOOSE], ["3"], MARIN)
+    yield from lattice([LOOSE], ["3"], MARIN, "flux", "open")
+    yield from graph([("3", "loose")], ["3"], MARIN)
+    yield from lattice([BROAD], ["1.5", "3"], MARIN)
+    for law in (ZURIGUEL, CRITICAL):
+        yield from lattice([LOOSE], ["1.5", "3"], law)
+    yield from lattice(tested, ["1.2"], ZURIGUEL, measure="largest")
+
+
+class Models(Walks):
+    """Walks of cells: boundaries of two runs, and largest particles."""
+
+    names, close = CELL, CLOSE
+
+    def __init__(self, options):
+        super().__init__(options)
+        self.work, self.until = options.work, 60.0 * options.minutes
+        self.used = 0.0
+
+    def outcomes(self, cell, settings):
+        """One outcome with five replicates; of a graph, five with one."""
+        if cell[4] == "lattice":
+            return [self.outcome(settings)]
+        return [self.outcome(settings | {"network.packing": f'"{self.packing(cell, k)}"', "seed": k}) for k in range(1, REPLICATES + 1)]
+
+    def packing(self, cell, seed):
+        """The grains of a packing of the cell's filter, made where they are not there yet."""
+        cu, density = cell[1:3]
+        friction, grains = PACKED[cu, density]
+        folder = self.work / f"cu{cu}-{density}-seed{seed}"
+        if not (folder / "packing.json").exists():
+            with tempfile.TemporaryDirectory() as scratch:
+                scene = Path(scratch) / "filter.toml"
+                scene.write_text(f"[filter]\ncu = {cu}\nfriction = {friction}\n[packing]\ngrains = {grains}\n")
+                command = [self.binary, "pack", scene, "--seed", seed, "--out", folder, "--threads", self.threads, "--quiet"]
+                subprocess.run([str(part) for part in command], check=True)
+        return (folder / "grains.csv").resolve()
+
+    def settings(self, cell, ratio):
+        """What differs from the built-in scene."""
+        measure, filter_cu, density, base_cu, network, exit, law, concentration, blocked = cell
+        settings = {
+            "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu, "base.d15f_over_d85b": round(ratio, 6), "runs": 2,
+            "record.sensitivity": "[]", "record.thickness": "[]", "walk.arching": law, "walk.blocked": blocked,
+            "engine": "particles" if blocked == "open" else "expected",
+        }
+        if network == "lattice":
+            settings |= {"filter.library": density, "replicates": REPLICATES, "network.nx": 10, "network.ny": 10, "network.nz": LAYERS}
+        else:
+            settings |= {"network.kind": '"graph"', "network.thickness_mm": LAYERS * d50_by_number(float(filter_cu)), "replicates": 1}
+        if exit == "flux":
+            settings["walk.exit"] = '"flux"'
+        if concentration != "":
+            settings["walk.concentration"] = concentration
+        return settings
+
+    def row(self, cell):
+        """A cell's row of the CSV."""
+        if self.used > self.until:
+            raise SystemExit("the time is over; the cells that follow are not walked")
+        before = self.time()
+        row = self.largest(cell) if cell[0] == "largest" else self.boundaries(cell, before)
+        seconds = self.time() - before
+        self.used += seconds
+        print(*cell, row, f"{seconds:.0f} s", flush=True)
+        return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
+
+    @staticmethod
+    def time():
+        """Processor time of all walks so far."""
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    def boundaries(self, cell, before):
+        """Both boundaries, the first run's first."""
+        walked, kept, concentration = {}, {}, None
+        shares = lambda run: {ratio: of[run] for ratio, of in walked.items()}
+        while self.time() - before < LONGEST:
+            ratio = next((ratio for run in (0, 1) if (ratio := next_ratio(shares(run), guess(cell))) is not None), None)
+            if ratio is None:
+                break
+            outcomes = self.outcomes(cell, self.settings(cell, ratio))
+            replicates = [replicate["runs"] for outcome in outcomes for replicate in outcome["replicates"]]
+            walked[ratio] = [[runs[run]["eroded_mass_fraction"] for runs in replicates] for run in (0, 1)]
+            kept[ratio] = [runs[0].get("k_over_k0") for runs in replicates]
+            concentration = (outcomes[0].get("arching") or {}).get("concentration")
+        row = {"walked_concentration": concentration, "replicates": REPLICATES}
+        for at, run in enumerate(RUNS):
+            row |= {run + what: value for what, value in zip(FOUND, boundary(shares(at)))}
+        below = [ratio for ratio, of in kept.items() if row["first_holds_to"] == round(ratio, 3) and None not in of]
+        if below:
+            row["k_over_k0"] = f"{statistics.mean(kept[below[0]]):.3g}"
+        return row
+
+    def largest(self, cell):
+        """The largest particle that eroded, by D0F, over bases of rising size: mean, least and most of the replicates."""
+        # Finer than what passed in any test: nothing there is stopped.
+        found, d50 = [0.0] * REPLICATES, 0.12 if cell[1] == "1.2" else 0.19
+        while d50 < 0.5:
+            # D15F by D85B of linear curves from D0F = 1.
+            ratio = float(cell[1]) ** 0.3 / (d50 * float(cell[3]) ** 0.7)
+            replicates = self.outcome(self.settings(cell, ratio) | {"runs": 1})["replicates"]
+            eroded = [replicate["runs"][0].get("largest_eroded_mm") or 0.0 for replicate in replicates]
+            # What is as large as the base's own largest says nothing of the filter.
+            largest = d50 * float(cell[3])
+            found = [max(old, new) if new < 0.995 * largest else old for old, new in zip(found, eroded)]
+            if max(eroded) == 0.0:
+                break
+            d50 *= 1.03
+        return {"first": round(statistics.mean(found), 4), "first_least": round(min(found), 4), "first_most": round(max(found), 4),
+                "replicates": REPLICATES}
+
+
+def d50_by_number(cu):
+    """D50 by number of a linear gradation from 1 mm: the thickness of a layer of the lattice."""
+    return ((1.0 + cu**-6) / 2.0) ** (-1.0 / 3.0)
+
+
+def guess(cell):
+    """The ratio at which a cell's search begins."""
+    exit, law = cell[5:7]
+    without = 3.2 if exit == "flux" else 4.6
+    # Openings with water let arches hold less, and every particle is walked.
+    with_arches = 5.0 if exit == "flux" and cell[8] == "open" else 8.0
+    return without if law == NONE else with_arches
+
+
+def next_ratio(walked, begin):
+    """Where to walk next: outwards until every replicate holds below and erodes above, and between until the mean's crossing is close."""
+    if not walked:
+        return begin
+    ratios = sorted(walked)
+    holds = [ratio for ratio in ratios if max(walked[ratio]) < THRESHOLD]
+    erodes = [ratio for ratio in ratios if min(walked[ratio]) >= THRESHOLD]
+    if not holds and ratios[0] > 1.0:
+        return ratios[0] / 1.15
+    if not erodes and ratios[-1] * 1.15 <= FARTHEST:
+        return ratios[-1] * 1.15
+    mean = [ratio for ratio in ratios if statistics.mean(walked[ratio]) >= THRESHOLD]
+    below = [ratio for ratio in ratios if mean and ratio < mean[0]]
+    if not below:
+        return None
+    high = mean[0]
+    return math.sqrt(below[-1] * high) if high / below[-1] > CLOSE else None
+
+
+def boundary(walked):
+    """Where the mean crosses, where the first and the last replicate do, and the ratios walked on both sides of the mean's crossing."""
+    mean = {ratio: statistics.mean(of) for ratio, of in walked.items()}
+    single = [crossing({ratio: of[k] for ratio, of in walked.items()}) for k in range(REPLICATES)]
+    at, ratios = crossing(mean), sorted(mean)
+    erodes = next((ratio for ratio in ratios if mean[ratio] >= THRESHOLD), None)
+    holds = max((ratio for ratio in ratios if erodes is None or ratio < erodes), default=None)
+    rounded = lambda value, digits=2: "" if value is None else round(value, digits)
+    least = min((value for value in single if value), default=None)
+    # A replicate that never erodes has no crossing; one that erodes at the least ratio walked begins somewhere below it.
+    most = max(single) if None not in single else None
+    return rounded(at if holds else None), rounded(least if least and least > ratios[0] else None), rounded(most), rounded(holds, 3), rounded(erodes, 3)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=Path, required=True, help="folder for the packings")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--binary", default="target/release/voidwalk")
+    parser.add_argument("--threads", default="1")
+    parser.add_argument("--minutes", type=float, default=40.0, help="of processor time, after which no cell begins")
+    options = parser.parse_args()
+    each(Path(f"{options.out}.csv"), CELL, COLUMNS, plan(), Models(options).row)
+
+
+if __name__ == "__main__":
+    main()

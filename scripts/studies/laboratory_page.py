@@ -1,0 +1,335 @@
+#!/usr/bin/env python3
+"""The page of scripts/studies/laboratory.py: models beside tests, one figure and one table.
+
+    scripts/studies/laboratory_page.py --out results/laboratory
+
+Writes OUT.md and OUT.svg from OUT.csv, and from `arches.csv` and `openings.csv` beside it, whose cells have the same lattice. TESTS holds every
+number of a test, with where it was read. What was not read in a source is in no count of agreement.
+"""
+
+import argparse
+import csv
+import textwrap
+from html import escape
+from pathlib import Path
+
+SANDS, BEADS_HOLD, CONTINUING = (6.8, 10.0), (8.0, 12.0), 9.0
+SUSPENDED = 0.11
+KENNEY = {"1.2": 0.18, "3": 0.25, "6": 0.26}
+# What was tested, its number, where it was read, and what the walk is asked for.
+TESTS = [
+    ("no erosion, bases with less than 15 % fines", f"D15F {SANDS[0]:g} to {SANDS[1]:g} D85B in tests",
+     "Fell et al., Geotechnical Engineering of Dams, Table 9.2, after Foster & Fell (2001)", "s_NE of sands"),
+    ("continuing erosion", f"D15F from {CONTINUING:g} D95B on", "the same, section 9.3.2, page 388", "s_CE of sands"),
+    ("no erosion, bases with more fines", "6.4 to 13.5 D85B (> 85 %); 0.7 to 1.7 mm (35 to 85 %); 1.6 to 2.5 design limits (15 to 35 %)",
+     "the same, Table 9.2", "not walked here: cohesion; without arches `real-soils.md`"),
+    ("particles in suspension that uniform filters catch", f"about {SUSPENDED:g} D15F",
+     "Sherard et al. (1984), abstract", f"s_NE of one size, {1 / SUSPENDED:.1f}"),
+    ("uniform sands and gravels, uniform bases", "D15F/D85B of 5 is \"conservative, but not excessively\"", "the same", "s_NE above 5, by how much is not said"),
+    ("largest particle through filters of Cu 1.2, 3 and 6", "0.18, 0.25 and 0.26 D0F", "Kenney et al. (1985), as section 5 of the paper quotes it", "largest eroded"),
+    ("glass beads", "hold to D15F/D85B 8, fail from 12 on, between by gradient",
+     "**no source that was read**: this project's notes quote Tomlinson & Vaid (2000), searched again on 2026-11-25", "s_NE of beads, not counted"),
+    ("the paper's loose filters", "below 5 no erosion", "the paper, a model: ours is the same model without arches, so that agreement is none", "not counted"),
+]
+# Name, and where its cells stand.
+MODELS = [
+    (f"{network}, {'flow' if exit == 'flux' else 'area'}; {law}; {blocked}", network, exit, law, blocked)
+    for network, exit, laws in [
+        ("lattice", "area", ["none", "marin-2018", "zuriguel-2005", "critical-3"]), ("lattice", "flux", ["none", "marin-2018"]),
+        ("graph", "flux", ["none", "marin-2018"])]
+    for law in laws for blocked in ("closed", "open")
+    if blocked == "closed" or law in ("none", "marin-2018")
+]
+PAIRS = [("1.5", "loose", "1.5"), ("1.5", "dense", "1.5"), ("3", "loose", "1.5"), ("3", "dense", "1.5"), ("6", "loose", "1.5"), ("1.5", "loose", "3"),
+         ("1.5", "dense", "3"), ("3", "loose", "3"), ("3", "dense", "3"), ("6", "loose", "3"), ("1.5", "loose", "4.5"), ("1.5", "dense", "4.5"),
+         ("3", "loose", "4.5"), ("3", "dense", "4.5"), ("6", "loose", "4.5")]
+ONE_SIZE, BEADS = ("1.2", "dense", "1"), ("1.2", "dense", "1.2")
+LARGEST = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
+
+
+FIRST_WALKED = {"4.0", "3.2", "2.56"}
+
+
+class Cells:
+    """Boundaries of all models, by pair and model."""
+
+    def __init__(self, out):
+        rows = list(csv.DictReader(Path(f"{out}.csv").open()))
+        self.largest = {(row["filter_cu"], row["law"]): row for row in rows if row["measure"] == "largest"}
+        self.found = {}
+        beside = Path(out).parent
+        for name in ("arches.csv", "openings.csv"):
+            for row in csv.DictReader((beside / name).open()):
+                usual = not row.get("concentration") and row.get("layers", "60") == "60" and row.get("across", "10") == "10"
+                # A replicate that erodes at the ratio with which a search begins, or below, may begin to anywhere below it.
+                row |= {"least": "" if row["least"] in FIRST_WALKED else row["least"]}
+                if usual and (row["least"] or row["most"] or not row["no_erosion"]):
+                    self.add(row | {"network": "lattice", "exit": "area", "first": row["no_erosion"]}
+                             | {f"first_{name}": row[name] for name in ("least", "most", "holds_to", "erodes_from")})
+        for row in rows:
+            if row["measure"] == "boundary":
+                self.add(row)
+
+    def add(self, row):
+        pair = row["filter_cu"], row["density"], row["base_cu"]
+        self.found[pair, row["network"], row["exit"], row["law"], row.get("blocked") or "closed"] = row
+
+    def of(self, model, pair):
+        return self.found.get((pair, *model[1:]))
+
+    def sands(self, model, run="first"):
+        """The cells of sands that were computed, as (pair, row)."""
+        of_model = [(pair, self.of(model, pair)) for pair in PAIRS]
+        return [(pair, row) for pair, row in of_model if row and (row.get(run) or row.get(f"{run}_holds_to"))]
+
+
+def shown(row, run="first"):
+    """A boundary with the least and the most of five replicates; empty where it was not computed."""
+    if not row or not (row.get(run) or row.get(f"{run}_holds_to")):
+        return ""
+    least, most = row.get(f"{run}_least"), row.get(f"{run}_most")
+    if not row.get(run):
+        return f"beyond {float(row[f'{run}_holds_to']):.1f}"
+    span = f"{least} to {most}" if least and most else f"from {least}" if least else f"to {most}"
+    return f"{row[run]} ({span})"
+
+
+def value(row, run="first"):
+    """The boundary as a number: where it lies beyond the walks, the greatest ratio that holds."""
+    return float(row.get(run) or row[f"{run}_holds_to"])
+
+
+def table(cells):
+    """Models as rows; a column for sands by Cu of the base, one size, beads and largest particles."""
+    head = ["model (way; arches; blocked constrictions)", "filter Cu 1.5 loose, base Cu 1.5", "Cu 1.5 loose, 3", "Cu 3 loose, 3", "other sands",
+            "one size", "beads", "largest by D0F, filter Cu 1.2", "Cu 3", "Cu 6"]
+    tests = ["**tests**", *["6.8 to 10"] * 4, f"{1 / SUSPENDED:.1f}", "8 to 12 \\*", *map(str, KENNEY.values())]
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|", "| " + " | ".join(tests) + " |"]
+    first = [PAIRS[0], PAIRS[5], PAIRS[7]]
+    for model in MODELS:
+        of = lambda pair: shown(cells.of(model, pair))
+        others = [row for pair, row in cells.sands(model) if pair not in first]
+        # Where one holds at the greatest ratio walked, the most is beyond all that is known.
+        numbers = [value(row) for row in others if row.get("first")]
+        beyond = [value(row) for row in others if not row.get("first")]
+        ends = [f"{min(numbers):.2f}"] if numbers else []
+        ends += [f"beyond {min(beyond):.1f}"] if beyond else [f"{max(numbers):.2f}"] if len(numbers) > 1 else []
+        spread = f"{' to '.join(ends)} ({len(others)})" if others else ""
+        largest = [largest_shown(cells, of_filter, model) for of_filter in LARGEST]
+        row = [model[0], *map(of, first), spread, of(ONE_SIZE), of(BEADS), *largest]
+        lines.append("| " + " | ".join(row) + " |")
+    return lines
+
+
+def largest_shown(cells, of_filter, model):
+    row = cells.largest.get((of_filter[0], model[3])) if model[1:3] == ("lattice", "area") and model[4] == "closed" else None
+    return f"{float(row['first']):.3f} ({float(row['first_least']):.3f} to {float(row['first_most']):.3f})" if row else ""
+
+
+LEFT, RIGHT, TOP, ROW = 300, 860, 96, 26
+LEAST, MOST = 2.0, 16.0
+COLOURS = {"1.5": "#2b5fa8", "3": "#b06a1a", "4.5": "#4a8f4a"}
+
+
+def x(ratio):
+    return LEFT + (min(max(ratio, LEAST), MOST) - LEAST) / (MOST - LEAST) * (RIGHT - LEFT)
+
+
+def figure(cells):
+    """A row a model; a mark a pair of sand with the least and the most of its replicates; the range of tests behind."""
+    bottom = TOP + ROW * len(MODELS)
+    text = lambda at, y, words, anchor="start", **more: (
+        f'<text x="{at:.1f}" y="{y:.1f}" text-anchor="{anchor}"{"".join(f" {n}={chr(34)}{v}{chr(34)}" for n, v in more.items())}>{escape(words)}</text>')
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 {bottom + 44}" font-family="sans-serif" font-size="12">',
+             f'<rect width="900" height="{bottom + 44}" fill="white"/>',
+             text(20, 24, "Where the base begins to erode: models beside tests on sands", **{"font-size": "16"}),
+             f'<rect x="{x(SANDS[0]):.1f}" y="{TOP - 6}" width="{x(SANDS[1]) - x(SANDS[0]):.1f}" height="{bottom - TOP + 6}" fill="#ece4f4"/>',
+             text((x(SANDS[0]) + x(SANDS[1])) / 2, TOP - 12, "tests 6.8 to 10", "middle")]
+    at = 20
+    for base, colour in COLOURS.items():
+        parts += [f'<circle cx="{at + 5}" cy="44" r="4" fill="{colour}"/>', text(at + 14, 48, f"base Cu {base}")]
+        at += 100
+    parts.append(text(at, 48, "line: least and most of five replicates; arrow: holds at the greatest ratio walked"))
+    for place, model in enumerate(MODELS):
+        middle = TOP + ROW * place + ROW / 2
+        parts.append(f'<line x1="{LEFT}" y1="{middle + ROW / 2}" x2="{RIGHT}" y2="{middle + ROW / 2}" stroke="#ddd"/>')
+        parts.append(text(LEFT - 8, middle + 4, model[0], "end"))
+        of_model = cells.sands(model)
+        if not of_model:
+            parts.append(text(LEFT + 8, middle + 4, "not computed", fill="#888"))
+        for k, (pair, row) in enumerate(of_model):
+            y = middle + (k - (len(of_model) - 1) / 2) * min(3.0, (ROW - 8) / max(len(of_model), 1))
+            colour, here = COLOURS[pair[2]], x(value(row))
+            low, high = (float(row.get(f"first_{end}") or value(row)) for end in ("least", "most"))
+            parts.append(f'<line x1="{x(low):.1f}" y1="{y:.1f}" x2="{x(high):.1f}" y2="{y:.1f}" stroke="{colour}" stroke-width="1.5"/>')
+            if row.get("first"):
+                parts.append(f'<circle cx="{here:.1f}" cy="{y:.1f}" r="2.6" fill="{colour}"/>')
+            else:
+                parts.append(f'<path d="M{here:.1f} {y - 3:.1f}l7 3l-7 3z" fill="{colour}"/>')
+    for tick in range(int(LEAST), int(MOST) + 1, 2):
+        parts += [f'<line x1="{x(tick):.1f}" y1="{bottom}" x2="{x(tick):.1f}" y2="{bottom + 4}" stroke="#222"/>',
+                  text(x(tick), bottom + 17, str(tick), "middle")]
+    parts += [f'<line x1="{LEFT}" y1="{bottom}" x2="{RIGHT}" y2="{bottom}" stroke="#222"/>', text((LEFT + RIGHT) / 2, bottom + 34, "D15F/D85B", "middle")]
+    return "\n".join([*parts, "</svg>\n"])
+
+
+def paragraph(words, first="", rest=""):
+    return textwrap.fill(words, 150, initial_indent=first, subsequent_indent=rest, break_long_words=False, break_on_hyphens=False)
+
+
+def bullet(words):
+    return paragraph(words, "- ", "  ")
+
+
+def span(values, digits=1):
+    low, high = (f"{end(values):.{digits}f}" for end in (min, max))
+    return low if low == high else f"{low} to {high}"
+
+
+def model_of(*parts):
+    return next(model for model in MODELS if model[1:] == parts)
+
+
+SIEVING = model_of("lattice", "area", "none", "closed")
+SUSPENSION = model_of("lattice", "area", "marin-2018", "closed")
+FLOWING = model_of("lattice", "flux", "none", "closed")
+FLOWING_OPEN = model_of("lattice", "flux", "marin-2018", "open")
+FLOWING_SUSPENSION = model_of("lattice", "flux", "marin-2018", "closed")
+
+
+def in_range(cells, model):
+    """How many cells of sands have a boundary in the range of tests, below and above it, and how many there are."""
+    values = [value(row) for _, row in cells.sands(model)]
+    return sum(SANDS[0] <= v <= SANDS[1] for v in values), sum(v < SANDS[0] for v in values), sum(v > SANDS[1] for v in values), len(values)
+
+
+def by_model(cells):
+    """A line a model: where its boundaries lie beside the range of tests, and what is left of the permeability."""
+    for model in MODELS:
+        found = cells.sands(model)
+        if not found:
+            yield f"**{model[0]}**: not computed."
+            continue
+        inside, below, above, count = in_range(cells, model)
+        values = [value(row) for _, row in found]
+        centre = (SANDS[0] * SANDS[1]) ** 0.5
+        open_end = " or beyond" if any(not row.get("first") for _, row in found) else ""
+        cells_of = f"{count} cell{'s' if count > 1 else ''} of sands"
+        words = (f"**{model[0]}**: {span(values)}{open_end} in {cells_of}, {span([v / centre for v in values], 2)} times the centre "
+                 f"of the range; {below} below it, {inside} within, {above} above.")
+        second = [(pair, row) for pair, row in found if row.get("second")]
+        if second:
+            limits = [value(row, "second") / (CONTINUING * float(pair[2]) ** 0.2) for pair, row in second]
+            words += f" Continuing erosion at {span(limits, 2)} times 9 D95B ({len(second)})."
+        kept = [float(row["k_over_k0"]) for _, row in found if row.get("k_over_k0")]
+        if kept:
+            words += f" k/k0 just below the boundary: {span(kept, 2) if max(kept) >= 0.005 else '0'}."
+        yield words
+
+
+def change(cells, model, other, what):
+    """What a change of the model does to the boundary, in the pairs that both have."""
+    both = [(pair, row, cells.of(other, pair)) for pair, row in cells.sands(model)]
+    times = [value(new) / value(row) for _, row, new in both if row.get("first") and new and new.get("first")]
+    if times:
+        yield f"{what} times {span(times, 2)} ({len(times)} pair{'s' if len(times) > 1 else ''})"
+
+
+def largest_words(cells):
+    """Largest particles beside Kenney's, with and without arches."""
+    for law, what in (("none", "without arches"), ("marin-2018", "with arches by `marin-2018`")):
+        ratios = [float(cells.largest[cu, law]["first"]) / number for cu, number in KENNEY.items() if (cu, law) in cells.largest]
+        yield f"{what} {', '.join(f'{times:.2f}' for times in ratios)}"
+
+
+def sealed(cells):
+    """What of the permeability is left in cells with water, closed constrictions and arches."""
+    rows = [row for model in MODELS if model[2:] == ("flux", "marin-2018", "closed") for _, row in cells.sands(model) if row.get("k_over_k0")]
+    kept = [float(row["k_over_k0"]) for row in rows]
+    if kept and max(kept) < 0.005:
+        yield (f"**With water, arches and closed constrictions the filter that holds lets no water through**: k/k0 is 0 just below the boundary in the {len(kept)} cells "
+               "that were computed. What cannot enter any more counts as held. Such a boundary cannot be set beside a test through whose filter water flows.")
+
+
+def page(cells, name, head):
+    of = cells.of
+    one, beads = of(SIEVING, ONE_SIZE), of(SIEVING, BEADS)
+    inside, below, above, count = in_range(cells, SUSPENSION)
+    sieving = [value(row) for _, row in cells.sands(SIEVING)]
+    plain, arched = (list(largest_words(cells))[k] for k in (0, 1))
+    lines = ["# Which model explains which test", "",
+             paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the 6.8 to 10 "
+                       f"of tests in each, and lets one size through from {value(one):.1f} on, where tests caught it at 9.1. Arches by `marin-2018` put it at "
+                       f"{span([value(row) for _, row in cells.sands(SUSPENSION)])} or beyond: {inside} of {count} cells lie within the range, {above} beyond. That is no "
+                       "agreement: it hangs on how densely the base arrives, which follows from the increments of the walk. With water the same arches put that of base and filter Cu 1.5, loose, at "
+                       f"{value(of(FLOWING_SUSPENSION, PAIRS[0])):.1f}, where no water flows through the filter any more, and with openings, by which it flows, at "
+                       f"{value(of(FLOWING_OPEN, PAIRS[0])):.1f}.**"), head, "",
+             f"![Boundaries of models against the range of tests]({name}.svg)", "",
+             "## Tests", ""]
+    lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
+    lines += ["", "## Table", "",
+              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
+                        "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5 and 3, loose and dense, and Cu 6, loose, with bases of Cu 1.5, 3 and "
+                        f"4.5, as far as they were computed (how many). **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
+    lines += table(cells)
+    lines += ["", paragraph("\\* not read in a source, in no count."), "", "## By model", "",
+              paragraph("The centre of the range is 8.2 D85B. Table 9.2 describes filters by D15F alone, so every filter here stands beside the same range. Bases here are straight on a sieve diagram; the curves of the tested ones were not read."), ""]
+    lines += map(bullet, by_model(cells))
+    lines += ["", "## What follows", ""]
+    flow = "; ".join(part for args in [
+        (SIEVING, FLOWING, "water on the lattice, without arches,"),
+        (SUSPENSION, FLOWING_SUSPENSION, "with arches"),
+        (FLOWING, model_of("graph", "flux", "none", "closed"), "the packing's own voids instead of the lattice, with water,"),
+        (FLOWING_SUSPENSION, model_of("graph", "flux", "marin-2018", "closed"), "with arches"),
+        (FLOWING, model_of("lattice", "flux", "none", "open"), "openings, with water,"),
+        (FLOWING_SUSPENSION, model_of("lattice", "flux", "marin-2018", "open"), "with arches"),
+    ] for part in change(cells, *args))
+    follows = [
+        f"**What changes the boundary**: {flow}.",
+        f"**One size in suspension** (Sherard et al.: about 0.11 D15F, so 9.1): sieving lets it through from {shown(one)} on. Three touching spheres of a uniform "
+        f"filter leave more than 0.11 D15F, so that no sieving by spheres can catch it there. Arches by `marin-2018`: {shown(of(SUSPENSION, ONE_SIZE)) or 'not computed'} at "
+        "the concentration that is worked out; the concentration of these tests was not read. At 0.006 that law puts sands of Cu 1.5 at 4.7 (`arches.md`).",
+        f"**Kenney's tests**: the largest particle that passes filters of Cu 1.2, 3 and 6 is, by that of tests, {plain}; {arched}. So the walk without arches "
+        "returns the uniform filter within a tenth, and lets particles through the broader ones that tests held. That these tests were "
+        "vibrated, which breaks arches, was not read in a source. If they were, something other than arches holds the broader ones, or the lattice leads too many particles to "
+        "its widest constrictions; this was not tested.",
+        f"**Glass beads** (not counted): sieving {shown(beads)}, `marin-2018` {shown(of(SUSPENSION, BEADS))}, the two bounds beyond 15. None knows the gradient that decided "
+        "between 8 and 12.",
+        *sealed(cells),
+        "**Not fitted**: no law and no setting was fitted to a test. **Not counted**: the paper's own cases (the same model), beads (not read), and every row of arches as "
+        "evidence for its law, since its concentration is an assumption of the walk's increments.",
+    ]
+    lines += map(bullet, follows)
+    lines += ["", "## What would refute each", ""]
+    lines += map(bullet, [
+        "**Sieving** lies below every test already. The shape of grains, which it lacks, could be why: smooth spheres of one size that are caught beyond D15F/D85B 5.4, "
+        "though they arrive one by one, would refute it.",
+        "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from 11.6 to 4.7. Or a dense filter that holds no "
+        "coarser ratio than a loose one of the same D15F.",
+        "**`zuriguel-2005`, `critical-3`**: a sand or beads that erode before 12. They are upper bounds and claim no more.",
+        "**Closed constrictions or openings, with water**: k/k0 of a filter after it stopped eroding, which is 0 for the first. No test with that number was found.",
+        "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
+    ])
+    lines += ["", "## Not computed", "",
+              bullet("Empty cells of the table; filters of Cu 6 dense; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
+              bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
+              bullet("Skill on single tests: no table of single tests (base, filter, held or not) could be read. Searched again on 2026-11-25: Honjo (1985), Raut (2006) and "
+                     "Indraratna et al. (2007) speak of such data, and only their first pages could be read.")]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, commit ddfd4ba.", help="date, machine and commit of the walks")
+    options = parser.parse_args()
+    cells = Cells(options.out)
+    Path(f"{options.out}.svg").write_text(figure(cells))
+    name = Path(options.out).name
+    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5.")
+    command = f"    scripts/studies/laboratory.py --work FOLDER --out results/{name}    # goes on where it was stopped\n    scripts/studies/laboratory_page.py --out results/{name}"
+    Path(f"{options.out}.md").write_text(page(cells, name, f"{head}\n\n{command}"))
+
+
+if __name__ == "__main__":
+    main()
