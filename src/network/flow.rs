@@ -11,6 +11,7 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::flow_error::FlowError;
+use super::slabs::Slabs;
 use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
 use super::together::Together;
 use super::twins::NO_TWIN;
@@ -47,7 +48,11 @@ pub struct Permeability {
 
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
+    /// Slab after slab, and then those of cuts alone.
     passages: Vec<Passage>,
+    /// By slab, and for the cuts: where its passages begin; and where the last end.
+    passages_begin: Vec<usize>,
+    slabs: Slabs,
     /// Void that each exit leads to: END is one more void, without pressure.
     other: Vec<u32>,
     /// Pressure by void, and behind the filter.
@@ -98,6 +103,13 @@ impl Flow {
                 }
             }
         }
+        let slabs = slabs(network);
+        let is_void = |void: u32| void != outside && Some(void) != network.reservoir();
+        let slab = |p: &Passage| slabs.of_both(p.one, Some(p.other).filter(|&other| is_void(other)));
+        // In their order otherwise.
+        passages.sort_by_key(slab);
+        let passages_begin =
+            (0..=slabs.number() + 1).map(|at| passages.partition_point(|p| slab(p) < at)).collect();
         let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let blocked = BitVec::repeat(false, network.constrictions());
         let mut pressure = vec![0.0; network.voids() + 1];
@@ -111,6 +123,8 @@ impl Flow {
         }
         Self {
             passages,
+            passages_begin,
+            slabs,
             other,
             pressure,
             open,
@@ -296,18 +310,25 @@ impl Flow {
     /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
     /// one where none flows any more.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
-        let mut system = System::of_voids(self.inside.iter().by_vals(), self.passages.len());
+        let passages = |at: usize| &self.passages[self.passages_begin[at]..self.passages_begin[at + 1]];
+        let inside = |void: u32| self.inside[void as usize];
+        let mut system = System::of(&self.slabs, inside, |at| passages(at).len());
         let outside = meets.len() as u32;
-        for passage in self.open_passages().filter(|passage| meets[passage.one as usize] == THROUGH) {
-            let open = self.open[passage.exit as usize];
-            if passage.other == reservoir {
-                system.hold(passage.one, open, 1.0);
-            } else if passage.other == outside {
-                system.hold(passage.one, open, 0.0);
-            } else {
-                system.join(passage.one, passage.other, open);
+        system.fill(|at, joining| {
+            for passage in passages(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH) {
+                let open = self.open[passage.exit as usize];
+                if open <= 0.0 {
+                    continue;
+                }
+                if passage.other == reservoir {
+                    joining.hold(passage.one, open, 1.0);
+                } else if passage.other == outside {
+                    joining.hold(passage.one, open, 0.0);
+                } else {
+                    joining.join(passage.one, passage.other, open);
+                }
             }
-        }
+        });
         system
     }
 
@@ -366,6 +387,17 @@ impl Flow {
         }
         (0..outside).map(|void| of_root[together.root(void) as usize]).collect()
     }
+}
+
+/// Slabs of a network without directions.
+fn slabs(network: &Network) -> Slabs {
+    let Some(reservoir) = network.reservoir() else { return Slabs::one(network.voids()) };
+    let inlets = network.exits(reservoir).map(|c| network.targets()[c]).filter(|&to| to != END);
+    let inlets: Vec<u32> = inlets.collect();
+    Slabs::of(network.voids(), &inlets, |void, into| {
+        let to = network.exits(void).map(|c| network.targets()[c]);
+        into.extend(to.filter(|&to| to != END && to != reservoir));
+    })
 }
 
 /// Conductance of an exit while it is open.
