@@ -11,7 +11,7 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::flow_error::FlowError;
-use super::slabs::Slabs;
+use super::slabs::{Slabs, each};
 use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
 use super::together::Together;
 use super::twins::NO_TWIN;
@@ -37,6 +37,9 @@ const CLOSELY: f64 = 1e-8;
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
 
+/// Voids that a thread looks at one after another.
+const VOIDS_TOGETHER: usize = 1 << 13;
+
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permeability {
@@ -52,6 +55,8 @@ pub struct Flow {
     passages: Vec<Passage>,
     /// By slab, and for the cuts: where its passages begin; and where the last end.
     passages_begin: Vec<usize>,
+    /// By slab, and for the cuts: how many of its passages join voids of that slab. They come first.
+    within: Vec<usize>,
     slabs: Slabs,
     /// Void that each exit leads to: END is one more void, without pressure.
     other: Vec<u32>,
@@ -83,8 +88,6 @@ struct Passage {
     other: u32,
     /// The exit.
     exit: u32,
-    /// The same constriction as an exit of the void beyond, or [`NO_TWIN`].
-    twin: u32,
 }
 
 impl Flow {
@@ -99,17 +102,20 @@ impl Flow {
             for c in network.exits(one) {
                 let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
                 if twin >= exit {
-                    passages.push(Passage { one, other: other[c], exit, twin });
+                    passages.push(Passage { one, other: other[c], exit });
                 }
             }
         }
         let slabs = slabs(network);
         let is_void = |void: u32| void != outside && Some(void) != network.reservoir();
         let slab = |p: &Passage| slabs.of_both(p.one, Some(p.other).filter(|&other| is_void(other)));
+        let is_within = |p: &Passage| is_void(p.other) && slabs.are_both(p.one, p.other);
         // In their order otherwise.
-        passages.sort_by_key(slab);
-        let passages_begin =
+        passages.sort_by_key(|p| (slab(p), !is_within(p)));
+        let passages_begin: Vec<usize> =
             (0..=slabs.number() + 1).map(|at| passages.partition_point(|p| slab(p) < at)).collect();
+        let within = passages_begin.windows(2).map(|of| passages[of[0]..of[1]].partition_point(is_within));
+        let within = within.collect();
         let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let blocked = BitVec::repeat(false, network.constrictions());
         let mut pressure = vec![0.0; network.voids() + 1];
@@ -124,6 +130,7 @@ impl Flow {
         Self {
             passages,
             passages_begin,
+            within,
             slabs,
             other,
             pressure,
@@ -211,7 +218,7 @@ impl Flow {
         network: &Network,
         closely: bool,
         leaks: bool,
-        is_open: impl Fn(&Passage) -> bool,
+        is_open: impl Fn(&Passage) -> bool + Sync,
     ) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
         let Some(reservoir) = network.reservoir() else {
@@ -310,12 +317,11 @@ impl Flow {
     /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
     /// one where none flows any more.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
-        let passages = |at: usize| &self.passages[self.passages_begin[at]..self.passages_begin[at + 1]];
         let inside = |void: u32| self.inside[void as usize];
-        let mut system = System::of(&self.slabs, inside, |at| passages(at).len());
+        let mut system = System::of(&self.slabs, inside, |at| self.of_slab(at).len());
         let outside = meets.len() as u32;
         system.fill(|at, joining| {
-            for passage in passages(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH) {
+            for passage in self.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH) {
                 let open = self.open[passage.exit as usize];
                 if open <= 0.0 {
                     continue;
@@ -332,9 +338,9 @@ impl Flow {
         system
     }
 
-    /// Those that water can pass, from the void that is not the reservoir.
-    fn open_passages(&self) -> impl Iterator<Item = &Passage> {
-        self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0)
+    /// Those of a slab, or of the cuts, from the void that is not the reservoir.
+    fn of_slab(&self, at: usize) -> &[Passage] {
+        &self.passages[self.passages_begin[at]..self.passages_begin[at + 1]]
     }
 
     /// Flux that the residual may stand for.
@@ -358,34 +364,65 @@ impl Flow {
         let through = self.through(network);
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let Network { diameter, undirected, .. } = network;
-        let weight = &mut undirected.as_mut().expect("it has a reservoir").weight;
-        for &Passage { one, exit, twin, .. } in &self.passages {
-            let exit = exit as usize;
-            let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
-            let (flux, is_open) = (self.flux(one, exit), f64::from(u8::from(!self.blocked[exit])));
-            weight[exit] = is_open * rule.weight(area, flux, least);
-            if let Some(weight) = weight.get_mut(twin as usize) {
-                *weight = is_open * rule.weight(area, -flux, least);
-            }
+        let Network { exit_begin, diameter, undirected, .. } = network;
+        let mut left = &mut undirected.as_mut().expect("it has a reservoir").weight[..];
+        let mut parts = Vec::new();
+        for first in (0..exit_begin.len() - 1).step_by(VOIDS_TOGETHER) {
+            let begin = &exit_begin[first..(first + VOIDS_TOGETHER + 1).min(exit_begin.len())];
+            let exits = begin[begin.len() - 1] - begin[0];
+            let (weights, after) = left.split_at_mut(exits as usize);
+            parts.push((first as u32, begin, weights));
+            left = after;
         }
+        each(&mut parts, |_, (first, begin, weights)| {
+            let exits_before = begin[0];
+            for (void, exits) in (*first..).zip(begin.windows(2)) {
+                for exit in exits[0]..exits[1] {
+                    let (c, area) = (exit as usize, f64::from(diameter[exit as usize]));
+                    let is_open = f64::from(u8::from(!self.blocked[c]));
+                    let weight = rule.weight(area * area, self.flux(void, c), least);
+                    weights[(exit - exits_before) as usize] = is_open * weight;
+                }
+            }
+        });
     }
 
     /// What each void hangs together with, by way of other voids and of such constrictions.
-    fn meets(&self, network: &Network, reservoir: u32, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
-        let (voids, outside) = (network.voids(), network.voids() as u32);
-        let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
+    fn meets(
+        &self,
+        network: &Network,
+        reservoir: u32,
+        is_way: impl Fn(&Passage) -> bool + Sync,
+    ) -> Vec<Meets> {
+        let (voids, outside, slabs) = (network.voids(), network.voids() as u32, &self.slabs);
+        let is_open = |passage: &&Passage| self.open[passage.exit as usize] > 0.0 && is_way(passage);
         let mut together = Together::of(voids);
-        for passage in self.open_passages().filter(|passage| is_way(passage)).filter(is_inner) {
-            together.join(passage.one, passage.other);
+        // Within slabs first, side by side, and then what joins them.
+        each(&mut together.between(&slabs.begin()[..=slabs.number()]), |at, part| {
+            for passage in self.of_slab(at)[..self.within[at]].iter().filter(is_open) {
+                part.join(slabs.place(passage.one), slabs.place(passage.other));
+            }
+        });
+        let others =
+            || (0..=slabs.number()).flat_map(|at| &self.of_slab(at)[self.within[at]..]).filter(is_open);
+        let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
+        for passage in others().filter(is_inner) {
+            together.join(slabs.place(passage.one), slabs.place(passage.other));
         }
         let mut of_root = vec![Meets::default(); voids];
-        for passage in self.open_passages().filter(|passage| is_way(passage) && !is_inner(passage)) {
-            let meets = &mut of_root[together.root(passage.one) as usize];
+        for passage in others().filter(|passage| !is_inner(passage)) {
+            let meets = &mut of_root[together.root(slabs.place(passage.one)) as usize];
             meets.reservoir |= passage.other == reservoir;
             meets.end |= passage.other == outside;
         }
-        (0..outside).map(|void| of_root[together.root(void) as usize]).collect()
+        let mut all = vec![Meets::default(); voids];
+        let mut parts: Vec<_> = all.chunks_mut(VOIDS_TOGETHER).collect();
+        each(&mut parts, |at, part| {
+            for (void, meets) in (at * VOIDS_TOGETHER..).zip(part.iter_mut()) {
+                *meets = of_root[together.found(slabs.place(void as u32)) as usize];
+            }
+        });
+        all
     }
 }
 

@@ -27,12 +27,15 @@ pub(super) struct Slabs {
     begin: Vec<usize>,
     /// By void: its slab, or number of slabs for those in cuts.
     slab: Vec<u32>,
+    /// By void: where it stands in that order.
+    place: Vec<u32>,
 }
 
 impl Slabs {
     /// All of so many voids in one slab.
     pub(super) fn one(voids: usize) -> Self {
-        Self { order: (0..voids as u32).collect(), begin: vec![0, voids], slab: vec![0; voids] }
+        let order: Vec<u32> = (0..voids as u32).collect();
+        Self { place: order.clone(), order, begin: vec![0, voids], slab: vec![0; voids] }
     }
 
     /// Of voids that are counted from the first of `inlets` on; `beyond` puts those that a void leads to
@@ -67,12 +70,14 @@ impl Slabs {
         let mut begin = vec![0; slabs + cuts.len() + 1];
         part.iter().for_each(|&part| begin[part + 1] += 1);
         (1..begin.len()).for_each(|i| begin[i] += begin[i - 1]);
-        let (mut next, mut order) = (begin.clone(), vec![0; level.len()]);
+        let (mut next, mut order, mut place) = (begin.clone(), vec![0; level.len()], vec![0; level.len()]);
         for (void, &part) in (0u32..).zip(&part) {
             order[next[part]] = void;
+            place[void as usize] = next[part] as u32;
             next[part] += 1;
         }
-        Self { order, begin, slab: part.into_iter().map(|part| part.min(slabs) as u32).collect() }
+        let slab = part.into_iter().map(|part| part.min(slabs) as u32).collect();
+        Self { order, begin, slab, place }
     }
 
     /// Number of slabs.
@@ -88,6 +93,16 @@ impl Slabs {
     /// By slab, and by cut after them: where its voids begin in that order; and where the last end.
     pub(super) fn begin(&self) -> &[usize] {
         &self.begin
+    }
+
+    /// Where a void stands in their order.
+    pub(super) fn place(&self, void: u32) -> u32 {
+        self.place[void as usize]
+    }
+
+    /// Whether both of these voids stand in a slab, which is the same then if a constriction joins them.
+    pub(super) fn are_both(&self, one: u32, other: u32) -> bool {
+        [one, other].iter().all(|&void| (self.slab[void as usize] as usize) < self.number())
     }
 
     /// The slab of what joins these two voids, or the number of slabs where none of them stands in one.
