@@ -11,10 +11,9 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::flow_error::FlowError;
-use super::slabs::{Slabs, each};
+use super::passages::{Meets, Passage, Passages, THROUGH};
+use super::slabs::each;
 use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
-use super::together::Together;
-use super::twins::NO_TWIN;
 use super::{END, Network};
 
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
@@ -51,13 +50,7 @@ pub struct Permeability {
 
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
-    /// Slab after slab, and then those of cuts alone.
-    passages: Vec<Passage>,
-    /// By slab, and for the cuts: where its passages begin; and where the last end.
-    passages_begin: Vec<usize>,
-    /// By slab, and for the cuts: how many of its passages join voids of that slab. They come first.
-    within: Vec<usize>,
-    slabs: Slabs,
+    passages: Passages,
     /// Void that each exit leads to: END is one more void, without pressure.
     other: Vec<u32>,
     /// Pressure by void, and behind the filter.
@@ -80,42 +73,13 @@ pub struct Flow {
     inside: BitVec,
 }
 
-/// A constriction as water sees it.
-struct Passage {
-    /// The void that it is an exit of.
-    one: u32,
-    /// The void beyond: the reservoir is one, and so is what lies behind the filter.
-    other: u32,
-    /// The exit.
-    exit: u32,
-}
-
 impl Flow {
     /// Of a clean network, before it is solved: until then pressures are a guess.
     pub fn new(network: &Network) -> Self {
         let outside = network.voids() as u32;
         let other: Vec<u32> =
             network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
-        let mut passages = Vec::with_capacity(network.constrictions() / 2);
-        let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
-        for one in 0..outside {
-            for c in network.exits(one) {
-                let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
-                if twin >= exit {
-                    passages.push(Passage { one, other: other[c], exit });
-                }
-            }
-        }
-        let slabs = slabs(network);
-        let is_void = |void: u32| void != outside && Some(void) != network.reservoir();
-        let slab = |p: &Passage| slabs.of_both(p.one, Some(p.other).filter(|&other| is_void(other)));
-        let is_within = |p: &Passage| is_void(p.other) && slabs.are_both(p.one, p.other);
-        // In their order otherwise.
-        passages.sort_by_key(|p| (slab(p), !is_within(p)));
-        let passages_begin: Vec<usize> =
-            (0..=slabs.number() + 1).map(|at| passages.partition_point(|p| slab(p) < at)).collect();
-        let within = passages_begin.windows(2).map(|of| passages[of[0]..of[1]].partition_point(is_within));
-        let within = within.collect();
+        let passages = Passages::of(network, &other);
         let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let blocked = BitVec::repeat(false, network.constrictions());
         let mut pressure = vec![0.0; network.voids() + 1];
@@ -129,9 +93,6 @@ impl Flow {
         }
         Self {
             passages,
-            passages_begin,
-            within,
-            slabs,
             other,
             pressure,
             open,
@@ -221,16 +182,15 @@ impl Flow {
         is_open: impl Fn(&Passage) -> bool + Sync,
     ) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
-        let Some(reservoir) = network.reservoir() else {
+        if network.reservoir().is_none() {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
-        };
-        let meets = self.meets(network, reservoir, |_| true);
+        }
+        let meets = self.meets(|_| true);
         if self.kept.is_none() {
             self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
         }
         let leads_through = meets.contains(&THROUGH);
-        let is_passed =
-            leads_through && (!leaks || self.meets(network, reservoir, is_open).contains(&THROUGH));
+        let is_passed = leads_through && (!leaks || self.meets(is_open).contains(&THROUGH));
         self.find_pressures(network, &meets, CONVERGED)?;
         if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
             // Where they come no closer in time, what there is has to do.
@@ -247,6 +207,12 @@ impl Flow {
         self.most = self.most.max(conductance);
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// What each void hangs together with, by way of other voids and of such constrictions that conduct.
+    fn meets(&self, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
+        let conducts = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
+        self.passages.meet(self.pressure.len() - 1, |passage| conducts(passage) && is_way(passage))
     }
 
     /// Conducts as these blocked constrictions let it.
@@ -318,10 +284,13 @@ impl Flow {
     /// one where none flows any more.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
         let inside = |void: u32| self.inside[void as usize];
-        let mut system = System::of(&self.slabs, inside, |at| self.of_slab(at).len());
+        let passages = &self.passages;
+        let mut system = System::of(passages.slabs(), inside, |at| passages.of_slab(at).len());
         let outside = meets.len() as u32;
         system.fill(|at, joining| {
-            for passage in self.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH) {
+            for passage in
+                passages.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH)
+            {
                 let open = self.open[passage.exit as usize];
                 if open <= 0.0 {
                     continue;
@@ -336,11 +305,6 @@ impl Flow {
             }
         });
         system
-    }
-
-    /// Those of a slab, or of the cuts, from the void that is not the reservoir.
-    fn of_slab(&self, at: usize) -> &[Passage] {
-        &self.passages[self.passages_begin[at]..self.passages_begin[at + 1]]
     }
 
     /// Flux that the residual may stand for.
@@ -386,71 +350,12 @@ impl Flow {
             }
         });
     }
-
-    /// What each void hangs together with, by way of other voids and of such constrictions.
-    fn meets(
-        &self,
-        network: &Network,
-        reservoir: u32,
-        is_way: impl Fn(&Passage) -> bool + Sync,
-    ) -> Vec<Meets> {
-        let (voids, outside, slabs) = (network.voids(), network.voids() as u32, &self.slabs);
-        let is_open = |passage: &&Passage| self.open[passage.exit as usize] > 0.0 && is_way(passage);
-        let mut together = Together::of(voids);
-        // Within slabs first, side by side, and then what joins them.
-        each(&mut together.between(&slabs.begin()[..=slabs.number()]), |at, part| {
-            for passage in self.of_slab(at)[..self.within[at]].iter().filter(is_open) {
-                part.join(slabs.place(passage.one), slabs.place(passage.other));
-            }
-        });
-        let others =
-            || (0..=slabs.number()).flat_map(|at| &self.of_slab(at)[self.within[at]..]).filter(is_open);
-        let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
-        for passage in others().filter(is_inner) {
-            together.join(slabs.place(passage.one), slabs.place(passage.other));
-        }
-        let mut of_root = vec![Meets::default(); voids];
-        for passage in others().filter(|passage| !is_inner(passage)) {
-            let meets = &mut of_root[together.root(slabs.place(passage.one)) as usize];
-            meets.reservoir |= passage.other == reservoir;
-            meets.end |= passage.other == outside;
-        }
-        let mut all = vec![Meets::default(); voids];
-        let mut parts: Vec<_> = all.chunks_mut(VOIDS_TOGETHER).collect();
-        each(&mut parts, |at, part| {
-            for (void, meets) in (at * VOIDS_TOGETHER..).zip(part.iter_mut()) {
-                *meets = of_root[together.found(slabs.place(void as u32)) as usize];
-            }
-        });
-        all
-    }
-}
-
-/// Slabs of a network without directions.
-fn slabs(network: &Network) -> Slabs {
-    let Some(reservoir) = network.reservoir() else { return Slabs::one(network.voids()) };
-    let inlets = network.exits(reservoir).map(|c| network.targets()[c]).filter(|&to| to != END);
-    let inlets: Vec<u32> = inlets.collect();
-    Slabs::of(network.voids(), &inlets, |void, into| {
-        let to = network.exits(void).map(|c| network.targets()[c]);
-        into.extend(to.filter(|&to| to != END && to != reservoir));
-    })
 }
 
 /// Conductance of an exit while it is open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }
-
-/// What a void hangs together with: the two sides of the filter, neither by way of the other.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct Meets {
-    reservoir: bool,
-    end: bool,
-}
-
-/// Both.
-const THROUGH: Meets = Meets { reservoir: true, end: true };
 
 #[cfg(test)]
 mod tests {
@@ -533,6 +438,56 @@ mod tests {
                 like_afresh(&flow, &blocked);
             }
             assert_eq!(like_afresh(&flow, &blocked) == 0.0, rho == 0.0);
+        }
+    }
+
+    /// Four slabs that clog: pressures, what is kept for the next solution and the weights of exits are the same
+    /// to the bit on any number of threads, balance at every void, and are those that are found from nothing.
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let [n, layers] = [11, 200];
+        let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+        let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+        let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+        assert_eq!(Flow::new(&network).passages.slabs().number(), 4);
+        let walk = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut network = network.clone();
+                let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+                let mut flow = Flow::new(&network);
+                let mut found = Vec::new();
+                // A little, much, and much of all layers but the first.
+                for (from, step) in [(0, 1009), (1, 37), (3 * network.constrictions() / 40, 11)] {
+                    for c in (from..network.constrictions()).step_by(step) {
+                        network.set_blocked(&mut blocked, c, true);
+                    }
+                    flow.solve(&network, &blocked).unwrap();
+                    flow.direct(&mut network);
+                    let weights: Vec<f64> =
+                        (0..network.constrictions()).map(|c| network.exit_weight(c)).collect();
+                    found.push((blocked.clone(), flow.pressure.clone(), weights));
+                }
+                found
+            })
+        };
+        let alone = walk(1);
+        for threads in [2, 3, 7] {
+            assert!(walk(threads) == alone, "{threads} threads");
+        }
+        for (blocked, pressure, _) in &alone {
+            let mut afresh = Flow::new(&network);
+            let through = afresh.solve(&network, blocked).unwrap().conductance;
+            let (mut warm, reservoir) = (Flow::new(&network), network.reservoir().unwrap());
+            warm.set_blocked(&network, blocked, 0.0);
+            warm.pressure.clone_from(pressure);
+            assert!((warm.through(&network) / through - 1.0).abs() < 1e-9);
+            for void in (0..network.voids() as u32).filter(|&void| void != reservoir) {
+                let [kept, anew] = [&warm, &afresh].map(|flow| flow.pressure[void as usize]);
+                assert!((kept - anew).abs() < 1e-8, "void {void}: {kept} for {anew}");
+                let off: f64 = network.exits(void).map(|c| warm.flux(void, c)).sum();
+                assert!(off.abs() < 1e-9 * through, "void {void}: {off} of {through}");
+            }
         }
     }
 
