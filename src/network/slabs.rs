@@ -1,8 +1,8 @@
 //! A network cut into slabs that only meet in cuts: threads work on slabs side by side.
 //!
 //! Voids are counted from the inlets on, each as far as it takes the fewest constrictions to reach it. No
-//! constriction leads from one number past the next, so the voids of one number cut those before it from those
-//! after it. Where slabs end follows from the network alone, so what is worked out slab by slab, and added
+//! constriction leads from one number past the next, so the voids of one number that lead to the next cut those
+//! before them from those after them. Where slabs end follows from the network alone, so what is worked out slab by slab, and added
 //! in their order, is the same to the bit on any number of threads.
 
 use rayon::prelude::*;
@@ -44,29 +44,33 @@ impl Slabs {
         if voids < 2 * LEAST {
             return Self::one(voids);
         }
-        let level = levels(voids, inlets, beyond);
+        let (level, leads_on) = levels(voids, inlets, beyond);
         let mut size = vec![0usize; level.iter().max().map_or(0, |&most| most as usize + 1)];
-        level.iter().for_each(|&level| size[level as usize] += 1);
+        let mut width = size.clone();
+        for (&level, &leads_on) in level.iter().zip(&leads_on) {
+            size[level as usize] += 1;
+            width[level as usize] += usize::from(leads_on);
+        }
         let most = MOST.min(voids / LEAST) & !1;
         let fits = |&slabs: &usize| {
             let cuts = cuts(&size, voids, slabs);
-            cuts.len() + 1 == slabs && cuts.iter().map(|&at| size[at]).sum::<usize>() * IN_CUTS <= voids
+            cuts.len() + 1 == slabs && cuts.iter().map(|&at| width[at]).sum::<usize>() * IN_CUTS <= voids
         };
         match (2..=most).rev().step_by(2).find(fits) {
-            Some(slabs) => Self::between(&level, &cuts(&size, voids, slabs)),
+            Some(slabs) => Self::between(&level, &leads_on, &cuts(&size, voids, slabs)),
             None => Self::one(voids),
         }
     }
 
     /// Between cuts at these numbers, which rise.
-    fn between(level: &[u32], cuts: &[usize]) -> Self {
+    fn between(level: &[u32], leads_on: &[bool], cuts: &[usize]) -> Self {
         let slabs = cuts.len() + 1;
-        // Slabs first, then cuts.
-        let part = |&level: &u32| match cuts.binary_search(&(level as usize)) {
-            Ok(cut) => slabs + cut,
-            Err(slab) => slab,
+        // Slabs first, then cuts; those of a cut's number that do not lead on stand in the slab before it.
+        let part = |(&level, &leads_on): (&u32, &bool)| match cuts.binary_search(&(level as usize)) {
+            Ok(cut) if leads_on => slabs + cut,
+            Ok(slab) | Err(slab) => slab,
         };
-        let part: Vec<usize> = level.iter().map(part).collect();
+        let part: Vec<usize> = level.iter().zip(leads_on).map(part).collect();
         let mut begin = vec![0; slabs + cuts.len() + 1];
         part.iter().for_each(|&part| begin[part + 1] += 1);
         (1..begin.len()).for_each(|i| begin[i] += begin[i - 1]);
@@ -121,10 +125,10 @@ pub(super) fn each<T: Send>(all: &mut [T], work: impl Fn(usize, &mut T) + Sync) 
     }
 }
 
-/// How many constrictions a void is away from the inlets. Voids that nothing leads to are counted from the
+/// How many constrictions a void is away from the inlets, and whether it leads to one that is one more. Voids that nothing leads to are counted from the
 /// number of the void before them, which often lies beside them.
-fn levels(voids: usize, inlets: &[u32], beyond: impl Fn(u32, &mut Vec<u32>)) -> Vec<u32> {
-    let mut level = vec![NONE; voids];
+fn levels(voids: usize, inlets: &[u32], beyond: impl Fn(u32, &mut Vec<u32>)) -> (Vec<u32>, Vec<bool>) {
+    let (mut level, mut leads_on) = (vec![NONE; voids], vec![false; voids]);
     let mut queue: Vec<u32> = Vec::with_capacity(voids);
     for &void in inlets {
         if std::mem::replace(&mut level[void as usize], 0) == NONE {
@@ -137,11 +141,13 @@ fn levels(voids: usize, inlets: &[u32], beyond: impl Fn(u32, &mut Vec<u32>)) -> 
             done += 1;
             near.clear();
             beyond(void, &mut near);
+            let after = level[void as usize] + 1;
             for &to in &near {
                 if level[to as usize] == NONE {
-                    level[to as usize] = level[void as usize] + 1;
+                    level[to as usize] = after;
                     queue.push(to);
                 }
+                leads_on[void as usize] |= level[to as usize] == after;
             }
         }
         if level[next] == NONE {
@@ -149,7 +155,7 @@ fn levels(voids: usize, inlets: &[u32], beyond: impl Fn(u32, &mut Vec<u32>)) -> 
             queue.push(next as u32);
         }
     }
-    level
+    (level, leads_on)
 }
 
 /// Numbers whose voids are cuts between so many slabs of about as many voids each; fewer where two would be
@@ -212,6 +218,28 @@ mod tests {
         }
         let cut = slabs.order()[slabs.begin()[6]];
         assert_eq!(slabs.of_both(cut, Some(slabs.order()[slabs.begin()[7]])), 6);
+    }
+
+    /// A chain, each void of which has a dead end: these do not cut it.
+    #[test]
+    fn dead_ends_stand_in_no_cut() {
+        let beyond = |void: u32, into: &mut Vec<u32>| match void % 2 {
+            1 => into.push(void - 1),
+            _ => into.extend(
+                [void.checked_sub(2), Some(void + 1), (void < 29_998).then_some(void + 2)]
+                    .into_iter()
+                    .flatten(),
+            ),
+        };
+        let slabs = Slabs::of(30_000, &[0], beyond);
+        assert_eq!(slabs.number(), 4);
+        let cuts = &slabs.order()[slabs.begin()[4]..];
+        assert!(cuts.len() == 3 && cuts.iter().all(|void| void % 2 == 0), "{cuts:?}");
+        for void in 0..30_000 {
+            let (mut near, of) = (Vec::new(), |void| slabs.of_both(void, None));
+            beyond(void, &mut near);
+            assert!(near.iter().all(|&to| of(to) == of(void) || of(to) == 4 || of(void) == 4), "{void}");
+        }
     }
 
     /// A network as wide as it is long has no narrow cuts, and a small one pays for none.
