@@ -13,8 +13,8 @@
 //! scattered over the network, so that few of them meet; within a turn by row, so that memory is read in
 //! order.
 //!
-//! Rows may have others beyond them, which are eliminated elsewhere: what joins two of these instead is handed
-//! on. So parts of a system that meet in such rows alone are eliminated side by side.
+//! Rows may have others beyond them, which are eliminated elsewhere: what joins two of these instead is
+//! handed on. So parts of a system that meet in such rows alone are eliminated side by side.
 
 use std::ops::Range;
 
@@ -144,8 +144,8 @@ impl Factor {
         self.up(scratch, out);
     }
 
-    /// Solves the factor downwards. `scratch` has a number for each row and each row beyond; those beyond come
-    /// to what theirs are to be raised by.
+    /// Solves the factor downwards. `scratch` has a number for each row and each row beyond; those beyond
+    /// come to what theirs are to be raised by.
     pub(super) fn down(&self, residual: &[f64], scratch: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
         scratch[self.row.len()..].fill(0.0);
@@ -155,7 +155,8 @@ impl Factor {
         }
     }
 
-    /// Solves it upwards, from where [`Factor::down`] left `scratch`, but that rows beyond have their solution.
+    /// Solves it upwards, from where [`Factor::down`] left `scratch`, but that rows beyond have their
+    /// solution.
     pub(super) fn up(&self, scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.pivot).for_each(|(value, pivot)| *value *= pivot);
         for Parts { of, by, part } in self.parts.iter().rev() {

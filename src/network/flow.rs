@@ -441,8 +441,9 @@ mod tests {
         }
     }
 
-    /// Four slabs that clog: pressures, what is kept for the next solution and the weights of exits are the same
-    /// to the bit on any number of threads, balance at every void, and are those that are found from nothing.
+    /// Four slabs that clog: pressures, what is kept for the next solution and the weights of exits are the
+    /// same to the bit on any number of threads, balance at every void, and are those that are found from
+    /// nothing.
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
         let [n, layers] = [11, 200];

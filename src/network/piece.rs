@@ -11,7 +11,8 @@ const SIDE_BY_SIDE: usize = 8;
 pub(super) struct Piece {
     /// Its rows among all.
     pub rows: Range<usize>,
-    /// Rows of cuts that it leads to, counted from the first row of all cuts; the cuts themselves lead to none.
+    /// Rows of cuts that it leads to, counted from the first row of all cuts; the cuts themselves lead to
+    /// none.
     pub met: Range<usize>,
     /// Conductances between its rows, and to those of cuts that it leads to, which are counted after them.
     pub links: Vec<Link>,

@@ -1,9 +1,9 @@
 //! A network cut into slabs that only meet in cuts: threads work on slabs side by side.
 //!
 //! Voids are counted from the inlets on, each as far as it takes the fewest constrictions to reach it. No
-//! constriction leads from one number past the next, so the voids of one number that lead to the next cut those
-//! before them from those after them. Where slabs end follows from the network alone, so what is worked out slab by slab, and added
-//! in their order, is the same to the bit on any number of threads.
+//! constriction leads from one number past the next, so the voids of one number that lead to the next cut
+//! those before them from those after them. Where slabs end follows from the network alone, so what is
+//! worked out slab by slab, and added in their order, is the same to the bit on any number of threads.
 
 use rayon::prelude::*;
 
@@ -125,8 +125,9 @@ pub(super) fn each<T: Send>(all: &mut [T], work: impl Fn(usize, &mut T) + Sync) 
     }
 }
 
-/// How many constrictions a void is away from the inlets, and whether it leads to one that is one more. Voids that nothing leads to are counted from the
-/// number of the void before them, which often lies beside them.
+/// How many constrictions a void is away from the inlets, and whether it leads to one that is one more.
+/// Voids that nothing leads to are counted from the number of the void before them, which often lies beside
+/// them.
 fn levels(voids: usize, inlets: &[u32], beyond: impl Fn(u32, &mut Vec<u32>)) -> (Vec<u32>, Vec<bool>) {
     let (mut level, mut leads_on) = (vec![NONE; voids], vec![false; voids]);
     let mut queue: Vec<u32> = Vec::with_capacity(voids);

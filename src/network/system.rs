@@ -1,8 +1,8 @@
 //! The equations of pressures in a network of conductances, and their solution by conjugate gradients.
 //!
-//! Each slab of the network has a piece of them, and all cuts together have one: threads work on slabs side by
-//! side. Sums run in a fixed order within a piece, and from piece to piece, so that a solution is the same to
-//! the bit on any number of threads and with any instructions.
+//! Each slab of the network has a piece of them, and all cuts together have one: threads work on slabs side
+//! by side. Sums run in a fixed order within a piece, and from piece to piece, so that a solution is the
+//! same to the bit on any number of threads and with any instructions.
 
 use std::ops::Range;
 
@@ -238,7 +238,8 @@ impl System {
         }
     }
 
-    /// A factor of each piece: of slabs side by side, and of the cuts with what is left of slabs between them.
+    /// A factor of each piece: of slabs side by side, and of the cuts with what is left of slabs between
+    /// them.
     fn factors(&self) -> Vec<Factor> {
         let Some((cuts, slabs)) = self.pieces.split_last() else { return Vec::new() };
         let mut of_slabs: Vec<_> = slabs.iter().map(|_| None).collect();
@@ -322,8 +323,8 @@ impl System {
         of_slabs.iter().map(|own| own.sum).sum::<f64>() + dot(residual, solved)
     }
 
-    /// Conjugate gradients until the residual that they carry along, which begins so large, is small; the rounds
-    /// that there were.
+    /// Conjugate gradients until the residual that they carry along, which begins so large, is small; the
+    /// rounds that there were.
     fn descend(
         &self,
         factors: &[Factor],
