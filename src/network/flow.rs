@@ -11,9 +11,9 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::flow_error::FlowError;
+use super::passages::{Meets, Passage, Passages, THROUGH};
+use super::slabs::each;
 use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
-use super::together::Together;
-use super::twins::NO_TWIN;
 use super::{END, Network};
 
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
@@ -36,6 +36,9 @@ const CLOSELY: f64 = 1e-8;
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
 
+/// Voids that a thread looks at one after another.
+const VOIDS_TOGETHER: usize = 1 << 13;
+
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permeability {
@@ -47,7 +50,7 @@ pub struct Permeability {
 
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
-    passages: Vec<Passage>,
+    passages: Passages,
     /// Void that each exit leads to: END is one more void, without pressure.
     other: Vec<u32>,
     /// Pressure by void, and behind the filter.
@@ -70,34 +73,13 @@ pub struct Flow {
     inside: BitVec,
 }
 
-/// A constriction as water sees it.
-struct Passage {
-    /// The void that it is an exit of.
-    one: u32,
-    /// The void beyond: the reservoir is one, and so is what lies behind the filter.
-    other: u32,
-    /// The exit.
-    exit: u32,
-    /// The same constriction as an exit of the void beyond, or [`NO_TWIN`].
-    twin: u32,
-}
-
 impl Flow {
     /// Of a clean network, before it is solved: until then pressures are a guess.
     pub fn new(network: &Network) -> Self {
         let outside = network.voids() as u32;
         let other: Vec<u32> =
             network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
-        let mut passages = Vec::with_capacity(network.constrictions() / 2);
-        let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
-        for one in 0..outside {
-            for c in network.exits(one) {
-                let (exit, twin) = (c as u32, twins.map_or(NO_TWIN, |twin| twin[c]));
-                if twin >= exit {
-                    passages.push(Passage { one, other: other[c], exit, twin });
-                }
-            }
-        }
+        let passages = Passages::of(network, &other);
         let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let blocked = BitVec::repeat(false, network.constrictions());
         let mut pressure = vec![0.0; network.voids() + 1];
@@ -197,19 +179,18 @@ impl Flow {
         network: &Network,
         closely: bool,
         leaks: bool,
-        is_open: impl Fn(&Passage) -> bool,
+        is_open: impl Fn(&Passage) -> bool + Sync,
     ) -> Result<Permeability, FlowError> {
         let undirected = network.undirected.as_ref();
-        let Some(reservoir) = network.reservoir() else {
+        if network.reservoir().is_none() {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
-        };
-        let meets = self.meets(network, reservoir, |_| true);
+        }
+        let meets = self.meets(|_| true);
         if self.kept.is_none() {
             self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
         }
         let leads_through = meets.contains(&THROUGH);
-        let is_passed =
-            leads_through && (!leaks || self.meets(network, reservoir, is_open).contains(&THROUGH));
+        let is_passed = leads_through && (!leaks || self.meets(is_open).contains(&THROUGH));
         self.find_pressures(network, &meets, CONVERGED)?;
         if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
             // Where they come no closer in time, what there is has to do.
@@ -226,6 +207,12 @@ impl Flow {
         self.most = self.most.max(conductance);
         let factor = undirected.and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
+    }
+
+    /// What each void hangs together with, by way of other voids and of such constrictions that conduct.
+    fn meets(&self, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
+        let conducts = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
+        self.passages.meet(self.pressure.len() - 1, |passage| conducts(passage) && is_way(passage))
     }
 
     /// Conducts as these blocked constrictions let it.
@@ -296,24 +283,28 @@ impl Flow {
     /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
     /// one where none flows any more.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
-        let mut system = System::of_voids(self.inside.iter().by_vals(), self.passages.len());
+        let inside = |void: u32| self.inside[void as usize];
+        let passages = &self.passages;
+        let mut system = System::of(passages.slabs(), inside, |at| passages.of_slab(at).len());
         let outside = meets.len() as u32;
-        for passage in self.open_passages().filter(|passage| meets[passage.one as usize] == THROUGH) {
-            let open = self.open[passage.exit as usize];
-            if passage.other == reservoir {
-                system.hold(passage.one, open, 1.0);
-            } else if passage.other == outside {
-                system.hold(passage.one, open, 0.0);
-            } else {
-                system.join(passage.one, passage.other, open);
+        system.fill(|at, joining| {
+            for passage in
+                passages.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH)
+            {
+                let open = self.open[passage.exit as usize];
+                if open <= 0.0 {
+                    continue;
+                }
+                if passage.other == reservoir {
+                    joining.hold(passage.one, open, 1.0);
+                } else if passage.other == outside {
+                    joining.hold(passage.one, open, 0.0);
+                } else {
+                    joining.join(passage.one, passage.other, open);
+                }
             }
-        }
+        });
         system
-    }
-
-    /// Those that water can pass, from the void that is not the reservoir.
-    fn open_passages(&self) -> impl Iterator<Item = &Passage> {
-        self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0)
     }
 
     /// Flux that the residual may stand for.
@@ -337,34 +328,27 @@ impl Flow {
         let through = self.through(network);
         // Nor is one that the residual may stand for.
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let Network { diameter, undirected, .. } = network;
-        let weight = &mut undirected.as_mut().expect("it has a reservoir").weight;
-        for &Passage { one, exit, twin, .. } in &self.passages {
-            let exit = exit as usize;
-            let area = f64::from(diameter[exit]) * f64::from(diameter[exit]);
-            let (flux, is_open) = (self.flux(one, exit), f64::from(u8::from(!self.blocked[exit])));
-            weight[exit] = is_open * rule.weight(area, flux, least);
-            if let Some(weight) = weight.get_mut(twin as usize) {
-                *weight = is_open * rule.weight(area, -flux, least);
+        let Network { exit_begin, diameter, undirected, .. } = network;
+        let mut left = &mut undirected.as_mut().expect("it has a reservoir").weight[..];
+        let mut parts = Vec::new();
+        for first in (0..exit_begin.len() - 1).step_by(VOIDS_TOGETHER) {
+            let begin = &exit_begin[first..(first + VOIDS_TOGETHER + 1).min(exit_begin.len())];
+            let exits = begin[begin.len() - 1] - begin[0];
+            let (weights, after) = left.split_at_mut(exits as usize);
+            parts.push((first as u32, begin, weights));
+            left = after;
+        }
+        each(&mut parts, |_, (first, begin, weights)| {
+            let exits_before = begin[0];
+            for (void, exits) in (*first..).zip(begin.windows(2)) {
+                for exit in exits[0]..exits[1] {
+                    let (c, area) = (exit as usize, f64::from(diameter[exit as usize]));
+                    let is_open = f64::from(u8::from(!self.blocked[c]));
+                    let weight = rule.weight(area * area, self.flux(void, c), least);
+                    weights[(exit - exits_before) as usize] = is_open * weight;
+                }
             }
-        }
-    }
-
-    /// What each void hangs together with, by way of other voids and of such constrictions.
-    fn meets(&self, network: &Network, reservoir: u32, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
-        let (voids, outside) = (network.voids(), network.voids() as u32);
-        let is_inner = |passage: &&Passage| passage.other != reservoir && passage.other != outside;
-        let mut together = Together::of(voids);
-        for passage in self.open_passages().filter(|passage| is_way(passage)).filter(is_inner) {
-            together.join(passage.one, passage.other);
-        }
-        let mut of_root = vec![Meets::default(); voids];
-        for passage in self.open_passages().filter(|passage| is_way(passage) && !is_inner(passage)) {
-            let meets = &mut of_root[together.root(passage.one) as usize];
-            meets.reservoir |= passage.other == reservoir;
-            meets.end |= passage.other == outside;
-        }
-        (0..outside).map(|void| of_root[together.root(void) as usize]).collect()
+        });
     }
 }
 
@@ -372,16 +356,6 @@ impl Flow {
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }
-
-/// What a void hangs together with: the two sides of the filter, neither by way of the other.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct Meets {
-    reservoir: bool,
-    end: bool,
-}
-
-/// Both.
-const THROUGH: Meets = Meets { reservoir: true, end: true };
 
 #[cfg(test)]
 mod tests {
@@ -464,6 +438,57 @@ mod tests {
                 like_afresh(&flow, &blocked);
             }
             assert_eq!(like_afresh(&flow, &blocked) == 0.0, rho == 0.0);
+        }
+    }
+
+    /// Four slabs that clog: pressures, what is kept for the next solution and the weights of exits are the
+    /// same to the bit on any number of threads, balance at every void, and are those that are found from
+    /// nothing.
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let [n, layers] = [11, 200];
+        let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+        let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+        let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+        assert_eq!(Flow::new(&network).passages.slabs().number(), 4);
+        let walk = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut network = network.clone();
+                let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+                let mut flow = Flow::new(&network);
+                let mut found = Vec::new();
+                // A little, much, and much of all layers but the first.
+                for (from, step) in [(0, 1009), (1, 37), (3 * network.constrictions() / 40, 11)] {
+                    for c in (from..network.constrictions()).step_by(step) {
+                        network.set_blocked(&mut blocked, c, true);
+                    }
+                    flow.solve(&network, &blocked).unwrap();
+                    flow.direct(&mut network);
+                    let weights: Vec<f64> =
+                        (0..network.constrictions()).map(|c| network.exit_weight(c)).collect();
+                    found.push((blocked.clone(), flow.pressure.clone(), weights));
+                }
+                found
+            })
+        };
+        let alone = walk(1);
+        for threads in [2, 3, 7] {
+            assert!(walk(threads) == alone, "{threads} threads");
+        }
+        for (blocked, pressure, _) in &alone {
+            let mut afresh = Flow::new(&network);
+            let through = afresh.solve(&network, blocked).unwrap().conductance;
+            let (mut warm, reservoir) = (Flow::new(&network), network.reservoir().unwrap());
+            warm.set_blocked(&network, blocked, 0.0);
+            warm.pressure.clone_from(pressure);
+            assert!((warm.through(&network) / through - 1.0).abs() < 1e-9);
+            for void in (0..network.voids() as u32).filter(|&void| void != reservoir) {
+                let [kept, anew] = [&warm, &afresh].map(|flow| flow.pressure[void as usize]);
+                assert!((kept - anew).abs() < 1e-8, "void {void}: {kept} for {anew}");
+                let off: f64 = network.exits(void).map(|c| warm.flux(void, c)).sum();
+                assert!(off.abs() < 1e-9 * through, "void {void}: {off} of {through}");
+            }
         }
     }
 

@@ -18,15 +18,17 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     // Pressures are known but for a constant: one void of each part that hangs together is at 0.
     let mut together = Together::of(voids);
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
-    let inside = (0..voids as u32).map(|void| together.root(void) != void);
-    let mut system = System::of_voids(inside, graph.from.len());
-    for c in links() {
-        let (a, b, g) = (graph.from[c], graph.to[c], graph.conductance_mm3[c]);
-        let flow = g * f64::from(graph.shift[c][axis]);
-        system.join(a, b, g);
-        system.feed(a, -flow);
-        system.feed(b, flow);
-    }
+    let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();
+    let inside = |void: u32| root[void as usize] != void;
+    let system = System::in_one(voids, inside, |system| {
+        for c in links() {
+            let (a, b, g) = (graph.from[c], graph.to[c], graph.conductance_mm3[c]);
+            let flow = g * f64::from(graph.shift[c][axis]);
+            system.join(a, b, g);
+            system.feed(a, -flow);
+            system.feed(b, flow);
+        }
+    });
     let mut pressure = vec![0.0; voids];
     let layers = libm::cbrt(voids as f64) as usize;
     system.solve(&mut pressure, layers, CONVERGED, &mut None)?;

@@ -1,6 +1,7 @@
 //! Which exit a draw picks: thresholds by void, renewed where an exit closes or water turns.
 
 use bitvec::slice::BitSlice;
+use rayon::prelude::*;
 
 use super::crowding::Crowd;
 use super::openings::Ways;
@@ -261,30 +262,28 @@ impl ExitTable {
 
     /// Renews a void of which an exit has just closed, is narrower, or leads elsewhere.
     pub(super) fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
-        let VoidExits { void, thresholds, last_open, waits } = of_void;
         match &mut self.form {
             Form::Lattice(lattice) => {
+                let VoidExits { void, thresholds, last_open, .. } = of_void;
                 let open = network.exits(void).filter(|&c| ways.weight(network, c) > 0.0);
                 let finest = open.map(|c| network.diameters()[c]).fold(f32::INFINITY, f32::min);
                 lattice.set(void, thresholds, last_open, finest);
             }
-            Form::General(general) => {
-                let exits = network.exits(void);
-                if let Ways::Openings(widths, _) = ways {
-                    exits.clone().for_each(|c| general.beyond[c].1 = widths[c]);
-                }
-                general.threshold[exits.clone()].copy_from_slice(thresholds);
-                general.few[void as usize] = match last_open {
-                    Some(last) => FewExits::new(exits.start as u32, thresholds, last),
-                    None => FewExits::NONE,
-                };
-                general.last_open[void as usize] = match last_open {
-                    Some(e) => (exits.start + e) as u32,
-                    None if waits => WAIT,
-                    None => NONE,
-                };
-            }
+            Form::General(general) => general.all().set(network, ways, of_void),
         }
+    }
+
+    /// Renews all voids, on all threads, where water turns.
+    pub(super) fn renew(&mut self, network: &Network, ways: Ways) {
+        let voids = 0..network.voids() as u32;
+        let Form::General(general) = &mut self.form else {
+            return of_each(network, ways, voids, |exits| self.set(network, ways, exits));
+        };
+        let each = |mut part: GeneralPart| {
+            let voids = part.first_void..part.first_void + part.few.len() as u32;
+            of_each(network, ways, voids, |exits| part.set(network, ways, exits));
+        };
+        general.parts(network).into_par_iter().for_each(each);
     }
 
     pub(super) fn isa(&self) -> Isa {
@@ -302,6 +301,75 @@ impl ExitTable {
     /// Upstream void of each constriction.
     pub(super) fn upstream(&self) -> &[u32] {
         &self.upstream
+    }
+}
+
+/// Voids whose exits a thread looks at one after another.
+const VOIDS_TOGETHER: usize = 1 << 13;
+
+/// Thresholds of voids that follow one another.
+struct GeneralPart<'a> {
+    first_void: u32,
+    first_exit: usize,
+    threshold: &'a mut [u64],
+    last_open: &'a mut [u32],
+    few: &'a mut [FewExits],
+    beyond: &'a mut [(u32, f32)],
+}
+
+impl General {
+    fn all(&mut self) -> GeneralPart<'_> {
+        let Self { threshold, last_open, few, beyond } = self;
+        GeneralPart { first_void: 0, first_exit: 0, threshold, last_open, few, beyond }
+    }
+
+    /// Parts of so many voids each.
+    fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
+        let mut parts = Vec::new();
+        let mut left = self.all();
+        while left.few.len() > VOIDS_TOGETHER {
+            let exits = network.exits(left.first_void + VOIDS_TOGETHER as u32).start - left.first_exit;
+            let GeneralPart { first_void, first_exit, threshold, last_open, few, beyond } = left;
+            let (threshold, threshold_after) = threshold.split_at_mut(exits);
+            let (last_open, last_open_after) = last_open.split_at_mut(VOIDS_TOGETHER);
+            let (few, few_after) = few.split_at_mut(VOIDS_TOGETHER);
+            let (beyond, beyond_after) = beyond.split_at_mut(exits);
+            parts.push(GeneralPart { first_void, first_exit, threshold, last_open, few, beyond });
+            left = GeneralPart {
+                first_void: first_void + VOIDS_TOGETHER as u32,
+                first_exit: first_exit + exits,
+                threshold: threshold_after,
+                last_open: last_open_after,
+                few: few_after,
+                beyond: beyond_after,
+            };
+        }
+        parts.push(left);
+        parts
+    }
+}
+
+impl GeneralPart<'_> {
+    /// Renews one of its voids.
+    fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
+        let VoidExits { void, thresholds, last_open, waits } = of_void;
+        let exits = network.exits(void);
+        let own = exits.start - self.first_exit..exits.end - self.first_exit;
+        if let Ways::Openings(widths, _) = ways {
+            let widths = &widths[exits.clone()];
+            self.beyond[own.clone()].iter_mut().zip(widths).for_each(|(beyond, &width)| beyond.1 = width);
+        }
+        self.threshold[own].copy_from_slice(thresholds);
+        let at = (void - self.first_void) as usize;
+        self.few[at] = match last_open {
+            Some(last) => FewExits::new(exits.start as u32, thresholds, last),
+            None => FewExits::NONE,
+        };
+        self.last_open[at] = match last_open {
+            Some(e) => (exits.start + e) as u32,
+            None if waits => WAIT,
+            None => NONE,
+        };
     }
 }
 

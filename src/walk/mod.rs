@@ -235,10 +235,14 @@ impl<'a> Walk<'a> {
         }
         let Some(directions) = &mut self.directions else { return Ok(()) };
         if directions.renew(self.network.to_mut(), state)? {
-            self.set(state, 0..self.network.voids() as u32);
-            if let Some(passive) = &mut self.passive {
+            let Self { network, table, passive, directions, .. } = self;
+            let ways = state.ways(weighed(directions.as_ref()));
+            let renew_passive = || {
+                let Some(passive) = passive else { return };
+                exits::of_each(network, ways, 0..network.voids() as u32, |exits| passive.set(network, exits));
                 passive.forget_trap();
-            }
+            };
+            rayon::join(|| table.renew(network, ways), renew_passive);
             self.trap = trapped::Search::new(&self.network, self.supply.arching());
             self.all_caught = false;
         }
