@@ -9,6 +9,7 @@ from typing import Dict, List, Literal, Optional, TypedDict, Union
 
 __all__ = [
     "AppliedRule",
+    "ArchingByVoidRecord",
     "ArchingRecord",
     "Band",
     "BandSize",
@@ -976,7 +977,30 @@ class Evidence(_Evidence, total=False):
     bound: Optional[Literal["at_least", "at_most"]]
 
 
-class ArchingRecord(TypedDict):
+class ArchingByVoidRecord(TypedDict):
+    """How the concentration of each void is worked out.
+
+    Keys
+    ----
+    void_mm
+        Diameter of a sphere with the volume of a void, mm.
+    size
+        Which size counts: "own" or "void-mean".
+    """
+
+    void_mm: float
+    size: str
+
+
+class _ArchingRecord(TypedDict):
+    law: str
+    source: str
+    basis: str
+    range_of_ratio: List[float]
+    concentration: Optional[float]
+
+
+class ArchingRecord(_ArchingRecord, total=False):
     """A law by which particles arch in a constriction that they fit.
 
     Keys
@@ -991,14 +1015,12 @@ class ArchingRecord(TypedDict):
         Sizes of a constriction by that of a particle between which arches form.
     concentration
         Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense
-        flow.
+        flow, or where each void has its own.
+    by_void
+        How the concentration of each void is worked out, where it is.
     """
 
-    law: str
-    source: str
-    basis: str
-    range_of_ratio: List[float]
-    concentration: Optional[float]
+    by_void: Optional[ArchingByVoidRecord]
 
 
 class _Sensitivity(TypedDict):
@@ -2011,6 +2033,11 @@ class ComparedCase(_ComparedCase, total=False):
         What the walk says, in a line.
     next
         What to do next.
+    by_authority
+        What an authority's rules say of the pair and leave out, where one is named; empty for all.
+    found
+        What was found about the verdict, the weightiest first, without the names of settings. Records of
+        earlier versions do not say.
     beside
         What else stands beside every verdict, in sentences.
     replicates
@@ -2038,6 +2065,8 @@ class ComparedCase(_ComparedCase, total=False):
     headline: str
     walk: str
     next: str
+    by_authority: str
+    found: List[str]
     beside: List[str]
     base: Optional[BaseSize]
     curve_range: List[List[float]]

@@ -254,7 +254,11 @@ class WalkSettings(TypedDict, total=False):
         Default: "none". No law has been checked with filter tests; the report says its source.
     concentration
         How densely the base arrives, for a law that depends on it: volume of particles by volume of voids.
-        Default: what an increment brings into the first layer of voids.
+        Default: what an increment brings into the first layer of voids. "by-void", on a lattice: what the walk
+        brings into each void in each increment.
+    arch_size
+        Which size counts where the concentration is "by-void": the particle's "own", or that of the mean volume
+        of the particles in its void ("void-mean"). Default: "own".
     blocked
         What a blocked constriction is to those that follow: "closed", or "open" beside the particle that blocks
         it, for finer particles and water. Default: "closed". Openings need every particle walked one by one, so
@@ -266,6 +270,7 @@ class WalkSettings(TypedDict, total=False):
     conductance_exponent: float
     arching: str
     concentration: float
+    arch_size: str
     blocked: str
 
 
