@@ -15,6 +15,14 @@ pub struct OtherCurve {
     pub times_grains: f64,
 }
 
+/// The ends of a guess, by relative density.
+const END_GUESSES: [(f64, &str); 2] = [(1.0, "densest guess"), (0.0, "loosest guess")];
+
+/// What the guess at this relative density is called where it is an end.
+pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
+    END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
+}
+
 /// The ends of the range in which a constriction curve is known: of a filter whose finer part was packed, the
 /// constrictions as much coarser as leaving the others out made them finer at most; of a guess, the densest
 /// and the loosest. None for a curve that was given, or measured on the whole.
@@ -35,6 +43,6 @@ pub(super) fn of(
         Some(OtherCurve { name, curve: inscribed(filter, density).ok()?, times_grains: 1.0 })
     };
     let is_other = |(end, _): &(f64, &str)| guessed.is_some_and(|given| given != *end);
-    let guesses = [(1.0, "densest guess"), (0.0, "loosest guess")].into_iter().filter(is_other).map(guess);
+    let guesses = END_GUESSES.into_iter().filter(is_other).map(guess);
     coarser.into_iter().chain(guesses).flatten().collect()
 }

@@ -27,7 +27,7 @@ mod supply;
 mod thickness;
 mod void_graph;
 
-pub use curve_ends::OtherCurve;
+pub use curve_ends::{OtherCurve, end_of_guess};
 pub use error::CaseError;
 use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES};

@@ -44,7 +44,7 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
     let row = &high.boundaries[0];
     assert!(
-        row.band.is_none() && row.band_note.as_ref().unwrap().contains("searched (estimate 0)"),
+        row.band.is_none() && row.band_note.as_ref().unwrap().contains("searched (loosest guess)"),
         "{row:?}"
     );
 }

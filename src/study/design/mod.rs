@@ -233,7 +233,7 @@ fn searched(
         let text = format!("{} of {total} networks are done already", done.len());
         (callbacks.on_event)(Event::Studying(&text));
     }
-    let text = format!("searching {} networks", total - done.len() as u64);
+    let text = format!("searching up to {} networks", total - done.len() as u64);
     (callbacks.on_event)(Event::Studying(&text));
     let was_done: Vec<(usize, u64)> = done.iter().map(|done| (done.row, done.network)).collect();
     let done = Mutex::new(done);
@@ -278,7 +278,8 @@ fn searched(
     let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
     let is_spared = |row: usize| {
         let done = done.lock().expect("no search panics while it keeps");
-        is_spared(&done, row, &less[row])
+        let less: Vec<(usize, u64)> = less[row].iter().map(|&less| (less, rows[less].networks())).collect();
+        is_spared(&done, row, &less)
     };
     let begun = (0..rows.len()).into_par_iter().try_for_each(|row| {
         first(row)?;

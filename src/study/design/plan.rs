@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::case::end_of_guess;
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
 use crate::scene::{
@@ -269,7 +270,9 @@ fn density_words(scene: &Scene) -> String {
     match (filter.density, filter.friction, filter.estimate, &filter.curve) {
         (Some(word), ..) => word.name().to_owned(),
         (None, Some(friction), ..) => format!("friction {friction}"),
-        (.., Some(estimate), _) => format!("estimate {estimate}"),
+        (.., Some(estimate), _) => {
+            end_of_guess(estimate).map_or_else(|| format!("estimate {estimate}"), str::to_owned)
+        }
         (.., Some(crate::scene::CurveSource::Shipped(name))) => {
             name.rsplit('-').next().unwrap_or(name).to_owned()
         }

@@ -44,7 +44,8 @@ pub(super) fn design(
     // A row without networks is as the worst of its ends.
     let as_end = |row: &Row| {
         let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
-        let worst = ends.filter_map(|(_, found)| found.as_ref()).min_by(|a, b| holds_less(a, b));
+        let worst = ends.filter_map(|(_, found)| found.as_ref()).filter(|found| !found.is_spared);
+        let worst = worst.min_by(|a, b| holds_less(a, b));
         worst.expect("a row without networks has ends").named(row)
     };
     let found = rows.iter().zip(&searched).map(|(row, found)| found.clone().unwrap_or_else(|| as_end(row)));
@@ -58,6 +59,9 @@ pub(super) fn design(
         let no_band = no_band(row, rows, &found);
         let band = band(row, held[at].filter(|_| no_band.is_none()))?;
         (found[at].of.band, found[at].of.band_note) = (band, no_band.as_ref().map(Finding::with_to_do));
+        let notes = found[at].of.no_erosion_note.take().into_iter().chain(spared_ends(row, rows, &found));
+        let notes: Vec<String> = notes.collect();
+        found[at].of.no_erosion_note = (!notes.is_empty()).then(|| notes.join(" "));
         let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
     }
@@ -68,7 +72,7 @@ pub(super) fn design(
             |other: &Row| other.wanted.thickness == row.wanted.thickness && other.ends.contains(density);
         let all: Vec<_> = found.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
         let only = if let [(only, _)] = all[..] { only.of.as_end.as_ref() } else { None };
-        of.of.end_of.is_none() || only != Some(density)
+        !of.is_spared && (of.of.end_of.is_none() || only != Some(density))
     };
     let shown = found.iter().zip(rows).filter(is_shown);
     let boundaries: Vec<DesignRow> = shown.map(|(found, _)| found.of.clone()).collect();
@@ -154,6 +158,8 @@ struct FoundRow {
     eroding: u64,
     /// What is to be said of its boundary of no erosion.
     of_boundary: Vec<Finding>,
+    /// Whether it is an end that cannot set the answer, of which the first network alone was searched.
+    is_spared: bool,
 }
 
 impl FoundRow {
@@ -190,7 +196,22 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
 
 /// What was found of the row itself, where it was searched, and of the ends of its range.
 fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
-    rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other)).map(|(_, found)| found)
+    let in_range = rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other));
+    in_range.map(|(_, found)| found).filter(|found| !found.is_spared)
+}
+
+/// That an end of a row's range was searched on its first network alone.
+fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<String> {
+    let spared = rows.iter().zip(found).filter(|(other, found)| found.is_spared && is_in_range(row, other));
+    let said = |(_, end): (&Row, &FoundRow)| {
+        let first = end.of.networks.first().and_then(|of| of.no_erosion).unwrap_or_default();
+        format!(
+            "The end {} holds clearly more, to D15F/D85B {first:.2} on the first of {} networks: it cannot set \
+             the answer, and the other networks were not searched.",
+            end.of.density, row.case.scene.walk.replicates
+        )
+    };
+    spared.map(said).collect()
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
@@ -382,19 +403,10 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let of_pan = of_first.as_ref().and_then(|_| of_pan(row));
     let of_boundary: Vec<Finding> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
     let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
-    let note = |findings: &[Finding], spared: Option<String>| {
-        let said: Vec<String> = findings.iter().map(Finding::with_to_do).chain(spared).collect();
+    let note = |findings: &[Finding]| {
+        let said: Vec<String> = findings.iter().map(Finding::with_to_do).collect();
         (!said.is_empty()).then(|| said.join(" "))
     };
-    let spared = (done.len() as u64) < row.networks();
-    let spared = spared.then(|| {
-        format!(
-            "{} of {} networks was searched: this end holds clearly more than the other and cannot set the \
-             answer.",
-            done.len(),
-            row.networks()
-        )
-    });
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
     let of = DesignRow {
         density: row.wanted.density.clone(),
@@ -406,10 +418,10 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         },
         grains_per_void: row.case.grains_per_void,
         no_erosion,
-        no_erosion_note: note(&of_boundary, spared),
+        no_erosion_note: note(&of_boundary),
         holds_to,
         continuing,
-        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>(), None),
+        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>()),
         unsteady: unsteady.map(|[held, eroding]| finding::unsteady(held, eroding, "").sentence()),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
@@ -426,7 +438,8 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         end_of: row.end_of.clone(),
     };
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;
-    let found = FoundRow { of, unsteady, eroding, of_boundary };
+    let is_spared = (done.len() as u64) < row.networks();
+    let found = FoundRow { of, unsteady, eroding, of_boundary, is_spared };
     let band_note = found.unheld("").map(|unheld| unheld.sentence());
     FoundRow { of: DesignRow { band_note, ..found.of }, ..found }
 }
