@@ -4,20 +4,23 @@
     scripts/checks/planted_failures.py                       every mistake
     scripts/checks/planted_failures.py form lints            those of some jobs
     scripts/checks/planted_failures.py wheel --wheel W.whl   with a wheel at hand; without one its example is left out
+    scripts/checks/planted_failures.py python --program P    with a program at hand; without one the book is left out
 
 A step of a job runs as `run_workflow.py` runs it, from the YAML itself. It must pass without the mistake, then fail with it and
 say why. Where the whole step takes an hour, the part that must see the mistake runs alone, and the table says which.
-`rustup` does nothing here: every job has the Rust of this machine. Prints a row of Markdown for each mistake; exit code 1 where one
-went unseen. What is compiled stays in target/planted-failures.
+`rustup` does nothing here: every job has the Rust of this machine. Crates are those of this machine's cargo, where it keeps them, so
+that they are compiled once for all jobs. Prints a row of Markdown for each mistake; exit code 1 where one went unseen. What is
+compiled stays in target/planted-failures.
 """
 
 import argparse
+import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from run_workflow import ROOT, Runner, combination, yaml
@@ -27,8 +30,8 @@ MISSPELT = "rec" + "ieves"
 TUTORIALS = "scripts/book/tutorials"
 WORKFLOW = ROOT / ".github" / "workflows" / "check.yml"
 BUILT = ROOT / "target" / "planted-failures"
-#: What a release build takes from its time where only failure and success are looked at.
-QUICK = "CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_CODEGEN_UNITS=256 CARGO_INCREMENTAL=1"
+#: The part of the Python package's tests that must see a mistake; compiled quickly, as little is walked.
+PYTHON = (("scripts/checks/test_python.sh", "PROFILE=dev scripts/checks/test_python.sh -k test_package"),)
 
 
 @dataclass
@@ -47,8 +50,8 @@ class Plant:
     instead: tuple = ()
     #: A name of the commit that was there before the mistake.
     tag: str = ""
-    #: Whether a wheel must be at hand.
-    needs_wheel: bool = field(default=False)
+    #: What of an earlier step must be at hand: the name of an option.
+    needs: str = ""
 
 
 def added(text):
@@ -152,7 +155,7 @@ PLANTS = [
         "an example in a docstring that says what is not so",
         [("scripts/python/python/voidwalk/_soil.py", "vw.Gradation.single(0.2).d(50)\n        0.2", "vw.Gradation.single(0.2).d(50)\n        0.3")],
         "_soil.py",
-        (("scripts/checks/test_python.sh", f"{QUICK} scripts/checks/test_python.sh -k test_package"),),
+        PYTHON,
     ),
     Plant(
         "python",
@@ -160,7 +163,7 @@ PLANTS = [
         "a function that returns another type than it says",
         [("scripts/python/python/voidwalk/_scene.py", "    return _voidwalk.init_text()", "    return len(_voidwalk.init_text())")],
         "Incompatible return value type",
-        (("scripts/checks/test_python.sh", f"{QUICK} scripts/checks/test_python.sh -k test_package"),),
+        PYTHON,
     ),
     Plant(
         "python",
@@ -168,6 +171,7 @@ PLANTS = [
         "a tutorial that no list has",
         [(f"{TUTORIALS}/planted.md", "", "# Planted\n")],
         "planted",
+        needs="program",
     ),
     Plant(
         "wheel",
@@ -183,7 +187,7 @@ PLANTS = [
         "an example that asks for what there is not",
         [("scripts/examples/first_verdict.py", "import voidwalk as vw", "import voidwalk as vw\nvw.no_such_call()")],
         "no_such_call",
-        needs_wheel=True,
+        needs="wheel",
     ),
 ]
 
@@ -213,10 +217,15 @@ class Trial:
         for environment in ("forge", "python", "book-environment"):
             shutil.rmtree(BUILT / environment, ignore_errors=True)
         (self.clone / "target").symlink_to(BUILT)
+        if args.program:
+            (BUILT / "release").mkdir(exist_ok=True)
+            shutil.copy(args.program, BUILT / "release" / "voidwalk")
         if args.wheel:
             (self.clone / "packages").mkdir()
             shutil.copy(args.wheel, self.clone / "packages")
         self.runner = Runner(workflow, self.job, combination(self.job, {}), self.work, self.clone)
+        # A crate at another place is another crate to cargo.
+        self.runner.environment["CARGO_HOME"] = os.environ.get("CARGO_HOME", str(Path.home() / ".cargo"))
         #: Of steps that passed without a mistake: seconds.
         self.passed = {}
 
@@ -270,6 +279,7 @@ def main():
     jobs = list(dict.fromkeys(plant.job for plant in PLANTS))
     parser.add_argument("jobs", nargs="*", metavar="JOB", help=", ".join(jobs))
     parser.add_argument("--wheel", type=Path, help="a wheel of this checkout")
+    parser.add_argument("--program", type=Path, help="a program of this checkout, compiled for release")
     parser.add_argument("--only", metavar="STEP", help="of these jobs this step alone")
     args = parser.parse_args()
     unknown = [job for job in args.jobs if job not in jobs]
@@ -287,8 +297,8 @@ def main():
             for plant in PLANTS:
                 if plant.job != job or (args.only and plant.step != args.only):
                     continue
-                if plant.needs_wheel and not args.wheel:
-                    print(row(plant, "left out: no `--wheel`", 0), flush=True)
+                if plant.needs and not getattr(args, plant.needs):
+                    print(row(plant, f"left out: no `--{plant.needs}`", 0), flush=True)
                     continue
                 seen, said = trial.of(plant)
                 print(said, flush=True)
