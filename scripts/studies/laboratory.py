@@ -182,7 +182,7 @@ class Models(Walks):
             walked[ratio] = [[runs[run]["eroded_mass_fraction"] for runs in replicates] for run in (0, 1)]
             kept[ratio] = [runs[0].get("k_over_k0") for runs in replicates]
             concentration = (outcomes[0].get("arching") or {}).get("concentration")
-        row = {"walked_concentration": concentration, "replicates": REPLICATES}
+        row = {"walked_concentration": concentration, "replicates": min((len(of) for runs in walked.values() for of in runs), default=0)}
         for at, run in enumerate(RUNS):
             row |= {run + what: value for what, value in zip(FOUND, boundary(shares(at)))}
         below = [ratio for ratio, of in kept.items() if row["first_holds_to"] == round(ratio, 3) and None not in of]
@@ -206,7 +206,7 @@ class Models(Walks):
                 break
             d50 *= 1.03
         return {"first": round(statistics.mean(found), 4), "first_least": round(min(found), 4), "first_most": round(max(found), 4),
-                "replicates": REPLICATES}
+                "replicates": len(replicates)}
 
 
 def d50_by_number(cu):

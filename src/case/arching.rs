@@ -34,13 +34,11 @@ impl Case {
     }
 
     /// How the concentration of each void of the lattice follows from the particles in it. The voids have
-    /// equal volumes. The filter's grains have the volume of the base by the mass ratio, as both are equally
-    /// dense.
+    /// equal volumes: that of the grains of one void by the void ratio. The base plays no part.
     fn by_void(&self) -> Option<ByVoid> {
-        let of_base = self.n_base as f64 * self.sampler.whole().mean_cube()?;
-        let of_voids = of_base / self.mass_ratio? * self.void_ratio()?;
-        let size = self.scene.exits.arch_size.unwrap_or_default();
-        Some(ByVoid { void_cube: of_voids / self.counts[0] as f64, size })
+        let of_grain = self.filter.mean_cube_between(0.0, f64::INFINITY)? / self.unit_mm.powi(3);
+        let void_cube = self.grains_per_void? * of_grain * self.void_ratio()?;
+        Some(ByVoid { void_cube, size: self.scene.exits.arch_size.unwrap_or_default() })
     }
 
     /// Volume of the voids of the filter by that of its grains, where it is known.

@@ -2,10 +2,17 @@
 //!
 //! # What is decided
 //! A particle that would pass a constriction of `R` times its size (diameter by diameter) starts an arch with
-//! the probability that a [`Law`] gives. It stays, and with it as many more of those that follow it through
-//! this constriction in the same increment as an arch of this `R` has, as far as they come: particles of the
-//! same chunk, which were inserted together. The constriction closes from the next increment on, as one that
-//! a coarser particle blocked. Particles so fine that the law gives no arch pass, and are none of an arch.
+//! the probability that a [`Law`] gives. It stays, and with it as many more of those of its chunk that follow
+//! it through this constriction in the same increment as an arch of this `R` has, as far as they come. The
+//! constriction closes from the next increment on, as one that a coarser particle blocked. Particles so fine
+//! that the law gives no arch pass, and are none of an arch.
+//!
+//! A chunk is 16,384 particles in the order of insertion ([`CHUNK`](super::CHUNK)). Those of one
+//! increment may be in many chunks, and one chunk may hold those of many increments. **Each chunk begins an
+//! arch of its own** in a constriction, whatever others do there in the same increment, so that a constriction
+//! retains as many arches as chunks come through it. How many particles are in arches, how many arches there
+//! are, and their mass therefore depend on the chunk and on the width of the lattice: they are no physical
+//! numbers. An arch counted once for each constriction and increment is left to do.
 //!
 //! Decisions are independent of each other and made on the open set at the start of the increment, so the
 //! order of chunks and threads plays no part. The particle at place `j` of chunk `c` takes word `j` of the
@@ -79,7 +86,8 @@ pub static LAWS: [Law; 3] = [
                 grains pass before a jam, A = 9900. The constants were read in a later review, not in the \
                 article; \
                 that a jam comes after so many grains, each with the same probability, is taken from its \
-                abstract. Nothing dilutes it, so it is the most that a dense front of base can do.",
+                abstract. It is the law of the dense limit: nothing dilutes it. It held bases that eroded in \
+                tests.",
         widest: 4.94,
         of_concentration: false,
         probability: zuriguel,
@@ -98,8 +106,8 @@ pub static LAWS: [Law; 3] = [
     Law {
         name: "critical-3",
         source: "after Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102",
-        basis: "Every particle with R < 3 starts an arch: the most that arches can do in a suspension. It \
-                retains as sieving with particles three times as large, by which a walk is checked.",
+        basis: "Every particle below R = 3 starts an arch. It retains as sieving with particles three times \
+                as large, by which a walk is checked. It held bases that eroded in tests.",
         widest: 3.0,
         of_concentration: false,
         probability: |_, _| 1.0,

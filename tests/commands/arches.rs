@@ -122,16 +122,30 @@ fn by_void_the_walk_brings_its_own_concentration() {
     let mean = of("mean", &["--set", "walk.arch_size=void-mean"]);
     assert_eq!(mean["arching"]["by_void"]["size"], "void-mean");
     assert_ne!(mean["summary"], one["summary"]);
-    // What an increment brings into a layer, by the volume of the layer's voids, is what the default works out.
-    let single =
-        ["--set", "walk.arching=marin-2018", "--set", "base.single_mm=0.1", "--set", "filter.d0_mm=1"];
-    let scene = SCENE.replace("cu = 1.5\nd15f_over_d85b = 7\n", "");
-    fs::write(at.join("s.toml"), scene).unwrap();
-    let first = walked(at, "first", &single)["arching"]["concentration"].as_f64().unwrap();
-    let by_void = walked(at, "void", &[&single[..], &["--set", "walk.concentration=by-void"]].concat());
-    let void = by_void["arching"]["by_void"]["void_mm"].as_f64().unwrap();
-    let of_void = by_void["n_base"].as_f64().unwrap() / 100.0 / 100.0;
-    assert!((of_void * (0.1 / void).powi(3) / first - 1.0).abs() < 1e-6, "{of_void} {void} {first}");
+}
+
+/// A void has the volume of its grains by the void ratio, whatever the base is.
+#[test]
+fn a_void_is_as_large_as_the_filter_makes_it() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let table = "size_mm,percent_finer\n0.20,100\n0.15,70\n0.10,40\n0.06,30\n";
+    fs::write(at.join("b.csv"), table).unwrap();
+    let scene = |filter: &str, base: &str| {
+        let scene = format!("[filter]\nd0_mm = 1\n{filter}\n[base]\n{base}\n");
+        let rest = "[network]\nnx = 6\nny = 6\nnz = 12\n[record]\nsensitivity = []\n";
+        fs::write(at.join("s.toml"), scene + rest).unwrap();
+        walked(at, "v", &[&BY_VOID[..], &SHORT].concat())["arching"]["by_void"]["void_mm"].as_f64().unwrap()
+    };
+    let library = "cu = 1.5\nlibrary = \"loose\"";
+    // With 30 % of the base in the pan, with sizes for all of it, and with another base.
+    let tailed = scene(library, "sieve = \"b.csv\"");
+    assert_eq!(scene(library, "sieve = \"b.csv\"\nd0_mm = 0.05"), tailed);
+    assert_eq!(scene(library, "single_mm = 0.1"), tailed);
+    // By hand: of a linear filter of Cu 1.5 from 1 mm the mean cube is 6 ln 1.5 / (1 - 1.5^-6) = 2.667; a void
+    // has 0.61 grains, and the void ratio is 0.658. (0.61 * 2.667 * 0.658)^(1/3) = 1.0230.
+    let shipped = scene("curve = \"shire2016-cu1.5-loose\"", "single_mm = 0.1");
+    assert!((shipped - 1.0230).abs() < 1e-4, "{shipped}");
 }
 
 #[test]

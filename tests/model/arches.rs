@@ -126,6 +126,20 @@ fn an_arch_keeps_its_particles() {
     assert_eq!((wide.eroded, wide.arches), (50, 0));
 }
 
+/// Each chunk of 16,384 particles begins an arch of its own, in one increment and through one constriction: of
+/// more chunks more is retained. This is what is done, not what grains do.
+#[test]
+fn each_chunk_begins_an_arch_of_its_own() {
+    let one = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
+    for (n, arches) in [(16_384, 1), (16_385, 2), (65_000, 4), (200_000, 13)] {
+        let tally = walk(one, "critical-3", n, 1, 7);
+        // The last chunk has one particle in the second case.
+        let retained = if n == 16_385 { 6 } else { 5 * arches };
+        assert_eq!((tally.arches, tally.retained_in_arches), (arches, retained), "{n}");
+        assert_eq!(tally.eroded, n - retained);
+    }
+}
+
 /// One constriction, in front of which so many particles lie at once in a void of known volume. Each asks the
 /// law for the concentration of the others; the first that starts an arch keeps four of those after it.
 #[test]
