@@ -5,9 +5,9 @@ use super::row::Row;
 use super::search::{Done, Found};
 use crate::outcome::design::Beyond;
 
-/// As many times as much as the greatest of the networks of the end that holds least does the first network of
-/// another end have to hold. So even one of its networks that lies as far below its first as those lie apart
-/// holds more than the least of them, as many times as much.
+/// The first network of an end has to hold so many times as much as the greatest of the networks of the end
+/// that holds least. So even one of its networks that lies as far below its first as those lie apart holds
+/// more than the least of them, as many times as much.
 const CLEAR: f64 = 1.25;
 
 /// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for

@@ -206,8 +206,8 @@ fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<String> {
     let said = |(_, end): (&Row, &FoundRow)| {
         let first = end.of.networks.first().and_then(|of| of.no_erosion).unwrap_or_default();
         format!(
-            "The end {} holds clearly more, to D15F/D85B {first:.2} on the first of {} networks: it cannot set \
-             the answer, and the other networks were not searched.",
+            "The end {} holds clearly more, to D15F/D85B {first:.2} on the first of {} networks: it cannot \
+             set the answer, and the other networks were not searched.",
             end.of.density, row.case.scene.walk.replicates
         )
     };
