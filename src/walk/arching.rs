@@ -7,12 +7,12 @@
 //! constriction closes from the next increment on, as one that a coarser particle blocked. Particles so fine
 //! that the law gives no arch pass, and are none of an arch.
 //!
-//! A chunk is 16,384 particles in the order of insertion ([`CHUNK`](super::CHUNK)). Those of one
-//! increment may be in many chunks, and one chunk may hold those of many increments. **Each chunk begins an
-//! arch of its own** in a constriction, whatever others do there in the same increment, so that a constriction
-//! retains as many arches as chunks come through it. How many particles are in arches, how many arches there
-//! are, and their mass therefore depend on the chunk and on the width of the lattice: they are no physical
-//! numbers. An arch counted once for each constriction and increment is left to do.
+//! A chunk is 16,384 particles in the order of insertion ([`CHUNK`](super::CHUNK)). Those of one increment
+//! may be in many chunks, and one chunk may hold those of many increments. **Each chunk begins an arch of its
+//! own** in a constriction, whatever others do there in the same increment, so that a constriction retains as
+//! many arches as chunks come through it. How many particles are in arches, how many arches there are, and
+//! their mass therefore depend on the chunk and on the width of the lattice: they are no physical numbers. An
+//! arch counted once for each constriction and increment is left to do.
 //!
 //! Decisions are independent of each other and made on the open set at the start of the increment, so the
 //! order of chunks and threads plays no part. The particle at place `j` of chunk `c` takes word `j` of the
