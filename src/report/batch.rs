@@ -122,7 +122,9 @@ fn governs(folder: &Path, row: &WalkedRow) -> Markup {
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
         ": " (clean(&row.answer_in_words()))
-        @if let Some(walk) = &row.walk { ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder)) }
+        @if let Some(walk) = &row.walk {
+            ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
+        }
         "."
     }
 }

@@ -60,18 +60,6 @@ impl WalkedRow {
         let doubted = self.walk.as_ref().is_some_and(|walk| doubts.contains(&walk.confidence));
         doubted || self.rules.met == Some(false) || self.rules.may_lose_fines
     }
-
-    pub(super) fn depth(&self) -> &'static str {
-        match self.walk.as_ref().map(|walk| walk.in_full) {
-            Some(true) => "in full",
-            Some(false) => "first look",
-            None => "not walked",
-        }
-    }
-
-    pub(super) fn why_not(&self) -> Option<String> {
-        self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
-    }
 }
 
 /// How many walks came to each class; of "no erosion" also how far it can be relied on.
@@ -95,4 +83,66 @@ fn classes(walks: &[&SampleWalk]) -> String {
         all.push(format!("{of_class} {}{of}", class.words()));
     }
     all.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::{Gradation, SoilSample};
+    use crate::outcome::record::Ratios;
+    use crate::verdict::{BatchFilter, BatchRow, PairOptions};
+
+    fn walked(sample: &str, met: bool, walk: Option<(Verdict, Confidence, bool)>) -> WalkedRow {
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
+        let of = SoilSample { name: sample.into(), path: sample.into(), curve };
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let rules = BatchRow::of(&of, ("F", &filter), PairOptions::default());
+        let walk = walk.map(|(verdict, confidence, in_full)| SampleWalk {
+            folder: String::new(),
+            in_full,
+            headline: String::new(),
+            verdict,
+            confidence,
+            reason: None,
+            replicates: 2,
+            ratios: Ratios { d15f_over_d85b: 4.0, d15f_over_d95b: 3.0 },
+            base: None,
+            runs: Vec::new(),
+            curve_range: Vec::new(),
+            probability_no_erosion: Some(0.93),
+            probability_bound: None,
+            probability_by_tests: Some(0.88),
+        });
+        let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
+        WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
+    }
+
+    #[test]
+    fn no_erosion_is_counted_with_what_speaks_against_it() {
+        let rows = vec![
+            walked("A", true, Some((Verdict::None, Confidence::Within, true))),
+            walked("B", false, Some((Verdict::None, Confidence::Contradicted, false))),
+            walked("C", true, Some((Verdict::Some, Confidence::Outside, false))),
+            walked("D", true, None),
+        ];
+        let against: Vec<bool> = rows.iter().map(WalkedRow::is_against_practice).collect();
+        assert_eq!(against, [false, true, false, false]);
+        assert_eq!(rows[3].answer_in_words(), "not walked: no table");
+        assert_eq!(
+            rows[0].answer_in_words(),
+            "no erosion in the model, within checked range. Probability of no erosion in a test: 93 % by the \
+             walk, 88 % by published tests"
+        );
+        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
+        assert_eq!(
+            batch.walks_in_words("F"),
+            [
+                "3 walked (1 in full, 2 first looks): 2 no erosion (1 contradicted by practice), 1 some \
+                 erosion; 1 not walked",
+                "met by practice, and the walk erodes: C"
+            ]
+        );
+    }
 }

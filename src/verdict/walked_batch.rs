@@ -161,6 +161,14 @@ impl WalkedBatch {
 }
 
 impl WalkedRow {
+    fn depth(&self) -> &'static str {
+        self.walk.as_ref().map_or("not walked", SampleWalk::depth)
+    }
+
+    fn why_not(&self) -> Option<String> {
+        self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
+    }
+
     /// The columns of `batch.csv`, and under their headings what a terminal and a page show.
     pub fn columns<'a>() -> Columns<'a, Self> {
         let walk = |row: &Self| row.walk.clone();
