@@ -232,10 +232,10 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
     ];
     let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
     let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
-    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Up to 1 D15F is \
-                   within the limit. Hollow: the limit is at most this, so the ratio is at least this. Black: \
-                   nothing erodes in the model, and a rule of retention or of the filter’s own stability is \
-                   not met. Below the dashed line the walk erodes less than the threshold. The class also \
-                   takes the second run.";
+    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Up to 1 D15F \
+                   is within the limit. Hollow: the limit is at most this, so the ratio is at least this. \
+                   Black: nothing erodes in the model, and a rule of retention or of the filter’s own \
+                   stability is not met. Below the dashed line the walk erodes less than the threshold. The \
+                   class also takes the second run.";
     Some(Drawn::new("batch-eroded", figure, caption))
 }
