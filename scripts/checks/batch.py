@@ -7,7 +7,8 @@
 An AGS4 file of drawn samples and three sheets of filters are written into a folder of /tmp. `voidwalk judge SAMPLES FILTERS --each`
 is timed; then the same work is done again in another folder, where the program is killed (SIGKILL) at drawn moments and called again
 until it ends. Another sample and another filter must be refused (exit code 2), and the same command must give the table at once.
-The exit code is 1 where two tables differ by a byte, where one took longer than --most seconds, or where anything else is not as said.
+The exit code is 1 where two tables differ by a byte, where one took longer than --most seconds, where no kill met a running
+program, where a walk that was done is done again, or where anything else is not as said.
 """
 
 import argparse
@@ -68,9 +69,14 @@ def tables(folder):
     return {name: (folder / name).read_bytes() for name in TABLES}
 
 
-def killed(words, at, moments):
+def walks(folder):
+    """Every walk that is done: its file, and when it was written."""
+    return {path: path.stat().st_mtime_ns for path in sorted((folder / "pairs/cases").glob("*/outcome.json"))}
+
+
+def killed(words, at, moments, place):
     """The same work, killed after each of these seconds where it still runs; how often it was."""
-    kills = 0
+    kills, done = 0, {}
     for seconds in moments:
         process = subprocess.Popen(words, cwd=at, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         try:
@@ -80,7 +86,13 @@ def killed(words, at, moments):
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             kills += 1
+        now = walks(place)
+        if any(now.get(path) != when for path, when in done.items()):
+            sys.exit("a walk that was done before a kill was done again")
+        done = now
     call(words, at)
+    if any(walks(place).get(path) != when for path, when in done.items()):
+        sys.exit("a walk that was done before a kill was done again")
     return kills
 
 
@@ -123,22 +135,33 @@ def main():
         walked = sum(",not walked," not in row for row in rows)
         print(f"{words.samples} samples, {len(filters)} filters: rules {of_rules:.2f} s; {walked} of {len(rows)} pairs walked in {seconds:.1f} s")
         moments = [draw.uniform(0, 1.2 * seconds / max(1, words.kills)) for _ in range(words.kills)]
-        kills = killed(judge("killed"), at, moments)
+        kills = killed(judge("killed"), at, moments, at / "killed")
         differ = [name for name, content in tables(at / "killed").items() if content != whole[name]]
         print(f"killed {kills} times and continued: {'differ: ' + ', '.join(differ) if differ else 'the same to the byte'}")
+        stood = walks(at / "whole")
         begun = time.monotonic()
         call(judge("whole"), at)
-        print(f"the same command again: {time.monotonic() - begun:.1f} s")
+        again = time.monotonic() - begun
+        print(f"the same command again: {again:.1f} s")
+        wrong = []
+        if words.kills and not kills:
+            wrong.append("the program was never killed before it ended")
+        if again > max(1.0, 0.2 * seconds):
+            wrong.append("the same command again took as long as walks take")
+        if not stood or walks(at / "whole") != stood:
+            wrong.append("the same command walked again")
         write_samples(at / "other.ags", soils[:-1] + [made_up(draw)])
         call(judge("whole", samples="other.ags"), at, 2)
         call(judge("whole", of=filters[:-1]), at, 2)
         call(judge("whole") + ["--set", "seed=2"], at, 2)
-        changed = tables(at / "whole") != whole
+        changed = tables(at / "whole") != whole or walks(at / "whole") != stood
         print(f"other samples, filters and settings: refused, {'and the table changed' if changed else 'and nothing changed'}")
         late = seconds > words.most
         if late:
             print(f"more than {words.most:g} s")
-        sys.exit(1 if differ or changed or late else 0)
+        for problem in wrong:
+            print(problem)
+        sys.exit(1 if differ or changed or late or wrong else 0)
 
 
 if __name__ == "__main__":

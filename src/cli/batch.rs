@@ -15,6 +15,7 @@ use crate::outcome::table::{Columns, Shown};
 use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;
 use crate::study::compare::{self, ComparePlan, Compared};
+use crate::study::refuse_twice;
 use crate::verdict::batch::{NAMED, columns, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
 
@@ -42,6 +43,7 @@ pub(super) fn of_soils(dispersive: bool, joint_mm: Option<f64>) -> [(&'static st
 
 /// Applies every rule to each sample and each filter.
 pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
+    refuse_twice(&args.filters)?;
     let table = BatchTable::read(&args.base, &args.filters, options).map_err(RunError::refused)?;
     let rows = &table.rows;
     let walks = walks(args, rows)?;

@@ -61,15 +61,30 @@ pub fn accept<'a>(
     fail_on: Option<FailOn>,
     cases: impl IntoIterator<Item = (&'a str, Verdict, Confidence)>,
 ) -> Result<(), RunError> {
+    accept_walked(fail_on, cases.into_iter().map(|(name, verdict, label)| (name, Ok((verdict, label)))))
+}
+
+/// As [`accept`], of cases of which some were not walked: why. Those are not accepted.
+///
+/// # Errors
+/// The cases whose verdict is not accepted, or not known.
+pub fn accept_walked<'a>(
+    fail_on: Option<FailOn>,
+    cases: impl IntoIterator<Item = (&'a str, Result<(Verdict, Confidence), &'a str>)>,
+) -> Result<(), RunError> {
     let Some(fail_on) = fail_on else { return Ok(()) };
-    let not_accepted: Vec<String> = cases
-        .into_iter()
-        .filter(|(_, verdict, confidence)| fail_on.refuses(*verdict, *confidence))
-        .map(|(name, verdict, confidence)| {
-            let name = if name.is_empty() { String::new() } else { format!("{name}: ") };
-            format!("{name}{} ({})", verdict.words(), confidence.words())
-        })
-        .collect();
+    let refused = |walked: Result<(Verdict, Confidence), &str>| match walked {
+        Ok((verdict, label)) => {
+            let said = || format!("{} ({})", verdict.words(), label.words());
+            fail_on.refuses(verdict, label).then(said)
+        }
+        Err(why) => Some(format!("not walked ({why})")),
+    };
+    let said = |name: &str, why: String| {
+        if name.is_empty() { why } else { format!("{name}: {why}") }
+    };
+    let not_accepted: Vec<String> =
+        cases.into_iter().filter_map(|(name, walked)| Some(said(name, refused(walked)?))).collect();
     match not_accepted.is_empty() {
         true => Ok(()),
         false => Err(RunError::NotAccepted(format!(
@@ -101,6 +116,17 @@ mod tests {
             assert_eq!(accepted.collect::<Vec<_>>(), expected, "{verdict:?}, {confidence:?}");
             assert!(accept(None, [("a", verdict, confidence)]).is_ok());
         }
+    }
+
+    #[test]
+    fn a_case_that_was_not_walked_is_not_accepted() {
+        let within = Ok((Verdict::None, Confidence::Within));
+        for of in FailOn::value_variants() {
+            assert!(accept_walked(Some(*of), [("a", within)]).is_ok());
+            let problem = accept_walked(Some(*of), [("a", within), ("b", Err("no table"))]).unwrap_err();
+            assert!(problem.to_string().starts_with("b: not walked (no table), with"), "{problem}");
+        }
+        assert!(accept_walked(None, [("b", Err("no table"))]).is_ok());
     }
 
     #[test]

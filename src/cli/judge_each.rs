@@ -7,9 +7,8 @@ use super::args::JudgeArgs;
 use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
 use super::compare::campaign_options;
-use super::exit::accept;
+use super::exit::accept_walked;
 use super::print::{json, plain, shown, to_stdout};
-use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
@@ -48,11 +47,14 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         to_stdout(&words(&batch, &plan.constrictions_in_words(), out));
     }
     let names: Vec<String> = batch.rows.iter().map(name).collect();
-    let walked = batch.rows.iter().zip(&names).filter_map(|(row, name)| {
-        let walk = row.walk.as_ref()?;
-        Some((name.as_str(), walk.verdict, walk.confidence))
+    // Nobody knows the class of a pair that could not be walked; others were left out on purpose.
+    let is_asked = |row: &WalkedRow| !args.governing || row.governs.is_some() || row.rules.is_refused;
+    let asked = batch.rows.iter().zip(&names).filter(|(row, _)| row.walk.is_some() || is_asked(row));
+    let pairs = asked.map(|(row, name)| {
+        let class = row.walk.as_ref().map(|walk| (walk.verdict, walk.confidence));
+        (name.as_str(), class.ok_or(row.not_walked.as_str()))
     });
-    accept(results.accept.fail_on, walked)
+    accept_walked(results.accept.fail_on, pairs)
 }
 
 fn name(row: &WalkedRow) -> String {
@@ -65,13 +67,16 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter));
-        let classes = batch.classes(&filter.name);
-        let counted = Verdict::ALL.into_iter().zip(classes).filter(|(_, count)| *count > 0);
-        let counted: Vec<String> =
-            counted.map(|(class, count)| format!("{count} {}", class.words())).collect();
-        let walked: usize = classes.iter().sum();
-        let said = if walked == 0 { "none".into() } else { format!("{walked}: {}", counted.join(", ")) };
-        let _ = writeln!(text, "  walked {said}");
+        for said in batch.walks_in_words(&filter.name) {
+            let _ = writeln!(text, "  {}", plain(&said));
+        }
+        for row in batch.governing(&filter.name) {
+            let said = format!("{}: {}", row.rules.sample, row.answer_in_words());
+            let _ = writeln!(text, "  {}", plain(&said));
+        }
+    }
+    if batch.rows.iter().any(|row| row.rules.is_refused) {
+        let _ = writeln!(text, "\n--as-given walks pairs that look exchanged");
     }
     let _ = writeln!(text, "\n{}", plain(constrictions));
     let _ = writeln!(text, "{}", left_out_in_brief(&batch.model_leaves_out));

@@ -17,8 +17,7 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::record::Verdict;
-use crate::verdict::batch::may_govern;
+use crate::verdict::batch::open_in_words;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
 const RECORD: &str = "batch.json";
@@ -93,30 +92,19 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
     let rows = || batch.of_filter(&filter.name);
     let count = |met: Option<bool>| rows().filter(|row| row.rules.met == met).count();
-    let classes = batch.classes(&filter.name);
-    let walked: usize = classes.iter().sum();
-    let classes: Vec<String> = Verdict::ALL
-        .into_iter()
-        .zip(classes)
-        .filter(|(_, count)| *count > 0)
-        .map(|(class, count)| format!("{count} {}", class.words()))
-        .collect();
-    let mut govern: Vec<&WalkedRow> = rows().filter(|row| row.governs.is_some()).collect();
-    govern.sort_by_key(|row| row.governs);
+    let walks = batch.walks_in_words(&filter.name);
     let rules: Vec<BatchRow> = rows().map(|row| row.rules.clone()).collect();
-    let open: Vec<String> =
-        may_govern(&rules, &filter.name).into_iter().map(|row| name(&row.sample)).collect();
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
             li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
                 (count(Some(false))) " not met, " (count(None)) " without a result." }
-            li { b { "Walk" } ": "
-                @if walked == 0 { "nothing was walked." }
-                @else { (walked) " walked: " (classes.join(", ")) "." } }
-            @for row in &govern { li { (governs(folder, row)) } }
-            @if !open.is_empty() { li { "May govern, as its limit is not known: " (open.join(", ")) "." } }
+            @for (at, said) in walks.iter().enumerate() {
+                li { @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (sentence(said)) } "." }
+            }
+            @for row in batch.governing(&filter.name) { li { (governs(folder, row)) } }
+            @for said in open_in_words(&rules, &filter.name) { li { (sentence(&said)) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
                     by the finest." }
@@ -133,20 +121,25 @@ fn governs(folder: &Path, row: &WalkedRow) -> Markup {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
+        ": " (clean(&row.answer_in_words()))
         @if let Some(walk) = &row.walk {
-            "; " (cases::class(walk.verdict, folder, &walk.folder)) " by the walk"
-            @if let Some(of) = walk.probability_in_words() { ", probability of no erosion " (of) }
+            ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
         }
         "."
     }
 }
 
+/// With a capital letter.
+fn sentence(said: &str) -> String {
+    let mut letters = said.chars();
+    let first = letters.next().map_or(String::new(), |letter| letter.to_uppercase().collect());
+    clean(&(first + letters.as_str()))
+}
+
 fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     let class = |row: &WalkedRow| match &row.walk {
-        Some(walk) => html! {
-            (cases::class(walk.verdict, folder, &walk.folder)) br; span.small { (walk.depth()) }
-        },
-        None => html! { "not walked" br; span.small { (clean(&shorten(&row.not_walked, 80))) } },
+        Some(walk) => cases::class(walk.verdict, folder, &walk.folder),
+        None => html! {},
     };
     let table = Table::of(batch.rows.iter().take(LISTED))
         .class("cases")
@@ -159,12 +152,13 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
         @if batch.rows.len() > LISTED { p.small { "The rest is in batch.csv." } }
         p.small {
             "Limit: the strictest D15F by which the filter retains the sample. Governs: 1 for the sample \
-             with the least limit of its filter. Class by walk: with a link to the page of the walk; in \
-             full, or a first look of fewer replicates on a narrower lattice. Below a number its 95 % \
-             interval over the replicates; the threshold between the classes is "
+             with the least limit of its filter. Walked: in full, or a first look, which has fewer \
+             replicates on a narrower lattice where the settings do not name them. Class by walk: with a \
+             link to the page of the walk. Below a number its 95 % interval over the replicates; the \
+             threshold between the classes is "
             (threshold(batch.threshold))
-            ". Probability of no erosion: that a test would show none, by what the walk is worth for soils \
-             of this kind."
+            ". Probability of no erosion in a test: by what the walk is worth for soils of this kind, and \
+             by published tests alone."
         }
     }
 }
@@ -204,8 +198,8 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     let of = |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
     figure.add_points("sample", of(false));
     figure.add_points("governs a filter", of(true));
-    let caption = "Strictest limit of D15F of each sample. A filter retains the samples that lie above the \
-                   line of its D15F. Hollow: the limit is at most this.";
+    let caption = "Strictest limit of D15F of each sample. The D15F of a filter is within the limit of \
+                   the samples that lie on or above its line. Hollow: the limit is at most this.";
     Some(Drawn::new("batch-limits", figure, caption))
 }
 
@@ -219,6 +213,8 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
             class: walk.verdict,
             value: 100.0 * first.mean,
             interval: interval_in_percent(first),
+            is_against: row.is_against_practice(),
+            is_bound: row.rules.limit_at_most,
         })
     };
     let symbols: Vec<cases::AtRatio> = batch.rows.iter().filter_map(of).collect();
@@ -236,8 +232,10 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
     ];
     let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
     let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
-    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Left of 1 the \
-                   rules of retention are met. Below the dashed line the walk erodes less than the \
-                   threshold. The class also takes the second run.";
+    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Up to 1 D15F \
+                   is within the limit. Hollow: the limit is at most this, so the ratio is at least this. \
+                   Black: nothing erodes in the model, and a rule of retention or of the filter’s own \
+                   stability is not met. Below the dashed line the walk erodes less than the threshold. The \
+                   class also takes the second run.";
     Some(Drawn::new("batch-eroded", figure, caption))
 }

@@ -75,7 +75,14 @@ fn against_ratio(
     let x = Axis::linear("D15F / D85B (–)", low - margin, high + margin);
     let symbol = |line: &LedgerLine| {
         let (value, interval) = of(line)?;
-        Some(AtRatio { ratio: line.ratios.d15f_over_d85b, class: line.verdict, value, interval })
+        Some(AtRatio {
+            ratio: line.ratios.d15f_over_d85b,
+            class: line.verdict,
+            value,
+            interval,
+            is_against: false,
+            is_bound: false,
+        })
     };
     let symbols: Vec<AtRatio> = ledger.iter().filter_map(symbol).collect();
     cases::against_ratio(words, (x, y), rules, &symbols)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
+use super::figures::{Across, Axis, BLACK, BLUE, Colour, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::numbers::interval_in_percent;
 use super::run_figures::{run_name, verdict_colour};
 use crate::outcome::record::{Statistic, Verdict};
@@ -19,6 +19,10 @@ pub(super) struct AtRatio {
     pub class: Verdict,
     pub value: f64,
     pub interval: Option<(f64, f64)>,
+    /// Whether practice speaks against a case of "no erosion".
+    pub is_against: bool,
+    /// Whether the ratio is known to be at least that.
+    pub is_bound: bool,
 }
 
 /// One symbol a case, by class, over rules; the words are title and description.
@@ -31,12 +35,18 @@ pub(super) fn against_ratio(
     let mut figure = Figure::new(title, what, "", x, y).names_above();
     rules.into_iter().for_each(|rule| figure.add(rule));
     for (class, shape) in Verdict::ALL.into_iter().zip(SHAPES) {
-        let of_class = cases.iter().filter(|case| case.class == class);
-        let point = |case: &AtRatio| {
-            let point = Point::new(case.ratio, case.value, verdict_colour(class), shape);
-            point.y_interval(case.interval)
+        let point = |case: &AtRatio, colour: Colour| {
+            let point = Point::new(case.ratio, case.value, colour, shape).y_interval(case.interval);
+            if case.is_bound { point.hollow() } else { point }
         };
-        figure.add_points(class.words(), of_class.map(point));
+        // "No erosion" in green would say that the filter is a good one.
+        let is_doubted = |case: &AtRatio| class == Verdict::None && case.is_against;
+        let of_class = || cases.iter().filter(|case| case.class == class);
+        let plain = of_class().filter(|case| !is_doubted(case));
+        figure.add_points(class.words(), plain.map(|case| point(case, verdict_colour(class))));
+        let doubted = of_class().filter(|case| is_doubted(case));
+        let words = format!("{}, against practice", class.words());
+        figure.add_points(&words, doubted.map(|case| point(case, BLACK)));
     }
     figure
 }

@@ -54,7 +54,7 @@ async function ask(path, body, type) {
   return said;
 }
 
-const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "", samples: "" };
+const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "", samples: "", examples: {} };
 
 // --- What is taken: kept in the address, so that a page that is loaded again has it.
 
@@ -110,11 +110,13 @@ async function tryExample(button) {
   show($("#try-problem"), "");
   try {
     const key = async (name) => {
-      let sheet = state.sheets.find((one) => one.name === name);
+      // A sheet of somebody's own can have that name, too.
+      let sheet = state.sheets.find((one) => one.id === state.examples[name]);
       if (!sheet) {
         const answer = await fetch("examples/" + name, { cache: "no-store", credentials: "same-origin" });
         if (!answer.ok) throw new Error("there is no such example");
         sheet = await keep(name, await answer.blob());
+        state.examples[name] = sheet.id;
       }
       return sheet.soils.length > 1 ? `${sheet.id}#${sheet.soils[0].name}` : String(sheet.id);
     };
@@ -257,11 +259,11 @@ async function showSamples(query) {
     $("#samples-said").replaceChildren(...table.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")),
       ...(table.notes.length ? [list(table.notes)] : []));
     const kind = (at) => ({ class: table.numbers[at] ? "n" : null });
-    const marked = (text) => (text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
+    const marked = (text, row) => (text === "met" && table.unstable[row] ? text : text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
     $("#samples-table").replaceChildren(
       el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", kind(at), text)))),
-      el("tbody", {}, ...table.rows.map((row) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
-        table.headings[at] === "Result" ? marked(text) : text))))));
+      el("tbody", {}, ...table.rows.map((row, line) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
+        table.headings[at] === "Result" ? marked(text, line) : text))))));
   } catch (error) {
     for (const part of ["#samples-said", "#samples-table"]) $(part).replaceChildren();
     show($("#samples-problem"), error.message);

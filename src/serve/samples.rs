@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::outcome::table::Shown;
+use crate::study::{refuse_twice, shared};
 use crate::verdict::batch::columns;
 use crate::verdict::{BatchTable, PairOptions};
 
@@ -26,13 +27,21 @@ impl SampleTable {
         }
         let whole = base.split_once('#').map_or(base, |(sheet, _)| sheet);
         let paths: Vec<PathBuf> = filters.iter().map(|name| sheets.path(name)).collect::<Result<_, _>>()?;
+        refuse_twice(&paths).map_err(|problem| sheets.as_named(&problem.to_string()))?;
         let mut table = BatchTable::read(&sheets.path(whole)?, &paths, options).map_err(|e| e.to_string())?;
         // Sheets have their own names here, and no folder.
-        for row in &mut table.rows {
-            row.filter = sheets.as_named(&row.filter);
+        let mut names: Vec<String> =
+            table.filters.iter().map(|filter| sheets.as_named(&filter.name)).collect();
+        // Two sheets can have one name.
+        for at in shared(&names) {
+            names[at] = format!("{} {}", at + 1, names[at]);
+        }
+        let of_filter = (table.rows.len() / table.filters.len()).max(1);
+        for (at, row) in table.rows.iter_mut().enumerate() {
+            row.filter.clone_from(&names[at / of_filter]);
             row.note = sheets.as_named(&row.note);
         }
-        table.filters.iter_mut().for_each(|filter| filter.name = sheets.as_named(&filter.name));
+        table.filters.iter_mut().zip(names).for_each(|(filter, name)| filter.name = name);
         for (file, _) in &mut table.notes {
             *file = sheets.as_named(&file.display().to_string()).into();
         }
@@ -54,6 +63,7 @@ impl SampleTable {
             "headings": columns.iter().map(|column| &column.heading).collect::<Vec<_>>(),
             "numbers": columns.iter().map(|column| column.is_number).collect::<Vec<_>>(),
             "rows": cells,
+            "unstable": self.0.rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>(),
             "filters": self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows)).collect::<Vec<_>>(),
             "notes": notes.collect::<Vec<_>>(),
         })

@@ -10,7 +10,7 @@ use crate::run::folder::shown;
 ///
 /// # Errors
 /// The one.
-pub(super) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
+pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     let real: Vec<PathBuf> = files.iter().map(|file| real(file)).collect();
     match (1..files.len()).find(|&at| real[..at].contains(&real[at])) {
         Some(twice) => Err(RunError::Refused(format!("{} is named twice", shown(&files[twice])))),
@@ -54,7 +54,7 @@ pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
 }
 
 /// Where names stand that are not alone; large and small letters are the same to some disks.
-pub(super) fn shared(names: &[String]) -> Vec<usize> {
+pub(crate) fn shared(names: &[String]) -> Vec<usize> {
     let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
     (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
 }

@@ -9,3 +9,5 @@ mod kept;
 mod of_cases;
 pub mod percolation;
 pub(crate) mod precision;
+
+pub(crate) use file_names::{refuse_twice, shared};

@@ -48,6 +48,9 @@ pub struct BatchRow {
     pub tests: String,
     /// What else speaks against the filter, or why nothing was applied.
     pub note: String,
+    /// Whether the filter may lose its own fines.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub may_lose_fines: bool,
     /// Whether the two look exchanged, and nothing was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_refused: bool,
@@ -92,6 +95,7 @@ impl BatchRow {
             met: None,
             tests: String::new(),
             note: String::new(),
+            may_lose_fines: false,
             is_refused: false,
         };
         let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
@@ -127,6 +131,7 @@ impl BatchRow {
             met,
             tests: tested_words(tested(rules)).into(),
             note,
+            may_lose_fines: !broken(rules, RuleRole::Stability).is_empty(),
             ..row
         }
     }
@@ -212,10 +217,31 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     rows.iter().filter(is_same).count() - of_named
 }
 
-/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern.
+/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern. Not
+/// those that are named as governing, and not those that look exchanged with the filter.
 pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
-    let is_open = |row: &&BatchRow| row.filter == filter && (row.limit_mm.is_none() || row.limit_at_most);
+    let named = governing(rows, filter, NAMED);
+    let is_named = |row: &BatchRow| named.iter().any(|other| std::ptr::eq(*other, row));
+    let is_open = |row: &&BatchRow| {
+        let is_open = row.limit_mm.is_none() || row.limit_at_most;
+        row.filter == filter && is_open && !row.is_refused && !is_named(row)
+    };
     rows.iter().filter(is_open).collect()
+}
+
+/// The samples of a filter that may govern, and those to which nothing was applied, a sentence each without
+/// its end.
+pub fn open_in_words(rows: &[BatchRow], filter: &str) -> Vec<String> {
+    let names = |rows: Vec<&BatchRow>| {
+        let names: Vec<&str> = rows.iter().map(|row| row.sample.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let refused = rows.iter().filter(|row| row.filter == filter && row.is_refused).collect();
+    let open = names(may_govern(rows, filter))
+        .map(|names| format!("may govern, as its limit is not known or may be lower: {names}"));
+    let refused =
+        names(refused).map(|names| format!("nothing applied, as base and filter look exchanged: {names}"));
+    open.into_iter().chain(refused).collect()
 }
 
 #[cfg(test)]
@@ -270,7 +296,12 @@ mod tests {
         let rows = rows();
         let names = |rows: Vec<&BatchRow>| rows.iter().map(|row| row.sample.clone()).collect::<Vec<_>>();
         assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
-        assert_eq!(names(may_govern(&rows, "F")), ["open", "gravel"]);
+        // Of four limits the one that is a limit at most governs itself, or may.
+        let named = names(governing(&rows, "F", NAMED));
+        let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
+        assert_eq!(names(may_govern(&rows, "F")), open);
+        let said = open_in_words(&rows, "F").join("\n");
+        assert!(said.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{said}");
         assert!(governing(&rows, "G", 3).is_empty());
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::{BatchRow, NAMED, governing, may_govern, more_with_that_limit};
+use super::batch::{BatchRow, NAMED, governing, more_with_that_limit, open_in_words};
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::three;
@@ -52,10 +52,7 @@ impl BatchFilter {
         if more > 0 {
             said.push(format!("and {more} more with the same limit"));
         }
-        let open: Vec<&str> = may_govern(rows, name).into_iter().map(|row| row.sample.as_str()).collect();
-        if !open.is_empty() {
-            said.push(format!("may govern, as its limit is not known: {}", open.join(", ")));
-        }
+        said.extend(open_in_words(rows, name));
         said
     }
 }

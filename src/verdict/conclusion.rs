@@ -48,18 +48,9 @@ impl Outcome {
 
     /// The probability that a test would show no erosion, by the walk and by tests alone.
     fn probability(&self) -> Option<String> {
-        let evidence = self.evidence.as_ref()?;
-        let bound = match evidence.bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
-        };
-        let of_walk =
-            evidence.probability_no_erosion.map(|of| format!("{bound}{:.0} % by the walk", 100.0 * of));
-        let of_tests =
-            evidence.probability_by_tests.map(|of| format!("{:.0} % by published tests", 100.0 * of));
-        let each: Vec<String> = of_walk.into_iter().chain(of_tests).collect();
-        (!each.is_empty()).then(|| format!("Probability of no erosion in a test: {}", each.join(", ")))
+        let of = self.evidence.as_ref()?;
+        let each = probabilities(of.probability_no_erosion, of.bound, of.probability_by_tests)?;
+        Some(format!("Probability of no erosion in a test: {each}"))
     }
 
     /// What to do next, in a sentence without its end.
@@ -145,6 +136,23 @@ impl Outcome {
         let all = self.against().into_iter().chain(self.besides());
         all.filter(|finding| !is_evidence(finding)).collect()
     }
+}
+
+/// The probability that a test would show no erosion: by the walk, with its bound, and by tests alone.
+pub(super) fn probabilities(
+    by_walk: Option<f64>,
+    bound: Option<Bound>,
+    by_tests: Option<f64>,
+) -> Option<String> {
+    let bound = match bound {
+        Some(Bound::AtLeast) => "at least ",
+        Some(Bound::AtMost) => "at most ",
+        None => "",
+    };
+    let by_walk = by_walk.map(|of| format!("{bound}{:.0} % by the walk", 100.0 * of));
+    let by_tests = by_tests.map(|of| format!("{:.0} % by published tests", 100.0 * of));
+    let each: Vec<String> = by_walk.into_iter().chain(by_tests).collect();
+    (!each.is_empty()).then(|| each.join(", "))
 }
 
 /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not

@@ -21,6 +21,7 @@ mod answer;
 mod band;
 pub(crate) mod batch;
 mod batch_table;
+mod batch_words;
 pub(crate) mod beside;
 pub(crate) mod by_authority;
 mod conclusion;

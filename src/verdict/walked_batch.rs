@@ -4,13 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
+use super::conclusion::probabilities;
 use crate::outcome::BaseSize;
 use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
-use crate::outcome::table::Columns;
+use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
 
 /// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 12] = [
+const SHOWN: [&str; 13] = [
     "sample",
     "filter",
     "group",
@@ -18,6 +19,7 @@ const SHOWN: [&str; 12] = [
     "limit_mm",
     "result",
     "governs",
+    "walked",
     "class",
     "confidence",
     "first_eroded_mass_percent",
@@ -73,6 +75,9 @@ pub struct SampleWalk {
     pub folder: String,
     /// Whether it was walked in full; otherwise it was a first look.
     pub in_full: bool,
+    /// Whether the filter holds the sample by practice and walk, in a line; empty in earlier records.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub headline: String,
     /// The class that its replicates together support.
     pub verdict: Verdict,
     /// How far it can be relied on.
@@ -107,6 +112,7 @@ impl SampleWalk {
         Self {
             folder,
             in_full,
+            headline: outcome.headline(),
             verdict: outcome.verdict,
             confidence: outcome.confidence,
             reason: outcome.reasons.first().cloned(),
@@ -126,14 +132,9 @@ impl SampleWalk {
         if self.in_full { "in full" } else { "first look" }
     }
 
-    /// The probability of no erosion by the walk, as `at least 93 %`.
+    /// The probability of no erosion in a test, as `at least 93 % by the walk, 88 % by published tests`.
     pub fn probability_in_words(&self) -> Option<String> {
-        let bound = match self.probability_bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
-        };
-        Some(format!("{bound}{:.0} %", 100.0 * self.probability_no_erosion?))
+        probabilities(self.probability_no_erosion, self.probability_bound, self.probability_by_tests)
     }
 }
 
@@ -157,24 +158,25 @@ impl WalkedBatch {
     pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
         self.rows.iter().filter(move |row| row.rules.filter == filter)
     }
-
-    /// How many walks of a filter came to each class, in the order of [`Verdict::ALL`].
-    pub fn classes(&self, filter: &str) -> [usize; 4] {
-        let count = |class| {
-            self.of_filter(filter).filter_map(|row| row.walk.as_ref()).filter(move |w| w.verdict == class)
-        };
-        Verdict::ALL.map(|class| count(class).count())
-    }
 }
 
 impl WalkedRow {
+    fn depth(&self) -> &'static str {
+        self.walk.as_ref().map_or("not walked", SampleWalk::depth)
+    }
+
+    fn why_not(&self) -> Option<String> {
+        self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
+    }
+
     /// The columns of `batch.csv`, and under their headings what a terminal and a page show.
     pub fn columns<'a>() -> Columns<'a, Self> {
         let walk = |row: &Self| row.walk.clone();
         let of_walk = Columns::default()
             .column("governs", |row: &Self| row.governs)
             .headed("Governs")
-            .column("walked", |row: &Self| row.walk.as_ref().map_or("not walked", SampleWalk::depth))
+            .column("walked", |row: &Self| row.depth())
+            .words("Walked", |row: &Self| row.depth().shown().below(row.why_not()))
             .column("class", move |row| walk(row).map(|walk| walk.verdict))
             .headed("Class by walk")
             .confidence(|row| row.walk.as_ref().map(|walk| walk.confidence), |_| None)
@@ -186,7 +188,7 @@ impl WalkedRow {
                 (walk.and_then(|walk| walk.runs.get(run).copied()), range)
             })
             .percent("probability_no_erosion_percent", move |row| walk(row)?.probability_no_erosion)
-            .number("Probability of no erosion", move |row| walk(row)?.probability_in_words())
+            .words("Probability of no erosion in a test", move |row| walk(row)?.probability_in_words())
             .column("probability_bound", move |row| {
                 let bound = walk(row)?.probability_bound?;
                 Some(if bound == Bound::AtLeast { "at least" } else { "at most" })

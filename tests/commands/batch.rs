@@ -71,7 +71,14 @@ fn a_row_says_what_rules_and_walk_say_of_that_pair_alone() {
     assert_eq!((rows.len(), moments(&at.join("b")).len()), (10, 8));
     assert!(said.contains("fine.csv: of 5 samples 4 met, 0 not met, 1 without a result"), "{said}");
     assert!(said.contains("governing sample Core: D15F up to 1.68 mm"), "{said}");
-    assert!(said.contains("may govern, as its limit is not known: Gravel") && said.contains("walked 4: "));
+    assert!(said.contains("nothing applied, as base and filter look exchanged: Gravel"), "{said}");
+    assert!(!said.contains("may govern"), "{said}");
+    assert!(
+        said.contains("  4 walked (3 in full, 1 first look): ") && said.contains("; 1 not walked\n"),
+        "{said}"
+    );
+    assert!(said.contains("not walked; base and filter look exchanged"), "{said}");
+    assert!(said.contains("--as-given walks pairs that look exchanged"), "{said}");
     let row = |sample: &str, filter: &str| {
         rows.iter().find(|row| row["sample"] == sample && row["filter"] == filter).unwrap()
     };
@@ -111,7 +118,15 @@ fn a_row_says_what_rules_and_walk_say_of_that_pair_alone() {
         assert!(of_batch.starts_with(of_rules), "{of_batch}: {of_rules}");
     }
     let page = fs::read_to_string(at.join("b/batch.html")).unwrap();
-    for words in ["Governing sample", "Class by walk", "/report.html\"", "D15F of the filter / limit"] {
+    assert!(!page.contains("--as-given"), "a word of the command line");
+    for words in [
+        "not walked",
+        "(3 in full, 1 first look)",
+        "Governing sample",
+        "Class by walk",
+        "/report.html\"",
+        "D15F of the filter / limit",
+    ] {
         assert!(page.contains(words), "{words}");
     }
     figures_are_listed(FolderKind::Batch, &at.join("b"));
@@ -220,5 +235,9 @@ fn those_that_govern_can_be_walked_alone_and_a_verdict_can_be_refused() {
             .concat(),
     );
     assert_eq!(doubt.status.code(), Some(4));
-    assert!(String::from_utf8_lossy(&doubt.stderr).contains("Core in fine.csv: "));
+    let said = String::from_utf8_lossy(&doubt.stderr);
+    assert!(said.contains("Core in fine.csv: "), "{said}");
+    // The envelope was not walked, which is no answer; what does not govern was left out on purpose.
+    assert!(said.contains("Core in band.csv: not walked (the filter is an envelope"), "{said}");
+    assert!(!said.contains("Sand in fine.csv") && said.contains("Gravel in fine.csv: not walked"), "{said}");
 }

@@ -408,10 +408,15 @@ fn the_samples_of_a_folder_are_those_of_its_tables() {
         said.lines().skip(1).take(3).map(|l| l.split_whitespace().next().unwrap()).collect();
     assert_eq!(names, ["a", "b", "gravel"]);
     assert!(
-        said.contains("exchanged") && said.contains("may govern, as its limit is not known: gravel"),
+        said.contains("nothing applied, as base and filter look exchanged: gravel")
+            && !said.contains("may govern"),
         "{said}"
     );
     assert_eq!(voidwalk(&["rules", &folder, &filter]).status.code(), Some(2));
+    let twice = voidwalk(&["rules", &folder, &filter, &filter, "--each"]);
+    assert!(
+        twice.status.code() == Some(2) && String::from_utf8_lossy(&twice.stderr).contains("is named twice")
+    );
     // What was assumed of a file stands below the table once; joint and envelope are named.
     let sheet = root.path().join("lab/k.csv");
     fs::write(&sheet, "Sieve (mm),Core,Shell\n1,1,1\n0.25,0.4,0.3\n0.08,0,0\n").unwrap();

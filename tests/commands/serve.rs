@@ -323,6 +323,15 @@ fn every_sample_of_a_sheet_has_its_rules() {
         let (status, _, said) = served.get(&format!("api/samples?{wrong}"));
         assert_eq!(status, 422, "{wrong}: {}", String::from_utf8_lossy(&said));
     }
+    let (status, _, said) = served.get("api/samples?base=1&filter=2%0A2");
+    assert!(status == 422 && String::from_utf8_lossy(&said).contains("is named twice"));
+    // Two sheets of one name are two filters.
+    assert_eq!(served.sheet("filter.csv", &text("filter-fine.csv")).0, 200);
+    let both = served.json("api/samples?base=1&filter=2%0A4");
+    for (at, name) in ["1 filter.csv: of 6 samples", "2 filter.csv: of 6 samples"].iter().enumerate() {
+        assert!(both["filters"][at][0].as_str().unwrap().starts_with(name), "{both}");
+    }
+    assert_eq!(both["unstable"].as_array().unwrap().len(), 12);
     let seven = ["2"; 7].join("%0A");
     assert_eq!(served.get(&format!("api/samples?base=1&filter={seven}")).0, 422);
     // Stricter where the soils are dispersive.

@@ -325,7 +325,23 @@ fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -
             heads[column] = heads[column - 1].clone();
         }
     }
+    for column in 1..heads.len() {
+        if is_sample_d(&heads, &roles, column) {
+            roles[column] = Role::Other;
+        }
+    }
     (heads, roles)
+}
+
+/// Whether a `D` is the name of a sample: behind the openings, and beside a `C` or an `E`.
+fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
+    let is = |at: usize, name: &str| {
+        heads.get(at).is_some_and(|head| head.trim().eq_ignore_ascii_case(name)) && roles[at] != Role::Size
+    };
+    let openings = |at: usize| roles[at] == Role::Size && !heads[at].trim().eq_ignore_ascii_case("d");
+    heads[column].trim().eq_ignore_ascii_case("d")
+        && (0..column).any(openings)
+        && (is(column - 1, "c") || is(column + 1, "e"))
 }
 
 impl Layout {

@@ -107,6 +107,23 @@ mod tests {
     /// Two files of one stem, and a `#` in the names of files and soils: every sample is read again by its
     /// path.
     #[test]
+    fn a_sample_called_d_is_no_second_column_of_openings() {
+        let root = tempfile::tempdir().unwrap();
+        let names = |text: &str| -> Vec<String> {
+            let path = root.path().join("a.csv");
+            std::fs::write(&path, text).unwrap();
+            samples_in(&path).unwrap().into_iter().map(|sample| sample.name).collect()
+        };
+        let five = "Sieve (mm),A,B,C,D,E\n2,100,100,100,100,100\n0.5,40,10,20,30,50\n0.1,0,0,0,0,0\n";
+        assert_eq!(names(five), ["A", "B", "C", "D", "E"]);
+        let four = "Sieve (mm),A,B,C,d\n2,100,100,100,100\n0.5,40,10,20,30\n0.1,0,0,0,0\n";
+        assert_eq!(names(four), ["A", "B", "C", "d"]);
+        // A column of openings as ever.
+        assert_eq!(names("D,A,B\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["A", "B"]);
+        assert_eq!(names("D,C,E\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["C", "E"]);
+    }
+
+    #[test]
     fn names_that_look_alike_are_told_apart() {
         let root = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| std::fs::write(root.path().join(name), text).unwrap();

@@ -19,7 +19,7 @@ const ACROSS: u64 = 20;
 const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
 
 /// Why a pair that looks exchanged is not walked.
-const EXCHANGED: &str = "base and filter look exchanged; --as-given accepts them";
+const EXCHANGED: &str = "base and filter look exchanged";
 
 /// Which pairs are walked, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,7 +89,13 @@ impl BatchPlan {
         for (row, case) in plan.rows.iter_mut().zip(&plan.cases) {
             let in_full = row.governs.is_some() && walks != BatchWalks::FirstLook;
             if walks == BatchWalks::GoverningAlone && !in_full {
-                row.not_walked = "does not govern".into();
+                let is_open = row.rules.limit_mm.is_none() || row.rules.limit_at_most;
+                row.not_walked = match (row.rules.is_refused, is_open) {
+                    (true, _) => EXCHANGED,
+                    (false, true) => "may govern, as its limit is not known or may be lower",
+                    (false, false) => "does not govern",
+                }
+                .into();
                 continue;
             }
             match scene(row, &plan.filters, if in_full { tables } else { &looks }) {
@@ -156,6 +162,12 @@ fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     for at in shared(&of_samples) {
         of_samples[at] = format!("{} {}", at + 1, of_samples[at]);
     }
+    // They are names of folders, too.
+    for (at, name) in of_samples.iter_mut().enumerate() {
+        if name.is_empty() || name.starts_with('.') {
+            *name = format!("{} {name}", at + 1);
+        }
+    }
     let of_filters = names(filters);
     let pair = |filter: &String| {
         let name = |sample: &String| format!("{sample} in {filter}");
@@ -176,7 +188,11 @@ fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Res
     // Whether they are exchanged is known.
     let tables = TableOptions { as_given: true, ..tables.clone() };
     let filter = PathBuf::from(&row.rules.filter);
-    Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| problem.to_string())
+    Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| {
+        // A client knows of soils, not of the scene that they are put into.
+        let problem = problem.to_string();
+        problem.strip_prefix("built-in scene: ").map_or(problem.clone(), str::to_owned)
+    })
 }
 
 /// The settings of a first look: as `--quick`, on a lattice no wider than is needed for the class.
