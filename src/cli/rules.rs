@@ -110,7 +110,7 @@ fn words(
             continue;
         }
         line(String::new());
-        line(format!("{heading} (not kept, it speaks against {})", role.speaks_against()));
+        line(format!("{heading} (a rule that is not met speaks against {})", role.speaks_against()));
         for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];

@@ -33,9 +33,15 @@ impl Outcome {
     /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
     /// on soils of this kind make of it.
     pub fn walk_in_words(&self) -> String {
-        let runs = [("first run", "95 % interval "), ("second", "")].into_iter().zip(&self.summary);
-        let runs: Vec<String> = runs.map(|((name, what), run)| eroded(name, what, run)).collect();
-        let mut said = format!("{}; eroded {}", self.verdict.words(), runs.join(", "));
+        let mass = self.over_curve_range().map_or_else(
+            || {
+                let what = "95 % interval by the scatter of replicates ";
+                let runs = [("first run", what), ("second", "")].into_iter().zip(&self.summary);
+                runs.map(|((name, what), run)| eroded(name, what, run)).collect::<Vec<_>>().join(", ")
+            },
+            |over| format!("{over} over the range of constrictions"),
+        );
+        let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
@@ -44,6 +50,19 @@ impl Outcome {
             Some(probability) => format!("{said}. {probability}"),
             None => said,
         }
+    }
+
+    /// Least and most of the base's mass that erode over the range of the constriction curve, run by run: the
+    /// class is that of the whole range. `None` where the curve is no range.
+    pub fn over_curve_range(&self) -> Option<String> {
+        let range = self.curve_range.as_ref()?;
+        let run = |([low, high], name): (&[f64; 2], &str)| {
+            let [low, high] = [*low, *high].map(|of| percent(of.max(0.0)));
+            let mass = if low == high { low } else { format!("{low} to {high}") };
+            format!("{mass} in the {name}")
+        };
+        let runs = range.eroded_mass_fraction.iter().zip(["first run", "second"]);
+        Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
     /// The probability that a test would show no erosion, by the walk and by tests alone.
@@ -168,7 +187,7 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         (Standing::NoRules, Verdict::Undecided) => "nobody can say yet: the walk is undecided".into(),
         (Standing::NoRules, _) => format!("{walked} in the model"),
         (Standing::Fails, Verdict::None) => {
-            "does not meet practice, though nothing erodes in the model: rely on practice".into()
+            "does not meet practice, though the walk says no erosion: rely on practice".into()
         }
         (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
         (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
@@ -271,7 +290,7 @@ mod tests {
                 assert_eq!(said(filter, base, verdict), line);
             }
             let none = said(filter, base, Verdict::None);
-            assert_eq!(none, "does not meet practice, though nothing erodes in the model: rely on practice");
+            assert_eq!(none, "does not meet practice, though the walk says no erosion: rely on practice");
             let open = said(filter, base, Verdict::Undecided);
             assert_eq!(open, "does not meet practice; the walk is undecided");
         }

@@ -16,6 +16,7 @@ use super::shell::{citation, clean, fact, unbroken};
 use super::specification::Stated;
 use super::table::Table;
 use super::written::Written;
+use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
 use crate::verdict::FOREMOST;
@@ -331,9 +332,8 @@ fn products(design: &Design) -> Markup {
                 }
             }
             (Table::of(&design.products)
-                .name("Product, source of its limits", |fit| {
-                    html! { (clean(&fit.name)) br; span.small { (clean(&fit.source)) } }
-                })
+                .class("products")
+                .name("Product", |fit| clean(&fit.name))
                 .number("D15, fine to coarse side (mm)", |fit| {
                     format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
                 })
@@ -350,13 +350,22 @@ fn products(design: &Design) -> Markup {
     }
 }
 
+/// Whose answer the rules are read at.
+fn read_at(design: &Design) -> &'static str {
+    match (design.answer().set_by, design.least_held()) {
+        (SetBy::Practice, _) => ", the greatest that practice allows",
+        (SetBy::Walk, Some(_)) => ", the coarsest that holds in the model",
+        (SetBy::Walk, None) => "",
+    }
+}
+
 fn practice(design: &Design) -> Markup {
     let rules: Vec<&AppliedRule> = design.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     html! {
         @if !rules.is_empty() {
             p {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
-                @if design.least_held().is_some() { ", the coarsest that holds in the model" } "."
+                (read_at(design)) "."
             }
             (rules::table(&rules, SizeUnit::Mm))
         }

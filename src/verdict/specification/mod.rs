@@ -85,7 +85,7 @@ impl Specification {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
         Some(format!(
             "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu \
-             must be at most {MOST_CU}, and it must have no gap. Judge each with the command voidwalk rules.",
+             must be at most {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
             rounded_up(least),
             rounded_down(greatest)
         ))
