@@ -9,7 +9,6 @@ use super::case_progress::CaseProgress;
 use super::compare::campaign_options;
 use super::exit::accept;
 use super::print::{json, plain, shown, to_stdout};
-use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
@@ -65,12 +64,9 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter));
-        let classes = batch.classes(&filter.name);
-        let counted = Verdict::ALL.into_iter().zip(classes).filter(|(_, count)| *count > 0);
-        let counted: Vec<String> =
-            counted.map(|(class, count)| format!("{count} {}", class.words())).collect();
-        let walked: usize = classes.iter().sum();
-        let said = if walked == 0 { "none".into() } else { format!("{walked}: {}", counted.join(", ")) };
+        let walked: usize = batch.classes(&filter.name).iter().sum();
+        let classes = batch.classes_in_words(&filter.name);
+        let said = if walked == 0 { "none".into() } else { format!("{walked}: {classes}") };
         let _ = writeln!(text, "  walked {said}");
     }
     let _ = writeln!(text, "\n{}", plain(constrictions));

@@ -17,8 +17,10 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::record::Verdict;
-use crate::verdict::batch::may_govern;
+use crate::outcome::numbers::rounded_down;
+use crate::outcome::record::Confidence;
+use crate::verdict::batch::{drainage_in_words, governs_drainage, may_govern};
+use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
 const RECORD: &str = "batch.json";
@@ -93,14 +95,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
     let rows = || batch.of_filter(&filter.name);
     let count = |met: Option<bool>| rows().filter(|row| row.rules.met == met).count();
-    let classes = batch.classes(&filter.name);
-    let walked: usize = classes.iter().sum();
-    let classes: Vec<String> = Verdict::ALL
-        .into_iter()
-        .zip(classes)
-        .filter(|(_, count)| *count > 0)
-        .map(|(class, count)| format!("{count} {}", class.words()))
-        .collect();
+    let walked: usize = batch.classes(&filter.name).iter().sum();
     let mut govern: Vec<&WalkedRow> = rows().filter(|row| row.governs.is_some()).collect();
     govern.sort_by_key(|row| row.governs);
     let rules: Vec<BatchRow> = rows().map(|row| row.rules.clone()).collect();
@@ -111,11 +106,12 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
             li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
-                (count(Some(false))) " not met, " (count(None)) " without a result." }
+                (count(Some(false))) " not met, " (count(None)) " without a result" (drainage_in_words(&rules, &filter.name)) "." }
             li { b { "Walk" } ": "
                 @if walked == 0 { "nothing was walked." }
-                @else { (walked) " walked: " (classes.join(", ")) "." } }
+                @else { (walked) " walked: " (batch.classes_in_words(&filter.name)) "." } }
             @for row in &govern { li { (governs(folder, row)) } }
+            @if let Some(said) = governs_drainage(&rules, &filter.name) { li { (clean(&capital(&said))) "." } }
             @if !open.is_empty() { li { "May govern, as its limit is not known: " (open.join(", ")) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
@@ -128,13 +124,14 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 /// A sample that governs: its limit, and what its walk says.
 fn governs(folder: &Path, row: &WalkedRow) -> Markup {
     let rules = &row.rules;
-    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)));
+    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", rounded_down(mm)));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
         @if let Some(walk) = &row.walk {
             "; " (cases::class(walk.verdict, folder, &walk.folder)) " by the walk"
+            @if walk.confidence != Confidence::Within { " (" (walk.confidence.words()) ")" }
             @if let Some(of) = walk.probability_in_words() { ", probability of no erosion " (of) }
         }
         "."

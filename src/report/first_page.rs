@@ -16,7 +16,7 @@ use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{Standing, standing};
+use crate::verdict::practice::{Standing, digits_within, standing};
 use crate::verdict::words::capital;
 
 /// Characters of a text of the user's that are shown.
@@ -195,7 +195,11 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             None => html! { "–" },
         })
         .text("limit", |rule| {
-            let shown = |limit| clean(&of_rule(rule, limit, unit));
+            let shown = |limit| {
+                let number = digits_within(limit, 3, rule.at_least);
+                let with_unit = format!("{number}\u{202f}{}", rule.unit);
+                clean(&(with_unit.trim_end().to_owned() + &inches(rule, limit, unit)))
+            };
             match rule.limit {
                 Some(limit) if rule.at_least && rule.limit_at_most => {
                     html! { "not known; at most " span.q { (shown(limit)) } }

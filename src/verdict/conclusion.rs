@@ -2,13 +2,15 @@
 //! do next, and the three findings that matter most.
 
 use super::beside::is_evidence;
-use super::practice::{Standing, broken, standing};
+use super::evidence::probability_in_words;
+use super::practice::{Standing, broken, listed, standing};
 use crate::outcome::design::band::retention;
 use crate::outcome::digits::percent;
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{
-    AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
-use crate::outcome::three;
+use crate::outcome::rules::authority;
 use crate::outcome::undecided::UndecidedBy;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
@@ -68,15 +70,10 @@ impl Outcome {
     /// The probability that a test would show no erosion, by the walk and by tests alone.
     fn probability(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
-        let bound = match evidence.bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
-        };
-        let of_walk =
-            evidence.probability_no_erosion.map(|of| format!("{bound}{:.0} % by the walk", 100.0 * of));
-        let of_tests =
-            evidence.probability_by_tests.map(|of| format!("{:.0} % by published tests", 100.0 * of));
+        let of_walk = evidence.probability_no_erosion;
+        let of_walk = of_walk.map(|of| format!("{} by the walk", probability_in_words(of, evidence.bound)));
+        let of_tests = evidence.probability_by_tests;
+        let of_tests = of_tests.map(|of| format!("{} by published tests", probability_in_words(of, None)));
         let each: Vec<String> = of_walk.into_iter().chain(of_tests).collect();
         (!each.is_empty()).then(|| format!("Probability of no erosion in a test: {}", each.join(", ")))
     }
@@ -88,19 +85,26 @@ impl Outcome {
             Standing::Fails | Standing::NoMargin => {
                 let finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
                     Some((limit, false)) => {
-                        format!("take a filter with a D15F of at most {} {unit}", three(limit))
+                        format!("take a filter with a D15F of at most {} {unit}", rounded_down(limit))
                     }
                     Some((limit, true)) => format!(
                         "take a finer filter; the limit lies below a D15F of {} {unit}, and is not known",
-                        three(limit)
+                        rounded_down(limit)
                     ),
                     None => "take a finer filter".into(),
                 };
                 format!("{finer}; for a filter that exists, have this pair tested")
             }
             Standing::Unstable => {
-                "take a filter without a gap and with fewer fines, or have its internal stability tested"
-                    .into()
+                let mut whose: Vec<String> = Vec::new();
+                for rule in broken(&self.rules, RuleRole::Stability) {
+                    let name = authority(rule).to_owned();
+                    if !whose.contains(&name) {
+                        whose.push(name);
+                    }
+                }
+                let rules = listed(&whose);
+                format!("take a filter that is stable by {rules}, or have its internal stability tested")
             }
             Standing::Unknown(needs) => format!("get {needs}"),
             Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
@@ -120,7 +124,7 @@ impl Outcome {
             // Where a base erodes in the walk no coarser filter is asked for.
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
-                    let [least, most] = [least, most].map(three);
+                    let [least, most] = [rounded_up(least), rounded_down(most)];
                     format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}")
                 }),
             (Some(_), _) => {
@@ -162,7 +166,14 @@ impl Outcome {
     /// the rest.
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
-        all.filter(|finding| !is_evidence(finding)).collect()
+        let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
+        // That "no erosion" does not stand with less base is never folded away.
+        let turns = |finding: &FindingRecord| finding.against && finding.id == "worse_with_amount";
+        let at = all.iter().position(turns).filter(|at| *at >= FOREMOST);
+        if let Some(at) = at.filter(|_| self.verdict == Verdict::None) {
+            all[FOREMOST - 1..=at].rotate_right(1);
+        }
+        all
     }
 }
 
@@ -194,9 +205,9 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
         (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
         (Standing::Unstable, Verdict::Continuing) => {
-            format!("does not hold: {walked} in the model, and the filter may lose its own fines")
+            format!("does not hold: {walked} in the model, and the filter may lose its finer part")
         }
-        (Standing::Unstable, _) => "may not hold: the filter may lose its own fines".into(),
+        (Standing::Unstable, _) => "may not hold: the filter may lose its finer part".into(),
         (Standing::Unknown(needs), Verdict::Undecided) => {
             format!("nobody can say yet: practice needs {needs}, and the walk is undecided")
         }
@@ -218,7 +229,7 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);
-    let more = [(unstable, "; the filter may lose its own fines"), (dry, "; the filter may not drain")];
+    let more = [(unstable, "; the filter may lose its finer part"), (dry, "; the filter may not drain")];
     more.into_iter().filter(|(holds, _)| *holds).fold(said, |said, (_, more)| said + more)
 }
 
@@ -227,7 +238,7 @@ fn reservation(confidence: Confidence) -> &'static str {
     match confidence {
         Confidence::MayNotDrain => "the filter may not drain the base",
         Confidence::MaySegregate => "the filter may segregate when placed",
-        Confidence::Unstable => "the filter may lose its own fines",
+        Confidence::Unstable => "the filter may lose its finer part",
         Confidence::Contradicted => "another rule speaks against it",
         Confidence::Within | Confidence::Outside => {
             "the walk agrees, outside the range in which it was checked"
@@ -312,7 +323,7 @@ mod tests {
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         assert_eq!(
             said(&gap, &SAND, Verdict::None),
-            "may not hold: the filter may lose its own fines; the filter may not drain"
+            "may not hold: the filter may lose its finer part; the filter may not drain"
         );
         // A sand whose fines nobody sieved.
         let hidden = said(&GOOD, &[(0.3, 25.0), (1.0, 100.0)], Verdict::None);

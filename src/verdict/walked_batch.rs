@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
+use super::evidence::probability_in_words;
 use crate::outcome::BaseSize;
 use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
 use crate::outcome::table::Columns;
@@ -128,12 +129,7 @@ impl SampleWalk {
 
     /// The probability of no erosion by the walk, as `at least 93 %`.
     pub fn probability_in_words(&self) -> Option<String> {
-        let bound = match self.probability_bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
-        };
-        Some(format!("{bound}{:.0} %", 100.0 * self.probability_no_erosion?))
+        Some(probability_in_words(self.probability_no_erosion?, self.probability_bound))
     }
 }
 
@@ -156,6 +152,26 @@ impl WalkedBatch {
     /// The rows of a filter.
     pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
         self.rows.iter().filter(move |row| row.rules.filter == filter)
+    }
+
+    /// How many walks of a filter came to each class, and to how many of them which reservation belongs.
+    pub fn classes_in_words(&self, filter: &str) -> String {
+        let walks = |class| {
+            let all = self.of_filter(filter).filter_map(|row| row.walk.as_ref());
+            all.filter(move |walk: &&SampleWalk| walk.verdict == class)
+        };
+        let doubts = |class| {
+            let count = |doubt| walks(class).filter(|walk| walk.confidence == doubt).count();
+            let each = Confidence::DOUBTS.into_iter().map(|doubt| (count(doubt), doubt.words()));
+            let each = each.filter(|(count, _)| *count > 0);
+            each.map(|(count, doubt)| format!("{count} {doubt}")).collect::<Vec<_>>().join(", ")
+        };
+        let counted = Verdict::ALL.into_iter().zip(self.classes(filter)).filter(|(_, count)| *count > 0);
+        let said = counted.map(|(class, count)| match doubts(class) {
+            none if none.is_empty() => format!("{count} {}", class.words()),
+            doubts => format!("{count} {} ({doubts})", class.words()),
+        });
+        said.collect::<Vec<_>>().join(", ")
     }
 
     /// How many walks of a filter came to each class, in the order of [`Verdict::ALL`].

@@ -295,7 +295,11 @@ fn bands(design: &Design) -> Markup {
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
-                .number("Least (drains)", |row| size(row, |band| Some(band.least)))
+                .number("Least (drains)", |row| {
+                    let is_open = row.band.as_ref().is_some_and(|band| band.least_at_most);
+                    let least = size(row, |band| Some(band.least));
+                    if is_open { format!("at most {least}, not known") } else { least }
+                })
                 .number("Greatest", |row| size(row, |band| Some(band.greatest_of_both())))
                 .text("Set by", |row| set_by(row))
                 .number("Practice allows", |row| size(row, |band| band.practice))
@@ -337,12 +341,16 @@ fn products(design: &Design) -> Markup {
                 .number("D15, fine to coarse side (mm)", |fit| {
                     format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
                 })
-                .text("Drains", |fit| yes(fit.drains))
+                .text("Drains", |fit| match fit.may_drain {
+                    true => html! { "may drain: needs a hydrometer test" },
+                    false => yes(fit.drains),
+                })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
                 .number("", |fit| match (fit.fits(), design.may_fit()) {
                     (true, true) => html! { b { "fits" } },
                     (true, false) => html! { "in doubt" },
+                    (false, _) if fit.may_fit() => html! { "not known" },
                     (false, _) => html! { "does not fit" },
                 })
                 .render())
@@ -441,6 +449,7 @@ mod tests {
             name: if drains { "sand" } else { "clay" }.into(),
             d15_mm: [0.2, 0.4],
             drains,
+            may_drain: false,
             holds: true,
             practice: None,
             source: String::new(),
