@@ -141,13 +141,17 @@ fn ratio(boundary: &Boundary, design: &Design) -> String {
         format!("5 to 95 % of networks: {} to {}", end(low), end(high))
     };
     let Boundary { median, low, high, .. } = boundary;
+    let of_networks = |low: Option<f64>, high: Option<f64>| match low.or(high) {
+        Some(_) => format!(" ({})", between(low, high)),
+        None => String::new(),
+    };
     let size = |name: &str, range: &Range| {
-        format!("{name} {:.3} mm ({}); ", range.median, between(range.low, range.high))
+        format!("{name} {:.3} mm{}; ", range.median, of_networks(range.low, range.high))
     };
     let size = match (&boundary.d15f_mm, &boundary.d85b_mm) {
         (Some(range), _) => size("D15F", range),
         (None, Some(range)) if design.inverse => size("D85B", range),
         _ => String::new(),
     };
-    format!("{size}D15F/D85B {median:.2} ({})", between(*low, *high))
+    format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high))
 }

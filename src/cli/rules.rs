@@ -9,6 +9,7 @@ use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
+use crate::verdict::practice::digits_within;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -104,13 +105,13 @@ fn words(
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
         (RuleRole::Drainage, "The filter drains the base"),
         (RuleRole::Placing, "The filter can be placed"),
-        (RuleRole::Stability, "The filter holds its own fines"),
+        (RuleRole::Stability, "The filter holds its finer part"),
     ] {
         if by != Authority::All && listed.iter().all(|rule| rule.role != role) {
             continue;
         }
         line(String::new());
-        line(format!("{heading} (not kept, it speaks against {})", role.speaks_against()));
+        line(format!("{heading} (a rule that is not met speaks against {})", role.speaks_against()));
         for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
@@ -140,11 +141,16 @@ fn row(rule: &AppliedRule) -> String {
         (None, true) => "no result",
         (None, false) => "not for it",
     };
-    let sign = if rule.at_least { ">=" } else { "<=" };
+    let (sign, at_most) = match (rule.at_least, rule.limit_at_most) {
+        (true, true) => ("not known, at most", ""),
+        (true, false) => (">=", ""),
+        (false, true) => ("<=", " at most"),
+        (false, false) => ("<=", ""),
+    };
     let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
-    let at_most = if rule.limit_at_most { " at most" } else { "" };
-    let limit =
-        rule.limit.map_or(String::new(), |limit| format!(", {sign} {}{unit}{at_most}", number(Some(limit))));
+    let limit = rule.limit.map_or(String::new(), |limit| {
+        format!(", {sign} {}{unit}{at_most}", digits_within(limit, 3, rule.at_least))
+    });
     format!("  {result:<11}{}: {} = {}{unit}{limit}", rule.name, rule.quantity, number(rule.value))
 }
 

@@ -86,6 +86,9 @@ fn words(of: &Specification) -> String {
                 Some(true) if product.worst_sieve_mm.is_some() => "fits by D15, but lies outside this band",
                 Some(true) => "fits by D15",
                 Some(false) => "does not fit",
+                None if of.d15f_min_at_most && product.drains_by.is_none() => {
+                    "may drain: needs a hydrometer test"
+                }
                 None => "no result",
             }
         ));

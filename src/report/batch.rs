@@ -17,7 +17,8 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::batch::open_in_words;
+use crate::outcome::numbers::rounded_down;
+use crate::verdict::batch::{drainage_in_words, governs_drainage, open_in_words};
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
 const RECORD: &str = "batch.json";
@@ -99,11 +100,12 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
             li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
-                (count(Some(false))) " not met, " (count(None)) " without a result." }
+                (count(Some(false))) " not met, " (count(None)) " without a result" (drainage_in_words(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
                 li { @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (sentence(said)) } "." }
             }
             @for row in batch.governing(&filter.name) { li { (governs(folder, row)) } }
+            @if let Some(said) = governs_drainage(&rules, &filter.name) { li { (sentence(&said)) "." } }
             @for said in open_in_words(&rules, &filter.name) { li { (sentence(&said)) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
@@ -116,7 +118,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 /// A sample that governs: its limit, and what its walk says.
 fn governs(folder: &Path, row: &WalkedRow) -> Markup {
     let rules = &row.rules;
-    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)));
+    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", rounded_down(mm)));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }

@@ -16,7 +16,7 @@ use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{Standing, standing};
+use crate::verdict::practice::{Standing, digits_within, standing};
 use crate::verdict::words::capital;
 
 /// Characters of a text of the user's that are shown.
@@ -188,15 +188,28 @@ fn of_rule(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| clean(&rule.name))
-        .text("here", |rule| {
-            let found = |value| format!("{} = {}", rule.quantity.name(), of_rule(rule, value, unit));
-            clean(&rule.value.map_or_else(|| "–".to_owned(), found))
+        .text("here", |rule| match rule.value {
+            Some(value) => html! {
+                (clean(rule.quantity.name())) " " span.q { "= " (clean(&of_rule(rule, value, unit))) }
+            },
+            None => html! { "–" },
         })
         .text("limit", |rule| {
-            let sign = if rule.at_least { "≥" } else { "≤" };
-            let limit = |limit: f64| format!("{sign} {}", of_rule(rule, limit, unit));
-            let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
-            html! { (limit) @if rule.limit_at_most { " or less" } }
+            let shown = |limit| {
+                let number = digits_within(limit, 3, rule.at_least);
+                let with_unit = format!("{number}\u{202f}{}", rule.unit);
+                clean(&(with_unit.trim_end().to_owned() + &inches(rule, limit, unit)))
+            };
+            match rule.limit {
+                Some(limit) if rule.at_least && rule.limit_at_most => {
+                    html! { "not known; at most " span.q { (shown(limit)) } }
+                }
+                Some(limit) => html! {
+                    span.q { (if rule.at_least { "≥ " } else { "≤ " }) (shown(limit)) }
+                    @if rule.limit_at_most { " or less" }
+                },
+                None => html! { "–" },
+            }
         })
         .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {
             (Some(true), _) => html! { span.keeps { "✓ met" } },
@@ -218,10 +231,18 @@ fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
             p.thickness {
                 "Thickness modelled: " b { (unit.size(thickness)) } " along the flow, "
                 (whole(network.layers)) " layers of voids. "
+                @if let Some(grain) = larger_grain(outcome, thickness) {
+                    "That is less than the largest grain of the filter, " (unit.size(grain)) ". "
+                }
                 @if let Some(sentence) = thickness_moves(outcome) { (unbroken(&sentence)) }
             }
         }
     }
+}
+
+/// The largest grain of the filter, where the filter that was walked is thinner than that.
+fn larger_grain(outcome: &Outcome, thickness: f64) -> Option<f64> {
+    outcome.inputs.filter.gradation.last().map(|row| row[0]).filter(|grain| *grain > thickness)
 }
 
 /// How the verdict moves with the thickness.

@@ -110,7 +110,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
     let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
-    let title = format!("{}: {} on {}", outcome.verdict.words(), soil(&base.name), soil(&filter.name));
+    let title = format!("{} on {}", soil(&base.name), soil(&filter.name));
     let main = html! {
         section.sheet {
             (answer(outcome))
@@ -152,6 +152,10 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
         }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
+        @if let Some(over) = outcome.over_curve_range() {
+            p.small { "The table is of the curve itself. Over the range of constrictions " (over) " of the \
+                base erodes." }
+        }
         @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
         @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
         // What a rule that adds replicates says is said above.

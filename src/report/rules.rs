@@ -57,12 +57,14 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
+            let is_open = rule.at_least && rule.limit_at_most;
+            let sign = if is_open { "not known; at most" } else { sign };
             let limit = |limit: f64| {
                 let shown = format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
                 shown.trim_end().to_owned() + &inches(rule, limit, unit)
             };
             let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
-            html! { (limit) @if rule.limit_at_most { " or less" } }
+            html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }
         })
         .text("", |rule| match (rule.role, rule.met) {
             (RuleRole::Walk, Some(true)) => html! { "within" },

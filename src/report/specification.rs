@@ -111,6 +111,11 @@ fn products_in_short(of: &Specification) -> String {
                 nearest.product
             )
         }
+        (true, None) if of.d15f_min_at_most => {
+            "Whether a standard product fits is not known: D15B is finer than the finest sieve. A hydrometer \
+             test of the base would tell whether it drains."
+                .into()
+        }
         (true, None) => {
             format!("No {other} product is known to fit: a limit of D15F is not known.")
         }
@@ -184,6 +189,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
     };
+    let drainage_open = of.d15f_min_at_most;
     let mut table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
@@ -197,17 +203,18 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         table = table.text("", |of| match of.fits() {
             Some(true) => html! { span.keeps { "✓ D15 fits" } },
             Some(false) => html! { span.breaks { "✗ does not fit" } },
+            None if of.drains_by.is_none() && drainage_open => {
+                html! { "may drain: needs a hydrometer test" }
+            }
             None => html! { "no result" },
         });
     }
-    let mut sources: Vec<&str> = of.products.iter().map(|product| product.source.as_str()).collect();
-    sources.dedup();
     html! {
         @if !of.products.is_empty() {
             (table.render())
             p.small {
                 "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
-                 its supplier’s gradation decides. Limits of the products: " (clean(&sources.join("; "))) "."
+                 its supplier’s gradation decides."
             }
         }
     }
@@ -269,10 +276,13 @@ mod tests {
         assert!(said.contains("ASTM C33 fine aggregate (but lies outside this band)."), "{said}");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
         // The greatest is not known, and the least alone refuses the finest product.
-        let unknown =
-            Specification { d15f_max_mm: None, products: margins(Some(0.2), None, None), ..core.clone() };
+        let unknown = Specification {
+            d15f_max_mm: None,
+            products: margins((Some(0.2), false), None, None),
+            ..core.clone()
+        };
         assert!(products_in_short(&unknown).starts_with("No other product is known to fit"));
-        let unknown = Specification { products: margins(Some(0.1), None, None), ..unknown };
+        let unknown = Specification { products: margins((Some(0.1), false), None, None), ..unknown };
         assert!(products_in_short(&unknown).starts_with("No standard product is known to fit"));
         let points = [12.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
         assert_eq!(points, ["12", "1", "1.0", "0.3", "less than 0.1"]);

@@ -324,7 +324,7 @@ function readCurves(svg) {
 
 const ROLES = [["retention", "The filter retains the base"],
   ["continuation", "Coarser filters: where erosion still ends"],
-  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "The filter holds its own fines"]];
+  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "The filter holds its finer part"]];
 
 function result(rule) {
   if (rule.met === true) return el("span", { class: "keeps" }, "met");

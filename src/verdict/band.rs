@@ -13,20 +13,22 @@ impl Band {
     /// `None` where the least is not known.
     pub fn new(rules: &[AppliedRule], d15f: f64, held: f64, unit: &str) -> Option<Self> {
         let limits = limits(rules, d15f);
-        let (_, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
+        let (drainage, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
         let strictest = retention(rules, d15f);
         // The stricter of walk and practice is the one that clashes.
         let stricter = strictest.filter(|(_, limit)| *limit < held);
         let greatest = stricter.map_or(held, |(_, limit)| limit);
         let mut band = Self {
             least,
+            least_at_most: drainage.limit_at_most,
             greatest,
             set_by: Some(if stricter.is_some() { SetBy::Practice } else { SetBy::Walk }),
             practice: strictest.map(|(_, limit)| limit),
             practice_rule: strictest.map_or_else(String::new, |(rule, _)| rule.name.clone()),
             practice_rule_id: strictest.map(|(rule, _)| rule.id.clone()),
             unit: unit.into(),
-            is_empty: least > greatest,
+            // A least that is not known leaves nothing out.
+            is_empty: least > greatest && !drainage.limit_at_most,
             said: String::new(),
         };
         band.said = match band.empty() {
@@ -58,7 +60,14 @@ impl Band {
 
     fn sides(&self, greatest: f64, practice: Option<String>) -> String {
         let set_by = practice.map_or("the walk".into(), |rule| format!("practice ({rule})"));
-        format!("D15F from {:.3} to {greatest:.3} {}, the coarse side by {set_by}", self.least, self.unit)
+        let (least, unit) = (self.least, &self.unit);
+        match self.least_at_most {
+            true => format!(
+                "D15F up to {greatest:.3} {unit}, by {set_by}; the least that drains is not known, and at most \
+                 {least:.3} {unit}: the base needs a hydrometer test"
+            ),
+            false => format!("D15F from {least:.3} to {greatest:.3} {unit}, the coarse side by {set_by}"),
+        }
     }
 
     /// The rule of practice, as a sentence cites it.

@@ -2,11 +2,12 @@
 //! govern.
 
 use super::pair::{Mistake, PairOptions, PairRules};
-use super::practice::{against, broken, tested, tested_words};
+use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested, tested_words};
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
+use crate::outcome::numbers::rounded_up;
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
-use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, authority};
+use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, authority};
 use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -46,6 +47,15 @@ pub struct BatchRow {
     pub met: Option<bool>,
     /// The class by the tests of Foster and Fell, in words.
     pub tests: String,
+    /// Whether the filter keeps every rule of drainage; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drains: Option<bool>,
+    /// The least D15F that drains the sample.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d15f_min_mm: Option<f64>,
+    /// Whether the true least is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub d15f_min_at_most: bool,
     /// What else speaks against the filter, or why nothing was applied.
     pub note: String,
     /// Whether the filter may lose its own fines.
@@ -94,6 +104,9 @@ impl BatchRow {
             rule: String::new(),
             met: None,
             tests: String::new(),
+            drains: None,
+            d15f_min_mm: None,
+            d15f_min_at_most: false,
             note: String::new(),
             may_lose_fines: false,
             is_refused: false,
@@ -116,12 +129,19 @@ impl BatchRow {
             (true, false) => Some(true),
         };
         let also = [
-            (RuleRole::Stability, "may lose its own fines"),
+            (RuleRole::Stability, "may lose its finer part"),
             (RuleRole::Drainage, "may not drain"),
             (RuleRole::Placing, "may segregate"),
         ];
         let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
-        let also = also.map(|(_, what)| what.to_owned()).collect::<Vec<_>>().join(", ");
+        let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
+        let drains = match broken(rules, RuleRole::Drainage).is_empty() {
+            true => drainage.and_then(|rule| rule.met),
+            false => Some(false),
+        };
+        let open = (drainage.is_some() && drains.is_none()).then_some(DRAINAGE_UNKNOWN);
+        let also: Vec<&str> = also.map(|(_, what)| what).chain(open).collect();
+        let also = also.join(", ");
         let notes = [doubt, Some(also).filter(|said| !said.is_empty()), joint(rules)];
         let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
@@ -130,6 +150,9 @@ impl BatchRow {
             rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
             met,
             tests: tested_words(tested(rules)).into(),
+            drains,
+            d15f_min_mm: drainage.and_then(|rule| rule.limit),
+            d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),
             note,
             may_lose_fines: !broken(rules, RuleRole::Stability).is_empty(),
             ..row
@@ -215,6 +238,32 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     };
     let of_named = named.iter().copied().filter(is_same).count();
     rows.iter().filter(is_same).count() - of_named
+}
+
+/// How many samples a filter may not drain, and of how many that is not known, as the end of a sentence;
+/// empty where it drains all.
+pub fn drainage_in_words(rows: &[BatchRow], filter: &str) -> String {
+    let of_filter = || rows.iter().filter(|row| row.filter == filter);
+    let dry = of_filter().filter(|row| row.drains == Some(false)).count();
+    let open = of_filter().filter(|row| row.drains.is_none() && row.d15f_min_mm.is_some()).count();
+    let each = [(dry, "may not drain"), (open, DRAINAGE_UNKNOWN)];
+    each.into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("; {count} {what}"))
+        .collect()
+}
+
+/// The sample that asks a filter for the greatest D15F to drain, in words; `None` where it drains all, or
+/// without a limit.
+pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
+    let of_filter = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
+    let limits = of_filter.filter_map(|row| Some((row.d15f_min_mm?, row)));
+    let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let limit = match row.d15f_min_at_most {
+        true => format!("the least D15F is not known, and at most {} mm", rounded_up(least)),
+        false => format!("D15F {} mm or more", rounded_up(least)),
+    };
+    Some(format!("drainage is governed by {}: {limit}", row.sample))
 }
 
 /// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern. Not

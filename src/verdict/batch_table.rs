@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::{BatchRow, NAMED, governing, more_with_that_limit, open_in_words};
+use super::batch::{
+    BatchRow, NAMED, drainage_in_words, governing, governs_drainage, more_with_that_limit, open_in_words,
+};
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
-use crate::outcome::three;
+use crate::outcome::numbers::rounded_down;
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,7 +34,8 @@ impl BatchFilter {
         let samples = of_filter().count();
         let one_or_more = if samples == 1 { "sample" } else { "samples" };
         let mut said = vec![format!(
-            "{name}: of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result"
+            "{name}: of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result{}",
+            drainage_in_words(rows, name)
         )];
         if curves.len() > 1 {
             said.push(format!(
@@ -45,13 +48,14 @@ impl BatchFilter {
         for (at, row) in strictest.iter().enumerate() {
             let what = if at == 0 { "governing sample" } else { "then" };
             let at_most = if row.limit_at_most { " at most" } else { "" };
-            let limit = three(row.limit_mm.unwrap_or(0.0));
+            let limit = rounded_down(row.limit_mm.unwrap_or(0.0));
             said.push(format!("{what} {}: D15F up to {limit} mm{at_most} ({})", row.sample, row.rule));
         }
         let more = more_with_that_limit(rows, name, &strictest);
         if more > 0 {
             said.push(format!("and {more} more with the same limit"));
         }
+        said.extend(governs_drainage(rows, name));
         said.extend(open_in_words(rows, name));
         said
     }

@@ -1,7 +1,7 @@
 //! What the results of a run say beside its verdict, and the findings of an outcome as they are shown.
 
 use super::entry::Finding;
-use super::{finding, thickness};
+use super::{amount, finding, thickness};
 use crate::outcome::digits::percent;
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{
@@ -26,6 +26,7 @@ impl Outcome {
             (trapped > 0).then(|| finding::trapped(trapped)),
             self.inputs.network.thickness_mm.map(of_thickness),
             thickness::finding(self),
+            amount::finding(self),
             self.permeability(),
             self.overfull(),
         ]

@@ -2,13 +2,15 @@
 //! do next, and the three findings that matter most.
 
 use super::beside::is_evidence;
-use super::practice::{Standing, broken, standing};
+use super::evidence::probability_in_words;
+use super::practice::{Standing, broken, listed, standing};
 use crate::outcome::design::band::retention;
 use crate::outcome::digits::percent;
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{
     AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
-use crate::outcome::three;
+use crate::outcome::rules::authority;
 use crate::outcome::undecided::UndecidedBy;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
@@ -33,9 +35,15 @@ impl Outcome {
     /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
     /// on soils of this kind make of it.
     pub fn walk_in_words(&self) -> String {
-        let runs = [("first run", "95 % interval "), ("second", "")].into_iter().zip(&self.summary);
-        let runs: Vec<String> = runs.map(|((name, what), run)| eroded(name, what, run)).collect();
-        let mut said = format!("{}; eroded {}", self.verdict.words(), runs.join(", "));
+        let mass = self.over_curve_range().map_or_else(
+            || {
+                let what = "95 % interval by the scatter of replicates ";
+                let runs = [("first run", what), ("second", "")].into_iter().zip(&self.summary);
+                runs.map(|((name, what), run)| eroded(name, what, run)).collect::<Vec<_>>().join(", ")
+            },
+            |over| format!("{over} over the range of constrictions"),
+        );
+        let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
@@ -44,6 +52,19 @@ impl Outcome {
             Some(probability) => format!("{said}. {probability}"),
             None => said,
         }
+    }
+
+    /// Least and most of the base's mass that erode over the range of the constriction curve, run by run: the
+    /// class is that of the whole range. `None` where the curve is no range.
+    pub fn over_curve_range(&self) -> Option<String> {
+        let range = self.curve_range.as_ref()?;
+        let run = |([low, high], name): (&[f64; 2], &str)| {
+            let [low, high] = [*low, *high].map(|of| percent(of.max(0.0)));
+            let mass = if low == high { low } else { format!("{low} to {high}") };
+            format!("{mass} in the {name}")
+        };
+        let runs = range.eroded_mass_fraction.iter().zip(["first run", "second"]);
+        Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
     /// The probability that a test would show no erosion, by the walk and by tests alone.
@@ -60,19 +81,26 @@ impl Outcome {
             Standing::Fails | Standing::NoMargin => {
                 let finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
                     Some((limit, false)) => {
-                        format!("take a filter with a D15F of at most {} {unit}", three(limit))
+                        format!("take a filter with a D15F of at most {} {unit}", rounded_down(limit))
                     }
                     Some((limit, true)) => format!(
                         "take a finer filter; the limit lies below a D15F of {} {unit}, and is not known",
-                        three(limit)
+                        rounded_down(limit)
                     ),
                     None => "take a finer filter".into(),
                 };
                 format!("{finer}; for a filter that exists, have this pair tested")
             }
             Standing::Unstable => {
-                "take a filter without a gap and with fewer fines, or have its internal stability tested"
-                    .into()
+                let mut whose: Vec<String> = Vec::new();
+                for rule in broken(&self.rules, RuleRole::Stability) {
+                    let name = authority(rule).to_owned();
+                    if !whose.contains(&name) {
+                        whose.push(name);
+                    }
+                }
+                let rules = listed(&whose);
+                format!("take a filter that is stable by {rules}, or have its internal stability tested")
             }
             Standing::Unknown(needs) => format!("get {needs}"),
             Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
@@ -92,7 +120,7 @@ impl Outcome {
             // Where a base erodes in the walk no coarser filter is asked for.
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
-                    let [least, most] = [least, most].map(three);
+                    let [least, most] = [rounded_up(least), rounded_down(most)];
                     format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}")
                 }),
             (Some(_), _) => {
@@ -134,7 +162,14 @@ impl Outcome {
     /// the rest.
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
-        all.filter(|finding| !is_evidence(finding)).collect()
+        let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
+        // That "no erosion" does not stand with less base is never folded away.
+        let turns = |finding: &FindingRecord| finding.against && finding.id == "worse_with_amount";
+        let at = all.iter().position(turns).filter(|at| *at >= FOREMOST);
+        if let Some(at) = at.filter(|_| self.verdict == Verdict::None) {
+            all[FOREMOST - 1..=at].rotate_right(1);
+        }
+        all
     }
 }
 
@@ -144,13 +179,8 @@ pub(super) fn probabilities(
     bound: Option<Bound>,
     by_tests: Option<f64>,
 ) -> Option<String> {
-    let bound = match bound {
-        Some(Bound::AtLeast) => "at least ",
-        Some(Bound::AtMost) => "at most ",
-        None => "",
-    };
-    let by_walk = by_walk.map(|of| format!("{bound}{:.0} % by the walk", 100.0 * of));
-    let by_tests = by_tests.map(|of| format!("{:.0} % by published tests", 100.0 * of));
+    let by_walk = by_walk.map(|of| format!("{} by the walk", probability_in_words(of, bound)));
+    let by_tests = by_tests.map(|of| format!("{} by published tests", probability_in_words(of, None)));
     let each: Vec<String> = by_walk.into_iter().chain(by_tests).collect();
     (!each.is_empty()).then(|| each.join(", "))
 }
@@ -176,16 +206,16 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         (Standing::NoRules, Verdict::Undecided) => "nobody can say yet: the walk is undecided".into(),
         (Standing::NoRules, _) => format!("{walked} in the model"),
         (Standing::Fails, Verdict::None) => {
-            "does not meet practice, though nothing erodes in the model: rely on practice".into()
+            "does not meet practice, though the walk says no erosion: rely on practice".into()
         }
         (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
         (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
         (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
         (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
         (Standing::Unstable, Verdict::Continuing) => {
-            format!("does not hold: {walked} in the model, and the filter may lose its own fines")
+            format!("does not hold: {walked} in the model, and the filter may lose its finer part")
         }
-        (Standing::Unstable, _) => "may not hold: the filter may lose its own fines".into(),
+        (Standing::Unstable, _) => "may not hold: the filter may lose its finer part".into(),
         (Standing::Unknown(needs), Verdict::Undecided) => {
             format!("nobody can say yet: practice needs {needs}, and the walk is undecided")
         }
@@ -207,7 +237,7 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);
-    let more = [(unstable, "; the filter may lose its own fines"), (dry, "; the filter may not drain")];
+    let more = [(unstable, "; the filter may lose its finer part"), (dry, "; the filter may not drain")];
     more.into_iter().filter(|(holds, _)| *holds).fold(said, |said, (_, more)| said + more)
 }
 
@@ -216,7 +246,7 @@ fn reservation(confidence: Confidence) -> &'static str {
     match confidence {
         Confidence::MayNotDrain => "the filter may not drain the base",
         Confidence::MaySegregate => "the filter may segregate when placed",
-        Confidence::Unstable => "the filter may lose its own fines",
+        Confidence::Unstable => "the filter may lose its finer part",
         Confidence::Contradicted => "another rule speaks against it",
         Confidence::Within | Confidence::Outside => {
             "the walk agrees, outside the range in which it was checked"
@@ -279,7 +309,7 @@ mod tests {
                 assert_eq!(said(filter, base, verdict), line);
             }
             let none = said(filter, base, Verdict::None);
-            assert_eq!(none, "does not meet practice, though nothing erodes in the model: rely on practice");
+            assert_eq!(none, "does not meet practice, though the walk says no erosion: rely on practice");
             let open = said(filter, base, Verdict::Undecided);
             assert_eq!(open, "does not meet practice; the walk is undecided");
         }
@@ -301,7 +331,7 @@ mod tests {
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         assert_eq!(
             said(&gap, &SAND, Verdict::None),
-            "may not hold: the filter may lose its own fines; the filter may not drain"
+            "may not hold: the filter may lose its finer part; the filter may not drain"
         );
         // A sand whose fines nobody sieved.
         let hidden = said(&GOOD, &[(0.3, 25.0), (1.0, 100.0)], Verdict::None);

@@ -9,9 +9,9 @@ use super::words::capital;
 use crate::outcome::design::band::{SetBy, limits, retention};
 use crate::outcome::design::{Design, DesignAnswer, DesignRow};
 use crate::outcome::digits::percent;
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::rules::DESIGN;
-use crate::outcome::three;
 
 /// The finest base that practice allows with a filter, for the inverse.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,7 +220,9 @@ impl Sizes {
 
     /// A ratio as a size.
     fn size(&self, ratio: f64) -> String {
-        self.mm(ratio).map_or_else(|| format!("{ratio:.2} D85B"), |mm| format!("{} mm", three(mm)))
+        // The greatest D15F, or the least D85B.
+        let within = if self.inverse { rounded_up } else { rounded_down };
+        self.mm(ratio).map_or_else(|| format!("{ratio:.2} D85B"), |mm| format!("{} mm", within(mm)))
     }
 
     fn words(&self, ratio: f64) -> String {
@@ -232,7 +234,9 @@ impl Sizes {
     fn other(&self, design: &Design, rule: &AppliedRule) -> String {
         let all = limits(&design.rules, design.rules_at * self.d85);
         let of_design = all.iter().find(|(of, _)| of.id == DESIGN && rule.id != DESIGN && !self.inverse);
-        of_design.map_or(String::new(), |(of, limit)| format!("; {} is {} mm", cited_rule(of), three(*limit)))
+        of_design.map_or(String::new(), |(of, limit)| {
+            format!("; {} is {} mm", cited_rule(of), rounded_down(*limit))
+        })
     }
 
     /// Why no limit of practice is known.

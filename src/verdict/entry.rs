@@ -3,6 +3,7 @@
 use serde_json::Map;
 
 use super::quantity::FindingValue;
+use super::words::within;
 use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdict, Weight};
 
 /// What the table declares of a finding.
@@ -141,7 +142,14 @@ impl Finding {
 
     /// What it says.
     pub fn sentence(&self) -> String {
-        self.filled(self.entry.sentence)
+        let said = self.filled(self.entry.sentence);
+        match self.is_settled {
+            true => format!(
+                "The soils of the evidence had the same, so that it is no doubt here: {}.",
+                within(&said)
+            ),
+            false => said,
+        }
     }
 
     /// The sentence, and which setting changes it.

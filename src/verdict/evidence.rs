@@ -50,6 +50,22 @@ pub const LAYERS: u64 = 60;
 /// A probability is never nearer to 0 or 1 than this.
 const SURE: f64 = 0.02;
 
+/// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
+const WALK_SURE: f64 = 0.025;
+
+/// A probability of no erosion in percent: at its caps it may be any less or more.
+pub fn probability_in_words(probability: f64, bound: Option<Bound>) -> String {
+    let shown = format!("{:.0} %", 100.0 * probability);
+    let (is_most, is_least) = (probability >= 1.0 - WALK_SURE, probability <= WALK_SURE);
+    match bound {
+        Some(Bound::AtMost) if !is_least => format!("at most {shown}"),
+        Some(Bound::AtLeast) if !is_most => format!("at least {shown}"),
+        _ if is_most => format!("{shown} or more"),
+        _ if is_least => format!("{shown} or less"),
+        _ => shown,
+    }
+}
+
 /// A group of soils against filters of one shape.
 #[derive(Debug)]
 struct Group {
@@ -193,17 +209,12 @@ impl Evidence {
 
     /// What it says. Where tests hold and the walk erodes, that speaks against the walk.
     fn finding(&self) -> Finding {
-        let bound = match self.bound {
-            Some(Bound::AtLeast) => "at least ",
-            Some(Bound::AtMost) => "at most ",
-            None => "",
-        };
         let of_walk = match self.probability_no_erosion {
-            Some(of) => format!("is {bound}{:.0} %", 100.0 * of),
+            Some(of) => format!("is {}", probability_in_words(of, self.bound)),
             None if self.ratio_median > 1.0 => "is not known by the walk".into(),
             None => "is not known by the walk, whose ratio to tests scatters or rests on few soils".into(),
         };
-        let of_tests = self.probability_by_tests.map(|of| format!("{:.0} %", 100.0 * of));
+        let of_tests = self.probability_by_tests.map(|of| probability_in_words(of, None));
         let of_tests = of_tests
             .map_or(String::new(), |of| format!("; by the published range of such tests alone it is {of}"));
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
@@ -314,11 +325,26 @@ mod tests {
         assert!(
             of.bound == Some(Bound::AtLeast) && of.supports(Verdict::None) && !of.supports(Verdict::Some)
         );
-        assert!(of.finding().sentence().contains("at least"), "{}", of.finding().sentence());
+        let said = of.finding().sentence();
+        assert!(said.contains("at least") || said.contains(" or more"), "{said}");
         let mut eroded = margin(0.5, 1.0);
         eroded.walks.remove(0);
         let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&eroded)).unwrap();
         assert!(of.bound == Some(Bound::AtMost) && !of.supports(Verdict::None), "{of:?}");
+    }
+
+    #[test]
+    fn a_probability_at_its_cap_is_no_value() {
+        let said = probability_in_words;
+        assert_eq!(
+            [0.98, 0.975, 0.02, 0.025].map(|of| said(of, None)),
+            ["98 % or more", "98 % or more", "2 % or less", "2 % or less"]
+        );
+        assert_eq!(said(0.27, None), "27 %");
+        assert_eq!(said(0.93, Some(Bound::AtLeast)), "at least 93 %");
+        assert_eq!(said(0.975, Some(Bound::AtLeast)), "98 % or more");
+        assert_eq!(said(0.975, Some(Bound::AtMost)), "at most 98 %");
+        assert_eq!(said(0.02, Some(Bound::AtMost)), "2 % or less");
     }
 
     #[test]

@@ -17,7 +17,7 @@ findings! {
     /// A filter coarser than the limit of design.
     limit_of_design(limit: Text, value: Text): Practice, Unsafe, Limits, sets Contradicted, against HELD;
         "limit of design", "rules.md",
-        "Practice allows D15F {limit}, this is {value} (Sherard and Dunnigan's limit of design).";
+        "The limit of design is D15F {limit}, this is {value} (Sherard and Dunnigan).";
     /// A filter coarser than those of which tests found no erosion.
     tests_no_erosion(limit: Text, value: Text): Practice, Unsafe, Limits, sets Contradicted, against HELD;
         "tests", "rules.md",
@@ -39,8 +39,8 @@ findings! {
         "Practice allows {quantity} up to {limit}, this is {value} ({author}).";
     /// An unstable filter.
     loses_fines(rules: Text): Practice, Unsafe, Limits, sets Unstable;
-        "own fines", "rules.md",
-        "The filter may lose its own fines, and with them the constrictions that were walked. Rules that are \
+        "finer part", "rules.md",
+        "The filter may lose its finer part, and with it the constrictions that were walked. Rules that are \
          not met: {rules}.";
     /// A filter too fine to drain.
     too_fine_to_drain(value: Text, asked: Text): Practice, Open, Limits, sets MayNotDrain, against HELD;
@@ -55,6 +55,12 @@ findings! {
     may_segregate(rules: Text): Practice, Open, Limits, sets MaySegregate, against HELD;
         "segregation", "rules.md",
         "The filter may segregate when it is placed: {rules}.";
+
+    // What the amount of base does to a class.
+    /// A worse class with another amount of base.
+    worse_with_amount(times: Text, class: Text, each: Text): Amount, Unsafe, Limits;
+        "amount of base", "uncertainty.md",
+        "The class depends on the amount of base: with {times} times the base {class}. All amounts: {each}.";
 
     // What leaves a class open.
     /// Both readings of the base's finest part, which differ.
@@ -322,7 +328,7 @@ findings! {
     gap_graded(within: Percent, from: Mm): Filter, Unsafe, Limits;
         "gap", "soils.md",
         "The filter is gap-graded: only {within} of it is between {from} and four times that. The \
-         constrictions between its fines, which it may lose, were walked.";
+         constrictions of its finer part, which it may lose, were walked.";
     /// A finest part of the base that will be walked in several readings.
     pan_readings_walked(share: Percent, sieve: Mm, constriction: Mm): Base, Open, Limits;
         "finest part", "soils.md",
@@ -477,10 +483,10 @@ findings! {
         "The base curve {curve} allows a D15F of {limit}, less than the {of_finest} of the finest curve, as \
          its fines put it into another category.";
     /// A finest part of the filter that is not counted.
-    pan_of_filter(share: Percent): Filter, Open, Note;
+    pan_of_filter(share: Percent): Filter, Unsafe, Note;
         "finest part", "soils.md",
         "The finest {share} of the filter is not counted, so that too much base is offered. Of more base a \
-         smaller share passes.",
+         smaller share passes, so that the filter may seem to hold.",
         to do "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     loose_grains(loose: Percent): Filter, Open, Note;
@@ -576,6 +582,16 @@ findings! {
     open_with_thickness(points: Text, each: Text): Thickness, Open, Note;
         "thickness", "uncertainty.md",
         "The verdict is undecided; at other thicknesses{points} ({each}).";
+    /// A verdict that other amounts of base share.
+    stays_with_amount(each: Text): Amount, Settled, Note;
+        "amount of base", "uncertainty.md", "The verdict stays with the amount of base ({each}).";
+    /// A verdict that other amounts of base do not share, none of them with a worse class.
+    moves_with_amount(each: Text): Amount, Open, Note;
+        "amount of base", "uncertainty.md", "The verdict moves with the amount of base ({each}).";
+    /// Other amounts of base of a verdict that is undecided.
+    open_with_amount(points: Text, each: Text): Amount, Open, Note;
+        "amount of base", "uncertainty.md",
+        "The verdict is undecided; with other amounts of base{points} ({each}).";
     /// How far the permeability fell.
     permeability(run: Text, falls: Text, clean: Text): Flow, Settled, Note;
         "permeability", "graph.md",

@@ -17,6 +17,7 @@
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
 //! - `words` are what a class means.
 
+mod amount;
 mod answer;
 mod band;
 pub(crate) mod batch;

@@ -4,9 +4,15 @@
 use super::entry::Finding;
 use super::finding;
 use crate::outcome::record::{
-    AppliedRule, LimitOfDesign, Outcome, Practice, RuleQuantity, RuleRole, TestedClass, Verdict,
+    AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, RuleText, TestedClass,
+    Verdict,
 };
-use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{
+    DESIGN, PAPER_NO_EROSION, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
+};
+
+/// Said where the rule of drainage has no result.
+pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
 /// The rules of a role that were made for these soils and are not kept.
 pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
@@ -24,7 +30,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     let unstable = broken(rules, RuleRole::Stability);
     if !unstable.is_empty() {
         all.push(finding::loses_fines(&list(&unstable, |rule| {
-            let [value, limit] = against(rule, 2);
+            let [value, limit] = against(rule, 3);
             format!("{} ({} {value}, limit {limit})", authority(rule), rule.quantity)
         })));
     }
@@ -38,7 +44,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
 }
 
 fn of_rule(rule: &AppliedRule) -> Finding {
-    let [value, limit] = against(rule, 2);
+    let [value, limit] = against(rule, 3);
     let limit = limit + if rule.limit_at_most { " at most" } else { "" };
     match (rule.id.as_str(), rule.role) {
         (DESIGN, _) => finding::limit_of_design(&limit, &value),
@@ -53,7 +59,7 @@ fn of_rule(rule: &AppliedRule) -> Finding {
 
 /// A quantity, and what practice asks for.
 fn asked(rule: &AppliedRule) -> String {
-    let [value, limit] = against(rule, 2);
+    let [value, limit] = against(rule, 3);
     let allowed = if rule.at_least { "at least" } else { "up to" };
     format!("{} is {value}, and practice asks for {allowed} {limit}", rule.quantity)
 }
@@ -72,9 +78,9 @@ fn undrained(rules: &[AppliedRule]) -> (Vec<&AppliedRule>, Vec<&AppliedRule>) {
 /// D15F of a filter that is too fine to drain, and what practice asks for.
 fn too_fine(rules: &[AppliedRule]) -> Option<[String; 2]> {
     let (of_size, _) = undrained(rules);
-    let [value, limit] = against(of_size.first()?, 2);
+    let [value, limit] = against(of_size.first()?, 3);
     let least = of_size.get(1).map_or(String::new(), |least| {
-        format!(", and EM 1110-2-1901 for {} at the least", against(least, 2)[1])
+        format!(", and EM 1110-2-1901 for {} at the least", against(least, 3)[1])
     });
     Some([value, format!("USBR and NRCS ask for {limit} or more{least}")])
 }
@@ -250,7 +256,7 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
         }
     }
     let also = [
-        (RuleRole::Stability, "may lose its own fines"),
+        (RuleRole::Stability, "may lose its finer part"),
         (RuleRole::Drainage, "may not drain"),
         (RuleRole::Placing, "may segregate"),
     ];
@@ -258,6 +264,10 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let also: Vec<String> = also.map(|(_, what)| what.to_owned()).collect();
     if !also.is_empty() {
         said.push(format!("the filter {}", listed(&also)));
+    }
+    let drainage = find(PERMEABILITY).filter(|rule| rule.met.is_none());
+    if drainage.is_some() && broken(rules, RuleRole::Drainage).is_empty() {
+        said.push(DRAINAGE_UNKNOWN.into());
     }
     let result = match design.and_then(|rule| rule.met) {
         _ if !retention.is_empty() => "not met",
@@ -300,14 +310,19 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
         Some(format!("{}{}", against(rule, 3)[1], if rule.limit_at_most { " at most" } else { "" }))
     };
     let up_to = limit(TESTS_NO_EROSION).map(|of| format!("no erosion up to {of}"));
-    let beyond = limit(TESTS_CONTINUING).map(|of| format!("continuing erosion beyond {of}"));
+    let is_unclear = rules.iter().any(|rule| {
+        rule.id == TESTS_CONTINUING && rule.note == RuleText::Of(vec![RuleNote::NoClearBoundary])
+    });
+    let unclear = if is_unclear { ", where tests found no clear boundary" } else { "" };
+    let beyond = limit(TESTS_CONTINUING).map(|of| format!("{of}{unclear}"));
+    let from = beyond.as_ref().map(|of| format!("continuing erosion beyond {of}"));
     let class = tested(rules);
     let between = match class {
         TestedClass::None => limit(TESTS_NO_EROSION).map(|of| format!("up to {of}")),
-        TestedClass::Continuing => limit(TESTS_CONTINUING).map(|of| format!("beyond {of}")),
-        TestedClass::Excessive => beyond,
-        TestedClass::Some => up_to.zip(beyond).map(|(a, b)| format!("{a}, {b}")),
-        TestedClass::Unknown => up_to.or(beyond),
+        TestedClass::Continuing => beyond.map(|of| format!("beyond {of}")),
+        TestedClass::Excessive => from,
+        TestedClass::Some => up_to.zip(from).map(|(a, b)| format!("{a}, {b}")),
+        TestedClass::Unknown => up_to.or(from),
     };
     let class = tested_words(class);
     Some(format!("Foster and Fell: {class} ({})", between?))
@@ -319,7 +334,7 @@ fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
 }
 
 /// 0 no erosion, 1 some or excessive, 2 continuing; `None` where it is undecided.
-fn severity(verdict: Verdict) -> Option<u8> {
+pub(super) fn severity(verdict: Verdict) -> Option<u8> {
     match verdict {
         Verdict::None => Some(0),
         Verdict::Some => Some(1),
@@ -329,7 +344,7 @@ fn severity(verdict: Verdict) -> Option<u8> {
 }
 
 /// `a`, `a and b`, `a, b and c`.
-fn listed(items: &[String]) -> String {
+pub(super) fn listed(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [one] => one.clone(),
@@ -360,9 +375,16 @@ pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
     let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
         return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
     };
-    let pair = |digits| [value, limit].map(|number| digits_of(number, digits));
-    let apart = (digits..9).map(pair).find(|[value, limit]| value != limit);
-    apart.unwrap_or_else(|| pair(digits)).map(|number| with_unit(number, &rule.unit))
+    // A limit is never shown more generous than it is.
+    let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, rule.at_least)];
+    let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {
+        (Ok(shown), Ok(of)) => shown != of && (shown < of) == (value < limit),
+        _ => shown != of,
+    };
+    let apart = (digits..9).map(pair).find(is_order);
+    apart
+        .unwrap_or_else(|| [value, limit].map(|number| digits_of(number, digits)))
+        .map(|number| with_unit(number, &rule.unit))
 }
 
 /// A value with its unit.
@@ -383,8 +405,27 @@ fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
-    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4);
-    format!("{value:.*}", decimals as usize)
+    format!("{value:.*}", decimals_of(value, digits))
+}
+
+fn decimals_of(value: f64, digits: i32) -> usize {
+    (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4) as usize
+}
+
+/// The same of a limit: a greatest rounded down, a least rounded up.
+pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
+    // What arithmetic leaves of a number of so many digits.
+    const HAIR: f64 = 1e-9;
+    if limit <= 0.0 || !limit.is_finite() {
+        return digits_of(limit, digits);
+    }
+    let decimals = decimals_of(limit, digits);
+    let parts = libm::pow(10.0, decimals as f64);
+    let whole = match at_least {
+        true => (limit * parts * (1.0 - HAIR)).ceil(),
+        false => (limit * parts * (1.0 + HAIR)).floor(),
+    };
+    format!("{:.*}", decimals, whole / parts)
 }
 
 #[cfg(test)]
@@ -415,7 +456,7 @@ mod tests {
         assert!(said(&GRAVEL, &TILL).starts_with(begin), "{}", said(&GRAVEL, &TILL));
         assert_eq!(
             said(&[(1.0, 0.0), (3.0, 100.0)], &SAND),
-            "met: D15F 1.18 mm is within the 2.04 mm that Sherard and Dunnigan allow (design); Foster and \
+            "met: D15F 1.18 mm is within the 2.03 mm that Sherard and Dunnigan allow (design); Foster and \
              Fell: no erosion (up to 3.56 mm)"
         );
         let coarse = said(&[(8.0, 0.0), (16.0, 100.0)], &SAND);
@@ -434,7 +475,7 @@ mod tests {
         );
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         let unstable = said(&gap, &SAND);
-        assert!(unstable.contains("; the filter may lose its own fines, may not drain"), "{unstable}");
+        assert!(unstable.contains("; the filter may lose its finer part, may not drain"), "{unstable}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::entry::Finding;
 use super::finding as found;
-use crate::outcome::record::{CurveRange, OfThickness, Outcome, Statistic, Verdict};
+use crate::outcome::record::{Classed, CurveRange, OfThickness, Outcome, Statistic, Verdict};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
@@ -40,18 +40,8 @@ fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opti
     let own = own(rows)?;
     let stays = others.iter().all(|row| row.walked.verdict == verdict);
     let of_row = |row: &&OfThickness| {
-        let eroded: Vec<String> =
-            row.walked.runs.iter().map(|s| percent(s, row.walked.stopped_when_clear)).collect();
-        let times = format!("{:.3}", row.factor);
-        let times = times.trim_end_matches('0').trim_end_matches('.');
-        let replicates = if row.walked.replicates == 1 { "replicate" } else { "replicates" };
         let held = if row.has_its_base(own) { "" } else { ", not as many times the base" };
-        format!(
-            "{times} times as thick{held}: {}, {} eroded in {} {replicates}",
-            row.walked.verdict.words(),
-            eroded.join(" then "),
-            row.walked.replicates
-        )
+        format!("{} times as thick{held}: {}", times(row.factor), walked_in_words(&row.walked))
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
     let each = each.join("; ");
@@ -65,6 +55,20 @@ fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opti
     })
 }
 
+/// A multiple, without digits that say nothing.
+pub(super) fn times(factor: f64) -> String {
+    let times = format!("{factor:.3}");
+    times.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// The class of other walks, and what eroded in them.
+pub(super) fn walked_in_words(walked: &Classed) -> String {
+    let eroded: Vec<String> = walked.runs.iter().map(|s| percent(s, walked.stopped_when_clear)).collect();
+    let replicates = if walked.replicates == 1 { "replicate" } else { "replicates" };
+    let (class, count) = (walked.verdict.words(), walked.replicates);
+    format!("{class}, {} eroded in {count} {replicates}", eroded.join(" then "))
+}
+
 /// The eroded mass; of a point that stopped early its interval, as one replicate has no digits to show.
 fn percent(eroded: &Statistic, stopped: bool) -> String {
     match (eroded.low, eroded.high) {
@@ -76,7 +80,6 @@ fn percent(eroded: &Statistic, stopped: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::Classed;
 
     fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
         of_rows(rows, verdict, points).map(|finding| finding.sentence())

@@ -56,8 +56,8 @@ pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> Stri
     let here = summary.get(run).is_none_or(|run| run.eroded_mass_fraction.mean >= threshold);
     let of_range = match verdict {
         Verdict::Some | Verdict::Continuing if !here => {
-            " The filter’s constrictions may be coarser than those of the table, and with the coarsest it \
-             comes to this class."
+            " The table below is of the curve itself. The filter’s constrictions may be coarser, and the \
+             coarsest of their range give this class."
         }
         _ => "",
     };

@@ -38,7 +38,7 @@ fn soils_go_by_their_names_and_not_their_files() {
     plan.outcome.inputs.base.name = "csv/tillh.csv".into();
     plan.outcome.inputs.filter.name = "lab/ring.xlsx#C33 sand".into();
     let (page, figures, _folder) = made(&plan);
-    assert!(page.contains("<title>some erosion: tillh on C33 sand</title>"));
+    assert!(page.contains("<title>tillh on C33 sand</title>"));
     let text = words(&page);
     assert!(text.contains("Base tillh against filter C33 sand"));
     assert!(

@@ -22,6 +22,9 @@ pub enum SetBy {
 pub struct Band {
     /// Least D15F, of the rule of permeability.
     pub least: f64,
+    /// Whether the true least is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub least_at_most: bool,
     /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
     /// of networks, and practice. Files of earlier versions hold that of the walk alone.
     pub greatest: f64,

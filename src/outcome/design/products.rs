@@ -99,6 +99,9 @@ pub struct Fit {
     pub d15_mm: [f64; 2],
     /// Whether its fine side drains.
     pub drains: bool,
+    /// Whether its fine side drains only if the base's D15 is finer than its sieves tell.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub may_drain: bool,
     /// Whether its coarse side is within what both walk and practice allow.
     pub holds: bool,
     /// Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
@@ -112,6 +115,11 @@ impl Fit {
     /// lies between sieves and is interpolated: a delivery within the limits may have another.
     pub fn fits(&self) -> bool {
         self.drains && self.holds && self.practice != Some(false)
+    }
+
+    /// Whether it fits if it drains, which is not known.
+    pub fn may_fit(&self) -> bool {
+        self.may_drain && self.holds && self.practice != Some(false)
     }
 }
 
@@ -144,6 +152,7 @@ pub fn fits(band: &Band) -> Vec<Fit> {
             name: product.name.into(),
             d15_mm: [fine, coarse],
             drains: fine >= band.least,
+            may_drain: band.least_at_most && fine < band.least,
             holds: coarse <= band.greatest_of_both(),
             practice: band.practice.map(|practice| coarse <= practice),
             source: product.source.into(),
@@ -187,6 +196,7 @@ mod tests {
     fn a_product_fits_where_both_its_sides_do() {
         let band = |least, greatest| Band {
             least,
+            least_at_most: false,
             greatest,
             set_by: None,
             practice: Some(0.4),
@@ -202,6 +212,11 @@ mod tests {
         let allowed = Band { practice: Some(0.43), ..band(0.17, 0.43) };
         assert!(fits(&allowed)[0].fits() && fits(&Band { practice: None, ..allowed })[0].fits());
         assert!(!sand(0.18, 0.43).drains && !sand(0.17, 0.42).holds);
+        // A least that is one at most neither drains nor refuses what is finer.
+        let open = fits(&Band { least_at_most: true, practice: Some(0.7), ..band(0.375, 0.7) }).remove(0);
+        assert!(!open.drains && open.may_drain && open.may_fit() && !open.fits(), "{open:?}");
+        let coarse = fits(&Band { least_at_most: true, ..band(0.375, 0.3) }).remove(0);
+        assert!(coarse.may_drain && !coarse.may_fit() && !coarse.fits(), "{coarse:?}");
         let wide = Band { practice: Some(1.0), ..band(0.1, 1.0) };
         assert_eq!(fits(&wide).iter().filter(|fit| fit.fits()).count(), 1);
     }

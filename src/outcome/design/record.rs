@@ -331,8 +331,9 @@ impl Design {
 
     /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
     pub fn says_fit(&self, product: &str) -> Option<bool> {
-        let fit = self.products.iter().find(|of| of.name == product)?.fits();
-        (!fit || self.may_fit()).then_some(fit)
+        let of = self.products.iter().find(|of| of.name == product)?;
+        let fit = of.fits();
+        (!of.may_fit() && (!fit || self.may_fit())).then_some(fit)
     }
 
     /// Names of the standard products that are said to fit: none where that is in doubt.

@@ -29,6 +29,9 @@ pub struct Specification {
     pub steps: Vec<SpecificationStep>,
     /// Least D15F (mm) that drains the base; `None` where it is not known.
     pub d15f_min_mm: Option<f64>,
+    /// Whether the true least is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub d15f_min_at_most: bool,
     /// Greatest D15F (mm) that is allowed; `None` where it is not known.
     pub d15f_max_mm: Option<f64>,
     /// The band; `None` where there is none.
@@ -165,7 +168,8 @@ pub struct ProductMargin {
     pub d15_fine_mm: f64,
     /// D15 (mm) of its coarse side.
     pub d15_coarse_mm: f64,
-    /// D15 of its fine side over the least that drains: at least 1 where it drains.
+    /// D15 of its fine side over the least that drains: at least 1 where it drains. `None` where it is not
+    /// known whether it drains.
     pub drains_by: Option<f64>,
     /// The greatest D15F over D15 of its coarse side: at least 1 where it holds.
     pub holds_by: Option<f64>,
@@ -351,8 +355,13 @@ fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
     }
 }
 
-/// Every standard product beside the least and the greatest D15F (mm), and beside a band.
-pub fn margins(d15f_min: Option<f64>, d15f_max: Option<f64>, band: Option<&SizeBand>) -> Vec<ProductMargin> {
+/// Every standard product beside the least D15F (mm) and whether that is one at most, the greatest, and a
+/// band.
+pub fn margins(
+    (d15f_min, at_most): (Option<f64>, bool),
+    d15f_max: Option<f64>,
+    band: Option<&SizeBand>,
+) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();
     }
@@ -363,7 +372,8 @@ pub fn margins(d15f_min: Option<f64>, d15f_max: Option<f64>, band: Option<&SizeB
             product: product.name.into(),
             d15_fine_mm: fine,
             d15_coarse_mm: coarse,
-            drains_by: d15f_min.map(|least| fine / least),
+            // The true margin may be any greater.
+            drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || !at_most),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
             worst_sieve_mm: left.flatten().map(|(opening, _)| opening),
             leaves_band_by: left.map(|left| left.map_or(0.0, |(_, points)| points)),
@@ -477,7 +487,7 @@ mod tests {
 
     #[test]
     fn products_have_their_margins_also_where_none_fits() {
-        let sand = &margins(Some(0.1), Some(0.7), Some(&band()))[0];
+        let sand = &margins((Some(0.1), false), Some(0.7), Some(&band()))[0];
         // D15 0.178 to 0.424 mm (see `products`).
         assert!(
             near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),
@@ -486,11 +496,15 @@ mod tests {
         assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
         // At 1.18 mm it has 50 to 85 %, and the band 29.6 % to 74.6 %; at 0.6 mm 25 to 60 %, and 55.7 %.
         assert!(sand.worst_sieve_mm.is_some() && sand.leaves_band_by.unwrap() > 0.0, "{sand:?}");
-        let none = margins(Some(0.5), Some(0.6), None);
+        let none = margins((Some(0.5), false), Some(0.6), None);
         assert!(none.iter().all(|of| of.fits() == Some(false) && of.leaves_band_by.is_none()));
         // What drains may or may not hold where the greatest D15F is not known.
-        let open = margins(Some(0.2), None, None);
+        let open = margins((Some(0.2), false), None, None);
         assert_eq!((open[0].fits(), open[1].fits()), (Some(false), None));
-        assert!(margins(None, None, None).is_empty());
+        assert!(margins((None, false), None, None).is_empty());
+        // Whether it drains is not known where the least is one at most.
+        let till = &margins((Some(0.375), true), Some(0.7), None)[0];
+        assert_eq!((till.drains_by, till.fits()), (None, None));
+        assert_eq!(margins((Some(0.375), true), Some(0.3), None)[0].fits(), Some(false));
     }
 }

@@ -16,6 +16,7 @@ use super::shell::{citation, clean, fact, unbroken};
 use super::specification::Stated;
 use super::table::Table;
 use super::written::Written;
+use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
 use crate::verdict::FOREMOST;
@@ -294,7 +295,11 @@ fn bands(design: &Design) -> Markup {
             }
             (Table::of(rows.iter().copied()).class("study")
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
-                .number("Least (drains)", |row| size(row, |band| Some(band.least)))
+                .number("Least (drains)", |row| {
+                    let is_open = row.band.as_ref().is_some_and(|band| band.least_at_most);
+                    let least = size(row, |band| Some(band.least));
+                    if is_open { format!("at most {least}, not known") } else { least }
+                })
                 .number("Greatest", |row| size(row, |band| Some(band.greatest_of_both())))
                 .text("Set by", |row| set_by(row))
                 .number("Practice allows", |row| size(row, |band| band.practice))
@@ -331,22 +336,34 @@ fn products(design: &Design) -> Markup {
                 }
             }
             (Table::of(&design.products)
-                .name("Product, source of its limits", |fit| {
-                    html! { (clean(&fit.name)) br; span.small { (clean(&fit.source)) } }
-                })
+                .class("products")
+                .name("Product", |fit| clean(&fit.name))
                 .number("D15, fine to coarse side (mm)", |fit| {
                     format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
                 })
-                .text("Drains", |fit| yes(fit.drains))
+                .text("Drains", |fit| match fit.may_drain {
+                    true => html! { "may drain: needs a hydrometer test" },
+                    false => yes(fit.drains),
+                })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
                 .number("", |fit| match (fit.fits(), design.may_fit()) {
                     (true, true) => html! { b { "fits" } },
                     (true, false) => html! { "in doubt" },
+                    (false, _) if fit.may_fit() => html! { "not known" },
                     (false, _) => html! { "does not fit" },
                 })
                 .render())
         }
+    }
+}
+
+/// Whose answer the rules are read at.
+fn read_at(design: &Design) -> &'static str {
+    match (design.answer().set_by, design.least_held()) {
+        (SetBy::Practice, _) => ", the greatest that practice allows",
+        (SetBy::Walk, Some(_)) => ", the coarsest that holds in the model",
+        (SetBy::Walk, None) => "",
     }
 }
 
@@ -356,7 +373,7 @@ fn practice(design: &Design) -> Markup {
         @if !rules.is_empty() {
             p {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
-                @if design.least_held().is_some() { ", the coarsest that holds in the model" } "."
+                (read_at(design)) "."
             }
             (rules::table(&rules, SizeUnit::Mm))
         }
@@ -432,6 +449,7 @@ mod tests {
             name: if drains { "sand" } else { "clay" }.into(),
             d15_mm: [0.2, 0.4],
             drains,
+            may_drain: false,
             holds: true,
             practice: None,
             source: String::new(),

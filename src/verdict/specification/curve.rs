@@ -62,6 +62,11 @@ impl ReadCurve {
         self.of.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
+    /// Whether the true least D15F is not known, and is at most the one that is given.
+    pub fn least_at_most(&self) -> bool {
+        self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
+    }
+
     pub fn least(&self) -> f64 {
         self.of.d15f_min_mm.unwrap_or(0.0)
     }

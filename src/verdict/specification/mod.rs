@@ -50,7 +50,8 @@ impl Specification {
             Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] }
         });
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
-        let no_band = no_band(d15f_min, d15f_max, unknown, band.is_some());
+        let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
+        let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
         let found = Found {
             walked_mm: options.walked_mm,
             read: &read,
@@ -69,9 +70,10 @@ impl Specification {
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
             d15f_min_mm: d15f_min,
+            d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
             limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
-            products: margins(d15f_min, d15f_max, band.as_ref()),
+            products: margins((d15f_min, at_most), d15f_max, band.as_ref()),
             no_band,
             band,
         }
@@ -85,7 +87,7 @@ impl Specification {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
         Some(format!(
             "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu \
-             must be at most {MOST_CU}, and it must have no gap. Judge each with the command voidwalk rules.",
+             must be at most {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
             rounded_up(least),
             rounded_down(greatest)
         ))
@@ -94,13 +96,19 @@ impl Specification {
 
 /// Why there is no band.
 fn no_band(
-    min: Option<f64>,
+    (min, at_most): (Option<f64>, bool),
     max: Option<f64>,
     unknown: Option<&ReadCurve>,
     has_band: bool,
 ) -> Option<String> {
     match (min, max) {
         _ if has_band => None,
+        (Some(min), Some(max)) if min > max && at_most => Some(format!(
+            "The least D15F that drains this base is not known. It is at most {} mm, and D15F must be at most \
+             {} mm to retain the base: a hydrometer test of the base is needed.",
+            rounded_up(min),
+            rounded_down(max)
+        )),
         (Some(min), Some(max)) if min > max => Some(format!(
             "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at \
              most {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",

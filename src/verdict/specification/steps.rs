@@ -161,6 +161,10 @@ impl Found<'_> {
         if let Some(curve) = self.coarsest.filter(|_| self.read.len() > 1) {
             notes.push(format!("Set by {}.", curve.of.curve));
         }
+        let open = rule.filter(|rule| rule.limit_at_most && rule.note.is_empty());
+        notes.extend(open.map(|_| {
+            "D15B is finer than the finest sieve. The least D15F is not known, and is at most this.".into()
+        }));
         notes.extend(
             rule.map(|rule| rule.note.to_string()).filter(|note| !note.is_empty()).map(|n| sentence(&n)),
         );

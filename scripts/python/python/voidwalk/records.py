@@ -332,7 +332,8 @@ class Replicate(TypedDict):
 
 
 class Statistic(TypedDict):
-    """A mean, and with two or more replicates its standard deviation and interval.
+    """A mean, and with two or more replicates its standard deviation and interval. ``` use voidwalk::Statistic; let
+    of = Statistic::of(&[0.10, 0.12, 0.14]); assert!(of.low.unwrap() < of.mean && of.mean < of.high.unwrap()); ```
 
     Keys
     ----
@@ -1125,7 +1126,12 @@ class _Outcome(TypedDict):
 
 
 class Outcome(_Outcome, total=False):
-    """The whole of `outcome.json`.
+    """The whole of `outcome.json`. ``` use voidwalk::{Callbacks, Case, Scene, walk_case}; let small =
+    ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"]; let case =
+    Case::new(Scene::built_in(&small.map(String::from))?)?; let outcome = walk_case(&case,
+    &Callbacks::default())?; for run in &outcome.summary { println!("run {}: {:.1} % eroded", run.run, 100.0 *
+    run.eroded_mass_fraction.mean); } assert_eq!(outcome.summary.len(), 2); # Ok::<(), Box<dyn
+    std::error::Error>>(()) ```
 
     Keys
     ----
@@ -1441,6 +1447,8 @@ class Band(_Band, total=False):
     ----
     least
         Least D15F, of the rule of permeability.
+    least_at_most
+        Whether the true least is not known, and is at most that.
     greatest
         Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
         networks, and practice. Files of earlier versions hold that of the walk alone.
@@ -1460,6 +1468,7 @@ class Band(_Band, total=False):
         The same in a sentence; of an empty one why it is.
     """
 
+    least_at_most: bool
     set_by: Optional[Literal["practice", "walk"]]
     practice_rule_id: Optional[str]
 
@@ -1610,7 +1619,16 @@ class DesignFinding(_DesignFinding, total=False):
     to_do: str
 
 
-class Fit(TypedDict):
+class _Fit(TypedDict):
+    name: str
+    d15_mm: List[float]
+    drains: bool
+    holds: bool
+    practice: Optional[bool]
+    source: str
+
+
+class Fit(_Fit, total=False):
     """A product beside a band.
 
     Keys
@@ -1621,6 +1639,8 @@ class Fit(TypedDict):
         D15 (mm) of its fine and of its coarse side.
     drains
         Whether its fine side drains.
+    may_drain
+        Whether its fine side drains only if the base's D15 is finer than its sieves tell.
     holds
         Whether its coarse side is within what both walk and practice allow.
     practice
@@ -1629,12 +1649,7 @@ class Fit(TypedDict):
         Where its limits were read.
     """
 
-    name: str
-    d15_mm: List[float]
-    drains: bool
-    holds: bool
-    practice: Optional[bool]
-    source: str
+    may_drain: bool
 
 
 class _SpecifiedCurve(TypedDict):
@@ -1797,7 +1812,8 @@ class ProductMargin(TypedDict):
     d15_coarse_mm
         D15 (mm) of its coarse side.
     drains_by
-        D15 of its fine side over the least that drains: at least 1 where it drains.
+        D15 of its fine side over the least that drains: at least 1 where it drains. `None` where it is not
+        known whether it drains.
     holds_by
         The greatest D15F over D15 of its coarse side: at least 1 where it holds.
     worst_sieve_mm
@@ -1852,6 +1868,8 @@ class Specification(_Specification, total=False):
         Every step, with its numbers.
     d15f_min_mm
         Least D15F (mm) that drains the base; `None` where it is not known.
+    d15f_min_at_most
+        Whether the true least is not known, and is at most that.
     d15f_max_mm
         Greatest D15F (mm) that is allowed; `None` where it is not known.
     band
@@ -1864,6 +1882,7 @@ class Specification(_Specification, total=False):
         Standard products beside it; empty where neither limit of D15F is known.
     """
 
+    d15f_min_at_most: bool
     no_band: Optional[str]
 
 
