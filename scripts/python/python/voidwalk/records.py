@@ -332,8 +332,7 @@ class Replicate(TypedDict):
 
 
 class Statistic(TypedDict):
-    """A mean, and with two or more replicates its standard deviation and interval. ``` use voidwalk::Statistic; let
-    of = Statistic::of(&[0.10, 0.12, 0.14]); assert!(of.low.unwrap() < of.mean && of.mean < of.high.unwrap()); ```
+    """A mean, and with two or more replicates its standard deviation and interval.
 
     Keys
     ----
@@ -1126,12 +1125,7 @@ class _Outcome(TypedDict):
 
 
 class Outcome(_Outcome, total=False):
-    """The whole of `outcome.json`. ``` use voidwalk::{Callbacks, Case, Scene, walk_case}; let small =
-    ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"]; let case =
-    Case::new(Scene::built_in(&small.map(String::from))?)?; let outcome = walk_case(&case,
-    &Callbacks::default())?; for run in &outcome.summary { println!("run {}: {:.1} % eroded", run.run, 100.0 *
-    run.eroded_mass_fraction.mean); } assert_eq!(outcome.summary.len(), 2); # Ok::<(), Box<dyn
-    std::error::Error>>(()) ```
+    """The whole of `outcome.json`.
 
     Keys
     ----
