@@ -100,7 +100,8 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
             li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
-                (count(Some(false))) " not met, " (count(None)) " without a result" (drainage_in_words(&rules, &filter.name)) "." }
+                (count(Some(false))) " not met, " (count(None)) " without a result"
+                (drainage_in_words(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
                 li { @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (sentence(said)) } "." }
             }

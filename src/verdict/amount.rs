@@ -62,9 +62,9 @@ mod tests {
         assert!(worse.id() == "worse_with_amount" && worse.is_against(Verdict::None));
         assert_eq!(
             worse.sentence(),
-            "The class depends on the amount of base: with 0.25 times the base some erosion. All amounts: 0.25 \
-             times the base: some erosion, 9.00 % eroded in 1 replicate; 4 times the base: no erosion, 1.00 % \
-             eroded in 1 replicate."
+            "The class depends on the amount of base: with 0.25 times the base some erosion. All amounts: \
+             0.25 times the base: some erosion, 9.00 % eroded in 1 replicate; 4 times the base: no erosion, \
+             1.00 % eroded in 1 replicate."
         );
         let stays = of(&[row(0.25, Verdict::None, 0.02)], Verdict::None);
         assert!(stays.id() == "stays_with_amount" && !stays.is_against(Verdict::None));

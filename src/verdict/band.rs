@@ -63,8 +63,8 @@ impl Band {
         let (least, unit) = (self.least, &self.unit);
         match self.least_at_most {
             true => format!(
-                "D15F up to {greatest:.3} {unit}, by {set_by}; the least that drains is not known, and at most \
-                 {least:.3} {unit}: the base needs a hydrometer test"
+                "D15F up to {greatest:.3} {unit}, by {set_by}; the least that drains is not known, and at \
+                 most {least:.3} {unit}: the base needs a hydrometer test"
             ),
             false => format!("D15F from {least:.3} to {greatest:.3} {unit}, the coarse side by {set_by}"),
         }

@@ -104,8 +104,8 @@ fn no_band(
     match (min, max) {
         _ if has_band => None,
         (Some(min), Some(max)) if min > max && at_most => Some(format!(
-            "The least D15F that drains this base is not known. It is at most {} mm, and D15F must be at most \
-             {} mm to retain the base: a hydrometer test of the base is needed.",
+            "The least D15F that drains this base is not known. It is at most {} mm, and D15F must be at \
+             most {} mm to retain the base: a hydrometer test of the base is needed.",
             rounded_up(min),
             rounded_down(max)
         )),
