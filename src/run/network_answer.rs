@@ -140,7 +140,7 @@ mod tests {
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
         let said = outcome.answer(&plan, &network, 1);
         assert_eq!(said.confidence, Confidence::Contradicted, "{:?}", said.reasons());
-        assert!(said.reasons()[0].contains("Practice allows D15F"), "{:?}", said.reasons());
+        assert!(said.reasons()[0].contains("The limit of design is D15F"), "{:?}", said.reasons());
     }
 
     /// The one constriction is closed by the first particle: what to try is said in the words of a walk

@@ -136,7 +136,7 @@ fn one_replicate_is_said_to_have_no_scatter() {
         "{text}"
     );
     // One run of two, undecided, says what would decide it.
-    assert!(text.contains("\nNext: take a filter with a D15F of at most 0.824 D0F; "), "{text}");
+    assert!(text.contains("\nNext: take a filter with a D15F of at most 0.823 D0F; "), "{text}");
     let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
     assert!(page.contains("only a first was asked for"), "{page}");
     let two = voidwalk(root.path(), &["run", "small.toml", "--set", "replicates=2", "--out", "two"]);

@@ -291,7 +291,8 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
     let of_fine: Vec<&str> = of_fine.lines().collect();
     assert!(of_fine[1].starts_with("  governing sample TP1 1.00 1.00: D15F up to "), "{of_fine:?}");
     assert!(of_fine[2].starts_with("  then TP2 ") && of_fine[3].starts_with("  then TP3 "), "{of_fine:?}");
-    assert!(of_fine[4].starts_with("  Nothing was walked.") && of_fine[4].contains("compare --filter"));
+    let walk = of_fine.iter().find(|line| line.starts_with("  Nothing was walked."));
+    assert!(walk.is_some_and(|line| line.contains("compare --filter")), "{of_fine:?}");
     // A row says what the rules say of that pair alone.
     let one = voidwalk(&["rules", &format!("{site}#TP7 1.00 1.00"), &filters[1], "--json"]);
     let one: serde_json::Value = serde_json::from_slice(&one.stdout).unwrap();
