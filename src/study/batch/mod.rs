@@ -1,7 +1,7 @@
 //! Many samples against one or several filters: what practice says of each pair, each pair walked, and one
 //! table of both.
 //!
-//! The walks are the cases of a [`campaign`] inside the batch's folder, all with one seed: each has a run
+//! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run
 //! folder of its own, those that are done are kept, and what was stopped or killed continues. The table
 //! follows from samples, filters and settings alone.
 
