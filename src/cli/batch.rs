@@ -7,7 +7,7 @@ use super::args::RulesArgs;
 use super::compare::{show, walked};
 use super::print::{plain, shown, to_stdout};
 use super::run::command_line;
-use super::values::with_options;
+use super::values::{of_soils, with_options};
 use crate::campaign::CampaignOptions;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::outcome::comparison::Comparison;
@@ -31,14 +31,6 @@ impl RulesArgs {
     fn changes(&self) -> Result<Vec<String>, RunError> {
         with_options(&self.settings, of_soils(self.dispersive, self.joint_mm))
     }
-}
-
-/// What a sieve table cannot say, as options and settings.
-pub(super) fn of_soils(dispersive: bool, joint_mm: Option<f64>) -> [(&'static str, Option<String>); 2] {
-    [
-        ("--dispersive", dispersive.then(|| "base.dispersive=true".to_owned())),
-        ("--joint-mm", joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
-    ]
 }
 
 /// Applies every rule to each sample and each filter.

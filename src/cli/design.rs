@@ -4,7 +4,7 @@ use super::args::DesignArgs;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::specification;
-use super::values::with_options;
+use super::values::{of_soils, with_options};
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
@@ -21,8 +21,8 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         return specification(args, base);
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
-    let dispersive = args.dispersive.then(|| "base.dispersive=true".to_owned());
-    let settings = with_options(&args.settings, [("--seed", seed), ("--dispersive", dispersive)])?;
+    let [dispersive, _] = of_soils(args.dispersive, None);
+    let settings = with_options(&args.settings, [("--seed", seed), dispersive])?;
     let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),

@@ -1,12 +1,12 @@
 //! `voidwalk judge`: two sieve tables in, the whole answer out.
 
 use super::args::{JudgeArgs, TableArgs};
-use super::batch::{SEVERAL_FILTERS, of_soils};
+use super::batch::SEVERAL_FILTERS;
 use super::judge_each::judge_each;
 use super::print::{plain, shown, to_stdout};
 use super::progress::followed;
 use super::run::show;
-use super::values::with_options;
+use super::values::{of_soils, with_options};
 use crate::run::{self, RunError};
 use crate::scene::{Record, Scene, TableOptions};
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};

@@ -107,6 +107,14 @@ fn number_with(text: &str, unit: &str, range: RangeInclusive<f64>, allowed: &str
     number.filter(|n| range.contains(n)).ok_or_else(|| allowed.to_owned())
 }
 
+/// What a sieve table cannot say, as options and settings.
+pub(super) fn of_soils(dispersive: bool, joint_mm: Option<f64>) -> [(&'static str, Option<String>); 2] {
+    [
+        ("--dispersive", dispersive.then(|| "base.dispersive=true".to_owned())),
+        ("--joint-mm", joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
+    ]
+}
+
 /// Settings given by --set, and those that options of their own give.
 ///
 /// # Errors

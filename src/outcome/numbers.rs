@@ -35,16 +35,20 @@ pub fn significant(value: f64) -> String {
 
 /// A greatest value: three significant digits, rounded down.
 pub fn rounded_down(value: f64) -> String {
-    in_steps(value, |steps| (steps * (1.0 + HAIR)).floor())
+    in_steps(value, |steps| whole_within(steps, false))
 }
 
 /// A least value: three significant digits, rounded up.
 pub fn rounded_up(value: f64) -> String {
-    in_steps(value, |steps| (steps * (1.0 - HAIR)).ceil())
+    in_steps(value, |steps| whole_within(steps, true))
 }
 
-/// What arithmetic leaves of a number that has three digits.
-const HAIR: f64 = 1e-9;
+/// The whole number that a limit is rounded to: a least upwards, a greatest downwards; one that is whole but
+/// for what arithmetic leaves stays.
+pub fn whole_within(limit: f64, at_least: bool) -> f64 {
+    const HAIR: f64 = 1e-9;
+    if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
+}
 
 /// A number rounded in steps of its third digit.
 fn in_steps(value: f64, round: impl Fn(f64) -> f64) -> String {

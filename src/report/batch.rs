@@ -18,7 +18,8 @@ use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::numbers::rounded_down;
-use crate::verdict::batch::{drainage_in_words, governs_drainage, open_in_words};
+use crate::verdict::batch::{counts_in_words, governs_drainage, open_in_words};
+use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
 const RECORD: &str = "batch.json";
@@ -91,23 +92,22 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 
 /// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
-    let rows = || batch.of_filter(&filter.name);
-    let count = |met: Option<bool>| rows().filter(|row| row.rules.met == met).count();
     let walks = batch.walks_in_words(&filter.name);
-    let rules: Vec<BatchRow> = rows().map(|row| row.rules.clone()).collect();
+    let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
+    let besides = governs_drainage(&rules, &filter.name).into_iter();
+    let besides = besides.chain(open_in_words(&rules, &filter.name));
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
         ul {
-            li { b { "Practice" } ": of " (rows().count()) " samples " (count(Some(true))) " met, "
-                (count(Some(false))) " not met, " (count(None)) " without a result"
-                (drainage_in_words(&rules, &filter.name)) "." }
+            li { b { "Practice" } ": " (counts_in_words(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
-                li { @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (sentence(said)) } "." }
+                li {
+                    @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
+                }
             }
             @for row in batch.governing(&filter.name) { li { (governs(folder, row)) } }
-            @if let Some(said) = governs_drainage(&rules, &filter.name) { li { (sentence(&said)) "." } }
-            @for said in open_in_words(&rules, &filter.name) { li { (sentence(&said)) "." } }
+            @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
                     by the finest." }
@@ -130,13 +130,6 @@ fn governs(folder: &Path, row: &WalkedRow) -> Markup {
         }
         "."
     }
-}
-
-/// With a capital letter.
-fn sentence(said: &str) -> String {
-    let mut letters = said.chars();
-    let first = letters.next().map_or(String::new(), |letter| letter.to_uppercase().collect());
-    clean(&(first + letters.as_str()))
 }
 
 fn table(folder: &Path, batch: &WalkedBatch) -> Markup {

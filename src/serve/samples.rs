@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::outcome::table::Shown;
-use crate::study::{refuse_twice, shared};
+use crate::study::{numbered, refuse_twice};
 use crate::verdict::batch::columns;
 use crate::verdict::{BatchTable, PairOptions};
 
@@ -29,13 +29,9 @@ impl SampleTable {
         let paths: Vec<PathBuf> = filters.iter().map(|name| sheets.path(name)).collect::<Result<_, _>>()?;
         refuse_twice(&paths).map_err(|problem| sheets.as_named(&problem.to_string()))?;
         let mut table = BatchTable::read(&sheets.path(whole)?, &paths, options).map_err(|e| e.to_string())?;
-        // Sheets have their own names here, and no folder.
-        let mut names: Vec<String> =
-            table.filters.iter().map(|filter| sheets.as_named(&filter.name)).collect();
-        // Two sheets can have one name.
-        for at in shared(&names) {
-            names[at] = format!("{} {}", at + 1, names[at]);
-        }
+        // Sheets have their own names here, of which two can be the same, and no folder.
+        let names = table.filters.iter().map(|filter| sheets.as_named(&filter.name));
+        let names = numbered(names.collect());
         let of_filter = (table.rows.len() / table.filters.len()).max(1);
         for (at, row) in table.rows.iter_mut().enumerate() {
             row.filter.clone_from(&names[at / of_filter]);

@@ -38,11 +38,20 @@ pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
         let again = shared(&names);
         again.into_iter().for_each(|at| names[at] = shown(&files[at]));
     }
-    // They are names of folders, too.
+    as_folders(names)
+}
+
+/// Names of folders, no two the same: a hidden one has its number in front.
+pub(super) fn as_folders(mut names: Vec<String>) -> Vec<String> {
     let hidden = |name: &String| name.is_empty() || name.starts_with('.');
     for (at, name) in names.iter_mut().enumerate().filter(|(_, name)| hidden(name)) {
         *name = format!("{} {name}", at + 1);
     }
+    numbered(names)
+}
+
+/// Names, no two the same: those that are not alone have their number in front.
+pub(crate) fn numbered(mut names: Vec<String>) -> Vec<String> {
     // Those with a number in front differ from each other: this ends.
     loop {
         let again = shared(&names);
@@ -54,7 +63,7 @@ pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
 }
 
 /// Where names stand that are not alone; large and small letters are the same to some disks.
-pub(crate) fn shared(names: &[String]) -> Vec<usize> {
+fn shared(names: &[String]) -> Vec<usize> {
     let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
     (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
 }
@@ -85,6 +94,15 @@ mod tests {
         assert_eq!(named(&["a/2 .f.csv", ".f"]), ["1 2 .f", "2 2 .f"]);
         // None is the name of a folder that is there already.
         assert_eq!(named(&["...csv", ".f"]), ["1 ..", "2 .f"]);
+    }
+
+    /// A name with a number in front can be another's own.
+    #[test]
+    fn numbered_names_are_all_different() {
+        let of = |names: &[&str]| as_folders(names.iter().map(ToString::to_string).collect());
+        assert_eq!(of(&["A", "a", "B"]), ["1 A", "2 a", "B"]);
+        assert_eq!(of(&["A", "A", "1 A"]), ["1 1 A", "2 A", "3 1 A"]);
+        assert_eq!(of(&[".A", "B", ""]), ["1 .A", "B", "3 "]);
     }
 
     #[test]

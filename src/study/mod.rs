@@ -10,4 +10,4 @@ mod of_cases;
 pub mod percolation;
 pub(crate) mod precision;
 
-pub(crate) use file_names::{refuse_twice, shared};
+pub(crate) use file_names::{numbered, refuse_twice};

@@ -66,7 +66,18 @@ pub struct BatchRow {
     pub is_refused: bool,
 }
 
+/// Said of a sample whose limit is open.
+pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
+
+/// Why nothing is applied to a pair, nor walked.
+pub const EXCHANGED: &str = "base and filter look exchanged";
+
 impl BatchRow {
+    /// Whether the limit is not known, or is at most a number.
+    pub fn limit_is_open(&self) -> bool {
+        self.limit_mm.is_none() || self.limit_at_most
+    }
+
     /// What practice says of one sample and one filter. Two that look exchanged have no result, unless
     /// `options` say that they are as given.
     ///
@@ -240,17 +251,20 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     rows.iter().filter(is_same).count() - of_named
 }
 
-/// How many samples a filter may not drain, and of how many that is not known, as the end of a sentence;
-/// empty where it drains all.
-pub fn drainage_in_words(rows: &[BatchRow], filter: &str) -> String {
+/// How many samples a filter retains; how many it may not drain, and of how many that is not known, where it
+/// does not drain all.
+pub fn counts_in_words(rows: &[BatchRow], filter: &str) -> String {
     let of_filter = || rows.iter().filter(|row| row.filter == filter);
+    let samples = of_filter().count();
+    let one_or_more = if samples == 1 { "sample" } else { "samples" };
+    let [met, not_met, none] =
+        [Some(true), Some(false), None].map(|met| of_filter().filter(|row| row.met == met).count());
     let dry = of_filter().filter(|row| row.drains == Some(false)).count();
     let open = of_filter().filter(|row| row.drains.is_none() && row.d15f_min_mm.is_some()).count();
-    let each = [(dry, "may not drain"), (open, DRAINAGE_UNKNOWN)];
-    each.into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("; {count} {what}"))
-        .collect()
+    let drainage = [(dry, "may not drain"), (open, DRAINAGE_UNKNOWN)].into_iter();
+    let drainage = drainage.filter(|(count, _)| *count > 0);
+    let drainage: String = drainage.map(|(count, what)| format!("; {count} {what}")).collect();
+    format!("of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result{drainage}")
 }
 
 /// The sample that asks a filter for the greatest D15F to drain, in words; `None` where it drains all, or
@@ -271,10 +285,8 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
 pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
     let named = governing(rows, filter, NAMED);
     let is_named = |row: &BatchRow| named.iter().any(|other| std::ptr::eq(*other, row));
-    let is_open = |row: &&BatchRow| {
-        let is_open = row.limit_mm.is_none() || row.limit_at_most;
-        row.filter == filter && is_open && !row.is_refused && !is_named(row)
-    };
+    let is_open =
+        |row: &&BatchRow| row.filter == filter && row.limit_is_open() && !row.is_refused && !is_named(row);
     rows.iter().filter(is_open).collect()
 }
 
@@ -286,10 +298,8 @@ pub fn open_in_words(rows: &[BatchRow], filter: &str) -> Vec<String> {
         (!names.is_empty()).then(|| names.join(", "))
     };
     let refused = rows.iter().filter(|row| row.filter == filter && row.is_refused).collect();
-    let open = names(may_govern(rows, filter))
-        .map(|names| format!("may govern, as its limit is not known or may be lower: {names}"));
-    let refused =
-        names(refused).map(|names| format!("nothing applied, as base and filter look exchanged: {names}"));
+    let open = names(may_govern(rows, filter)).map(|names| format!("{MAY_GOVERN}: {names}"));
+    let refused = names(refused).map(|names| format!("nothing applied, as {EXCHANGED}: {names}"));
     open.into_iter().chain(refused).collect()
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::batch::{
-    BatchRow, NAMED, drainage_in_words, governing, governs_drainage, more_with_that_limit, open_in_words,
+    BatchRow, NAMED, counts_in_words, governing, governs_drainage, more_with_that_limit, open_in_words,
 };
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
@@ -28,15 +28,7 @@ impl BatchFilter {
     /// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
     pub fn in_words(&self, rows: &[BatchRow]) -> Vec<String> {
         let Self { name, curves, .. } = self;
-        let of_filter = || rows.iter().filter(|row| row.filter == *name);
-        let count = |met: Option<bool>| of_filter().filter(|row| row.met == met).count();
-        let [met, not_met, none] = [Some(true), Some(false), None].map(count);
-        let samples = of_filter().count();
-        let one_or_more = if samples == 1 { "sample" } else { "samples" };
-        let mut said = vec![format!(
-            "{name}: of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result{}",
-            drainage_in_words(rows, name)
-        )];
+        let mut said = vec![format!("{name}: {}", counts_in_words(rows, name))];
         if curves.len() > 1 {
             said.push(format!(
                 "an envelope of {} curves ({}): retention by the coarsest, drainage by the finest",

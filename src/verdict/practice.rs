@@ -3,6 +3,7 @@
 
 use super::entry::Finding;
 use super::finding;
+use crate::outcome::numbers::whole_within;
 use crate::outcome::record::{
     AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, RuleText, TestedClass,
     Verdict,
@@ -414,18 +415,12 @@ fn decimals_of(value: f64, digits: i32) -> usize {
 
 /// The same of a limit: a greatest rounded down, a least rounded up.
 pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
-    // What arithmetic leaves of a number of so many digits.
-    const HAIR: f64 = 1e-9;
     if limit <= 0.0 || !limit.is_finite() {
         return digits_of(limit, digits);
     }
     let decimals = decimals_of(limit, digits);
     let parts = libm::pow(10.0, decimals as f64);
-    let whole = match at_least {
-        true => (limit * parts * (1.0 - HAIR)).ceil(),
-        false => (limit * parts * (1.0 + HAIR)).floor(),
-    };
-    format!("{:.*}", decimals, whole / parts)
+    format!("{:.*}", decimals, whole_within(limit * parts, at_least) / parts)
 }
 
 #[cfg(test)]

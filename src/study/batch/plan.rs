@@ -3,13 +3,13 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::super::file_names::{names, refuse_twice, shared};
+use super::super::file_names::{as_folders, names, refuse_twice};
 use crate::campaign::plan::PlannedCase;
 use crate::campaign::{self, CampaignOptions, CampaignPlan};
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
-use crate::verdict::batch::{NAMED, governing};
+use crate::verdict::batch::{EXCHANGED, MAY_GOVERN, NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
 
 /// Voids across the lattice of a first look, as `voidwalk design` searches.
@@ -17,9 +17,6 @@ const ACROSS: u64 = 20;
 
 /// Settings with which the size of the lattice is somebody's own.
 const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
-
-/// Why a pair that looks exchanged is not walked.
-const EXCHANGED: &str = "base and filter look exchanged";
 
 /// Which pairs are walked, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,10 +86,9 @@ impl BatchPlan {
         for (row, case) in plan.rows.iter_mut().zip(&plan.cases) {
             let in_full = row.governs.is_some() && walks != BatchWalks::FirstLook;
             if walks == BatchWalks::GoverningAlone && !in_full {
-                let is_open = row.rules.limit_mm.is_none() || row.rules.limit_at_most;
-                row.not_walked = match (row.rules.is_refused, is_open) {
+                row.not_walked = match (row.rules.is_refused, row.rules.limit_is_open()) {
                     (true, _) => EXCHANGED,
-                    (false, true) => "may govern, as its limit is not known or may be lower",
+                    (false, true) => MAY_GOVERN,
                     (false, false) => "does not govern",
                 }
                 .into();
@@ -158,16 +154,8 @@ fn governed(table: &BatchTable) -> Vec<WalkedRow> {
 /// A name for each row, no two the same: sample and filter.
 fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     let samples = table.rows.len() / filters.len().max(1);
-    let mut of_samples: Vec<String> = table.rows[..samples].iter().map(|row| row.sample.clone()).collect();
-    for at in shared(&of_samples) {
-        of_samples[at] = format!("{} {}", at + 1, of_samples[at]);
-    }
-    // They are names of folders, too.
-    for (at, name) in of_samples.iter_mut().enumerate() {
-        if name.is_empty() || name.starts_with('.') {
-            *name = format!("{} {name}", at + 1);
-        }
-    }
+    let of_samples = table.rows[..samples].iter().map(|row| row.sample.clone());
+    let of_samples = as_folders(of_samples.collect());
     let of_filters = names(filters);
     let pair = |filter: &String| {
         let name = |sample: &String| format!("{sample} in {filter}");
