@@ -9,7 +9,8 @@ cd "$(dirname "$0")/../.."
 python=${PYTHON:-python3}
 environment=target/python
 [ -x $environment/bin/python ] || "$python" -m venv $environment
-packages=("maturin>=1.9,<2" numpy pytest pytest-timeout pytest-xdist mypy pandas xarray scipy tqdm openpnm matplotlib jsonschema)
+packages=("maturin>=1.9,<2" numpy pytest pytest-timeout pytest-xdist mypy pandas pandas-stubs xarray scipy tqdm openpnm matplotlib
+    jsonschema)
 [ -z "${ALL:-}" ] || packages+=(porespy)
 $environment/bin/pip install --quiet --disable-pip-version-check "${packages[@]}"
 [ "${1:-}" != --environment ] || exit 0

@@ -176,7 +176,8 @@ def test_errors_name_what_python_calls_it() -> None:
         (lambda: vw.percolation([0]), "sizes = 0 is not allowed"),
         (lambda: vw.run(settings={"base.uc": 3}), "there is no setting `base.uc`"),
         (lambda: vw.Gradation([1, 2], [0, 90]), "percent_finer"),
-        (lambda: vw.walk(vw.Network.cubic([4, 4, 4]), "b"), "base = 'b' is not allowed"),  # type: ignore[arg-type]
+        (lambda: vw.walk(vw.Network.cubic([4, 4, 4]), None), "base = NoneType is not allowed"),  # type: ignore[arg-type]
+        (lambda: vw.walk(vw.Network.cubic([4, 4, 4]), "b"), "b: cannot be read: No such file"),
         (lambda: vw.Packing.from_file(__file__), "."),
     ]
     for call, words in wrong:
