@@ -393,6 +393,11 @@ impl Case {
         (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
     }
 
+    /// Constriction curves that are walked: its own, and the ends of its range.
+    pub fn curves(&self) -> usize {
+        1 + self.curve_ends.len()
+    }
+
     /// D15F over D85B and D95B.
     pub fn ratios(&self) -> Ratios {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);

@@ -16,6 +16,7 @@ impl CurveRange {
         runs: &[Statistic],
         ends: Vec<CurveEnd>,
         worst_counts: bool,
+        decide_percent: Option<f64>,
     ) -> Option<Self> {
         if ends.is_empty() {
             return None;
@@ -28,7 +29,7 @@ impl CurveRange {
             })
         };
         let eroded_mass_fraction = (0..runs.len()).map(of_run).collect();
-        Some(Self { verdict, ends, worst_counts, eroded_mass_fraction })
+        Some(Self { verdict, ends, worst_counts, decide_percent, eroded_mass_fraction })
     }
 
     /// The class that the whole range supports.
@@ -48,9 +49,14 @@ impl CurveRange {
         let is_open = all().any(|of| of == Verdict::Undecided);
         match worst {
             Some(Verdict::Continuing) => Verdict::Continuing,
-            Some(worst) if !is_open || worst == self.could_be() => worst,
+            Some(worst) if !is_open || (self.is_usual() && worst == self.could_be()) => worst,
             _ => Verdict::Undecided,
         }
+    }
+
+    /// Whether its classes are those of the 95 % intervals that it holds.
+    fn is_usual(&self) -> bool {
+        self.decide_percent.is_none()
     }
 
     /// The worst class that the intervals of the whole range allow.
@@ -93,7 +99,7 @@ mod tests {
             CurveEnd { curve: format!("times {dc50_factor}"), dc50_factor, walked }
         };
         let ends = ends.iter().map(end).collect();
-        CurveRange::new(verdict, &[of(0.05), of(0.04)], ends, worst_counts).unwrap()
+        CurveRange::new(verdict, &[of(0.05), of(0.04)], ends, worst_counts, None).unwrap()
     }
 
     #[test]
@@ -105,7 +111,7 @@ mod tests {
         }
         let open = range(Verdict::None, Verdict::Some);
         assert_eq!(open.whole(), Verdict::Undecided);
-        assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new(), false), None);
+        assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new(), false, None), None);
     }
 
     #[test]
@@ -121,5 +127,10 @@ mod tests {
         assert_eq!(whole(None, None, Undecided), Undecided);
         assert_eq!(whole(None, Undecided, None), Undecided);
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
+        // At another level these intervals say nothing of what is open.
+        let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
+        assert_eq!(range.whole(), Some);
+        range.decide_percent = std::option::Option::Some(99.9);
+        assert_eq!(range.whole(), Undecided);
     }
 }

@@ -44,8 +44,8 @@ pub const FEWEST_OF_RANGE: usize = 4;
 /// Scatter of an end that is taken at the least, by its value: replicates of the case may agree by chance.
 const LEAST_SCATTER: f64 = 0.05;
 
-/// Ends of a range, which share the error.
-const ENDS: usize = 2;
+/// Error probability of the class of each of the two ends of a range, where the scene asks for no other.
+pub const ERROR_OF_END: f64 = ERROR / 2.0;
 
 /// Error probability of all looks and runs together, and that of the intervals that are shown.
 const ERROR: f64 = 0.05;
@@ -73,8 +73,14 @@ pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues])
 }
 
 /// The eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
-/// intervals; `None` where it is not clear that its class is that of the curve itself.
-pub fn clear_end(own: &[ReplicateValues], class: Verdict, end: &[ReplicateValues]) -> Option<Vec<Statistic>> {
+/// intervals; `None` where it is not clear, with this error probability, that its class is that of the curve
+/// itself.
+pub fn clear_end(
+    own: &[ReplicateValues],
+    class: Verdict,
+    end: &[ReplicateValues],
+    error: f64,
+) -> Option<Vec<Statistic>> {
     let deciding = match class {
         Verdict::Undecided => return None,
         Verdict::None => 1,
@@ -83,7 +89,7 @@ pub fn clear_end(own: &[ReplicateValues], class: Verdict, end: &[ReplicateValues
     if own.first()?.len() < FEWEST_OF_RANGE {
         return None;
     }
-    let each = ERROR / (ENDS * deciding) as f64;
+    let each = error / deciding as f64;
     let is_clear = own.iter().zip(end).take(deciding).all(|(own, end)| is_on_its_side(own, end, each));
     is_clear.then(|| own.iter().zip(end).map(|(own, end)| wide(own, end, ERROR)).collect())
 }
@@ -182,22 +188,22 @@ mod tests {
         let one = |of: [f64; 2]| of.map(|value| values(&[value])).to_vec();
         let four = |of: f64| values(&[0.99 * of, of, of, 1.01 * of]);
         let some = [four(0.3), four(0.01)];
-        let found = clear_end(&some, Verdict::Some, &one([0.35, 0.012])).unwrap();
+        let found = clear_end(&some, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END).unwrap();
         // Student's t for 3 degrees of freedom is 3.182; twice the scatter of 0.3 times 0.00816.
         assert!((found[0].low.unwrap() - (0.35 - 3.182_446 * 2.0 * 0.3 * 0.008_165)).abs() < 1e-5);
         // Another class of either run, or close to it.
         for other in [[0.05, 0.01], [0.35, 0.2], [0.35, 0.06], [0.12, 0.01]] {
-            assert_eq!(clear_end(&some, Verdict::Some, &one(other)), None, "{other:?}");
+            assert_eq!(clear_end(&some, Verdict::Some, &one(other), ERROR_OF_END), None, "{other:?}");
         }
         let none = [four(0.0), four(0.0)];
         // The second run decides nothing where the first is below the threshold.
-        assert!(clear_end(&none, Verdict::None, &one([0.002, 0.2])).is_some());
+        assert!(clear_end(&none, Verdict::None, &one([0.002, 0.2]), ERROR_OF_END).is_some());
         // No scatter at all is no reason to believe a value near the threshold.
-        assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0])), None);
-        assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0])), None);
-        assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012])), None);
+        assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0]), ERROR_OF_END), None);
+        assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0]), ERROR_OF_END), None);
+        assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012]), ERROR_OF_END), None);
         let three = some.clone().map(|of| of[..3].to_vec());
-        assert_eq!(clear_end(&three, Verdict::Some, &one([0.35, 0.012])), None);
+        assert_eq!(clear_end(&three, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END), None);
     }
 
     #[test]

@@ -11,6 +11,10 @@
 //! than the error probability asked for, however often one looks (Bonferroni), at the price of intervals that
 //! are somewhat wide. The intervals are Student's, for means of independent replicates.
 //!
+//! Where the constriction curve is known within a range only, the curve itself and the ends of its range share
+//! the error: each is classed at `1 / curves` of it, by one look, so that the worst class of the range is wrong
+//! with no more than the error asked for either.
+//!
 //! # Target error
 //! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
 //! (Chow and Robbins). Its coverage is measured in the tests.
@@ -82,12 +86,18 @@ impl StopRule {
 
     /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
     pub fn look(&self, first: u64, runs: &[ReplicateValues]) -> Look {
+        self.look_at_one_of(1, first, runs)
+    }
+
+    /// As [`look`](Self::look), at the replicates of one of so many constriction curves, which share the error.
+    pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
             .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
             .unwrap_or(1);
         let (half_width, close) = self.closeness(runs);
-        let error = self.error_of(look, runs.len());
+        let of_curve = self.error_of_curve(curves);
+        let error = of_curve.map(|of| of / (look * (look + 1)) as f64 / runs.len().max(1) as f64);
         let below: Vec<BelowThreshold> =
             error.map_or(vec![], |error| runs.iter().map(|run| lies(run, error)).collect());
         let verdict =
@@ -125,10 +135,9 @@ impl StopRule {
         (widest, close)
     }
 
-    /// Error probability of each interval of look `look`, where a verdict is wanted.
-    fn error_of(&self, look: u64, runs: usize) -> Option<f64> {
-        let percent = self.decide_percent?;
-        Some((1.0 - 0.01 * percent) / (look * (look + 1)) as f64 / runs.max(1) as f64)
+    /// Error probability of the class of each of so many constriction curves, where a verdict is wanted.
+    pub fn error_of_curve(&self, curves: usize) -> Option<f64> {
+        self.decide_percent.map(|percent| (1.0 - 0.01 * percent) / curves.max(1) as f64)
     }
 
     /// Why the verdict is open.
@@ -177,6 +186,12 @@ impl Stopping {
         let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
         (is_decided && self.verdict != Some(usual)).then_some(percent)
     }
+}
+
+/// The class of runs that are looked at once, with this error probability.
+pub fn class_at(error: f64, runs: &[ReplicateValues]) -> Verdict {
+    let of_run = |run: usize| lies(runs.get(run)?, error / runs.len() as f64);
+    classify(of_run(0), of_run(1))
 }
 
 /// Where the mean of a run lies, by an interval with this error probability.
@@ -282,6 +297,34 @@ mod tests {
         // A first run that is clearly above, and no second: more replicates cannot help.
         let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
         assert!(!stopping.met && stopping.short_of == Some(ShortOf::SecondRun));
+    }
+
+    #[test]
+    fn the_curves_of_a_range_share_the_error() {
+        let rule = decide(99.0, 8);
+        // Student's t with 7 degrees of freedom: 3.50 at an error of 1 %, 4.03 at 0.5 %, 4.53 at 0.25 %.
+        let sd = (60.0f64 / 7.0).sqrt();
+        let run = |half_widths: f64| {
+            let mean = THRESHOLD - half_widths * 1e-3 * sd / 8f64.sqrt();
+            values([-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0].map(|step| mean + 1e-3 * step))
+        };
+        let decided = |curves: usize, half_widths: f64| {
+            let Look::Stop(stopping) = rule.look_at_one_of(curves, 8, &[run(half_widths), run(half_widths)])
+            else {
+                panic!("no more than eight are allowed")
+            };
+            let at_end = class_at(rule.error_of_curve(curves).unwrap(), &[run(half_widths)]);
+            (stopping.verdict.unwrap(), at_end)
+        };
+        let (none, open) = (Verdict::None, Verdict::Undecided);
+        // The first look takes half of the curve's error, and each of two runs half of that; an end is looked
+        // at once, here with one run.
+        assert_eq!(decided(1, 3.6), (open, none));
+        assert_eq!(decided(2, 3.6), (open, open));
+        assert_eq!(decided(1, 4.6), (none, none));
+        assert_eq!(decided(2, 4.6), (open, none));
+        assert_eq!(decided(4, 4.6), (open, none));
+        assert_eq!(decided(4, 4.5), (open, open));
     }
 
     #[test]

@@ -7,8 +7,9 @@ use super::replicates::{
     ReplicateContext, ReplicateResult, classed, concluded, each, some_replicates, values_by_run,
 };
 use crate::case::{Case, OtherCurve};
-use crate::outcome::early_stop::clear_end;
+use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
 use crate::outcome::record::{Classed, CurveEnd, CurveRange, Verdict};
+use crate::outcome::stopping::class_at;
 
 /// Walks each end of the range of the curve on the random numbers of the case's first replicates: one
 /// replicate where it is clear that the class stays, else as many as were walked with the curve itself.
@@ -28,7 +29,7 @@ pub fn curve_range(
     let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
     let ends = each((before..).zip(&case.curve_ends).collect(), fit, one)?;
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some()))
+    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some(), case.scene.stop.decide_percent))
 }
 
 /// Walks one end.
@@ -48,7 +49,13 @@ fn of_end(
     let n_base = case.times_base(times);
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
     let mut of_end = some_replicates(&other, part, 1..=first, n_base, context)?;
-    let clear = clear_end(&values_by_run(walked), class, &values_by_run(&of_end));
+    let level = case.scene.stop.error_of_curve(case.curves());
+    let clear = clear_end(
+        &values_by_run(walked),
+        class,
+        &values_by_run(&of_end),
+        level.unwrap_or(ERROR_OF_END),
+    );
     let walked = match clear {
         Some(runs) if first < all => {
             Classed { stopped_when_clear: true, verdict: class, runs, ..classed(&of_end) }
@@ -58,7 +65,9 @@ fn of_end(
                 context.tell(Event::MoreRuns { runs: (all - first) * case.scene.walk.runs });
             }
             of_end.extend(some_replicates(&other, part, first + 1..=all, n_base, context)?);
-            classed(&of_end)
+            let usual = classed(&of_end);
+            let verdict = level.map_or(usual.verdict, |error| class_at(error, &values_by_run(&of_end)));
+            Classed { verdict, ..usual }
         }
     };
     Ok(CurveEnd { curve: end.name.clone(), dc50_factor, walked })

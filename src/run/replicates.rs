@@ -124,7 +124,7 @@ pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
 /// A look of the scene's rule at what is walked.
 fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
-    Some(rule.look(case.scene.walk.replicates, &values_by_run(walked)))
+    Some(rule.look_at_one_of(case.curves(), case.scene.walk.replicates, &values_by_run(walked)))
 }
 
 /// The eroded mass of each run, replicate by replicate, and whether it is below the threshold.

@@ -120,6 +120,10 @@ pub struct CurveRange {
     /// walked; elsewhere ends that differ leave it undecided.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub worst_counts: bool,
+    /// Confidence level (%) at which every class of the range is decided, where one was asked for; 95 % of each
+    /// curve else.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub decide_percent: Option<f64>,
     /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
     /// means of a single replicate (fraction of the mass).
     pub eroded_mass_fraction: Vec<[f64; 2]>,

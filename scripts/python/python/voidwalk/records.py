@@ -894,12 +894,16 @@ class CurveRange(_CurveRange, total=False):
     worst_counts
         Whether the worst class of the range is the verdict, as for a filter of which loose and dense are
         walked; elsewhere ends that differ leave it undecided.
+    decide_percent
+        Confidence level (%) at which every class of the range is decided, where one was asked for; 95 % of each
+        curve else.
     eroded_mass_fraction
         Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
         means of a single replicate (fraction of the mass).
     """
 
     worst_counts: bool
+    decide_percent: Optional[float]
 
 
 class MarginWalk(TypedDict):
