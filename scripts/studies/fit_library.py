@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Makes src/data/library.csv of the packings of `library_of_packings.py`, without a length: sizes by S50.
 
+Shapes that are in the table and not among the packings stay in it.
+
     scripts/studies/fit_library.py FOLDER
 """
 
@@ -35,15 +37,18 @@ def by_surface(points, percent):
 def main():
     lines = [json.loads(line) for line in (Path(sys.argv[1]) / "packings.jsonl").read_text().splitlines()]
     names = ["shape", "cu", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)]
-    rows = [",".join(names)]
+    rows = []
     for of in sorted((of for of in lines if "dc" in of), key=lambda of: of["key"]):
         half = by_surface(of["points"], 50)
         sizes = [by_surface(of["points"], percent) / half for percent in SHAPE] + [size / half for size in of["dc"]]
         numbers = [of["grains_per_void"], of["void_ratio"], *sizes]
         about = [str(int(of["key"][:3])), f"{of['cu']:.4g}", str(DENSITY[of["density"]])]
         rows.append(",".join([*about, *(f"{n:.5g}" for n in numbers)]))
-    TABLE.write_text(HEAD + "\n".join(rows) + "\n")
-    print(f"{TABLE}: {len(rows) - 1} packings, {TABLE.stat().st_size / 1000:.0f} kB; refused: {len(lines) + 1 - len(rows)}")
+    made = {row.split(",")[0] for row in rows}
+    kept = [row for row in TABLE.read_text().splitlines() if row[0].isdigit() and row.split(",")[0] not in made]
+    both = sorted(kept + rows, key=lambda row: int(row.split(",")[0]))
+    TABLE.write_text(HEAD + "\n".join([",".join(names), *both]) + "\n")
+    print(f"{TABLE}: {len(both)} packings, {TABLE.stat().st_size / 1000:.0f} kB; refused: {len(lines) - len(rows)}")
 
 
 if __name__ == "__main__":

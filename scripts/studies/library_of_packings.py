@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Packs the filters of the library: 126 shapes of gradation, three densities, and a second seed of some.
+"""Packs the filters of the library: 138 shapes of gradation, three densities, and a second seed of some.
 
     scripts/studies/library_of_packings.py --binary target/release/voidwalk --out FOLDER [--jobs 2] [--shapes N]
 
@@ -10,6 +10,7 @@ Sizes are relative: the finest grain of every shape has the size 1.
 
 import argparse
 import concurrent.futures
+import itertools
 import json
 import math
 import random
@@ -21,6 +22,8 @@ from pathlib import Path
 FRICTIONS = {"dense": 0.0, "medium": 0.1, "loose": 0.3}
 # Fewer grains scatter, more cost hours; the widest shapes end where the cell is this many largest grains wide.
 GRAINS = (2000, 5000)
+# Of the shapes that are drawn, few are above Cu 10; these come after them, with more grains.
+BROAD = {"cu": (20, 31), "shapes": 12, "grains": 12000}
 # A part that leaves out more of the grains' surface, or holds less of the mass, says too little of its shape.
 SURFACE_LEFT_OUT = 0.1
 LEAST_PERCENT = 30
@@ -95,6 +98,26 @@ def kinked(ratio, weights):
     return sampled(finer, ratio)
 
 
+def broad_shapes():
+    """The broad shapes, always the same: (family, points)."""
+    draw = random.Random(20261126)
+    log_uniform = lambda low, high: math.exp(draw.uniform(math.log(low), math.log(high)))
+    low, high = BROAD["cu"]
+    for k in range(BROAD["shapes"]):
+        while True:
+            family = ["power", "kinked", "bell"][k % 3]
+            if family == "power":
+                points = power(log_uniform(low, high), draw.choice([-0.6, -0.3, 0, 0.1, 0.3]))
+            elif family == "bell":
+                points = bell(log_uniform(low, high), draw.uniform(1.5, 2.5))
+            else:
+                weights = [draw.expovariate(1) + 0.08 for _ in range(draw.choice([3, 4, 5]))]
+                points = kinked(log_uniform(30, 2000), weights)
+            if low <= cu_of(points) <= high and that_fits(points, BROAD["grains"]):
+                yield family, points
+                break
+
+
 def shapes(count):
     """The shapes, always the same: (family, points)."""
     draw = random.Random(20261124)
@@ -136,15 +159,15 @@ def surface(points):
     return sum(mass * (1 / a - 1 / b) / math.log(b / a) if b > a * (1 + 1e-12) else mass / a for a, b, mass in rows)
 
 
-def that_fits(points):
-    """The finer part of which the most grains make a cell wide enough, and the grains to take."""
+def that_fits(points, most=GRAINS[1]):
+    """The finer part of which so many grains at most make a cell wide enough, and the grains to take."""
     for end in range(len(points), 2, -1):
         part = points[:end]
         if part[-1][1] <= part[-2][1]:
             continue
         volume = part[-1][1] / FRACTION / sum(numbers(part))
         least = (WIDTH * part[-1][0]) ** 3 / volume
-        if least <= GRAINS[1]:
+        if least <= most:
             left_out = 1 - surface(part) / surface(points)
             if part[-1][1] < LEAST_PERCENT or left_out > SURFACE_LEFT_OUT:
                 return None
@@ -192,7 +215,8 @@ def main():
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--shapes", type=int, default=126)
+    parser.add_argument("--shapes", type=int, default=126, help="shapes besides the broad ones")
+    parser.add_argument("--from-shape", type=int, default=0, help="leave out the shapes before this one")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "packings.jsonl"
@@ -203,7 +227,7 @@ def main():
     def one(job):
         key, family, points, density, seed = job
         whole = cu_of(points)
-        part, grains = that_fits(points)
+        part, grains = that_fits(points, BROAD["grains"] if int(key[:3]) >= options.shapes else GRAINS[1])
         about = {"key": key, "family": family, "density": density, "seed": seed, "cu": whole, "grains": grains}
         line = about | {"percent": 100 * points_share(points, part), "points": part}
         line |= pack(options.binary, options.out, key, part, density, grains, seed)
@@ -211,11 +235,12 @@ def main():
             file.write(json.dumps(line) + "\n")
 
     jobs = []
-    for k, (family, points) in enumerate(shapes(options.shapes)):
+    drawn = itertools.chain(shapes(options.shapes), broad_shapes())
+    for k, (family, points) in enumerate(drawn):
         for density in FRICTIONS:
             seeds = [1 + k, 1001 + k] if k % 12 == 0 else [1 + k]
             jobs += [(f"{k:03}-{density}-{seed}", family, points, density, seed) for seed in seeds]
-    jobs = [job for job in jobs if job[0] not in there]
+    jobs = [job for job in jobs if job[0] not in there and int(job[0][:3]) >= options.from_shape]
     print(f"{len(there)} packings are there, {len(jobs)} to make")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
         for done, _ in enumerate(workers.map(one, jobs), 1):

@@ -50,12 +50,8 @@ fn of_end(
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
     let mut of_end = some_replicates(&other, part, 1..=first, n_base, context)?;
     let level = case.scene.stop.error_of_curve(case.curves());
-    let clear = clear_end(
-        &values_by_run(walked),
-        class,
-        &values_by_run(&of_end),
-        level.unwrap_or(ERROR_OF_END),
-    );
+    let clear =
+        clear_end(&values_by_run(walked), class, &values_by_run(&of_end), level.unwrap_or(ERROR_OF_END));
     let walked = match clear {
         Some(runs) if first < all => {
             Classed { stopped_when_clear: true, verdict: class, runs, ..classed(&of_end) }
