@@ -66,13 +66,11 @@ mod fill;
 mod insert;
 mod isa;
 mod kernel;
-mod leading;
 mod merge;
 mod openings;
 pub mod reference;
 mod saved;
 mod saved_checks;
-mod sealing;
 mod sizes;
 mod state;
 mod strata;
@@ -105,7 +103,6 @@ use crate::network::{FlowError, Network};
 use directions::Directions;
 use merge::Events;
 use openings::Weighed;
-use sealing::Sealing;
 
 /// Whether a run goes on after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -312,39 +309,6 @@ impl<'a> Walk<'a> {
             }
         }
         Ok(())
-    }
-
-    /// As [`Walk::run`], but no farther than to where nothing more can erode; what is left of the base is then
-    /// inserted and not moved. Of a run that ended there the state holds what it inserted and what eroded, to
-    /// the bit, and nothing else. Returns whether it ended there.
-    ///
-    /// # Errors
-    /// As [`Walk::run`].
-    pub fn run_until_sealed(&mut self, state: &mut State, observe: &mut Observer) -> Result<bool, WalkError> {
-        let mut sealing = Sealing::default();
-        while !state.finished {
-            self.increment(state)?;
-            if observe(state) == WalkControl::Stop && !state.finished {
-                return Err(WalkError::Stopped { increment: state.increment });
-            }
-            if self.directions.is_none() && !state.finished && sealing.is_certain(&self.network, state) {
-                self.insert_rest(state);
-                return Ok(true);
-            }
-        }
-        Ok(false)
-    }
-
-    /// Inserts all of the base that is left, and moves nothing.
-    fn insert_rest(&mut self, state: &mut State) {
-        while state.increment < self.supply.increments() {
-            state.increment += 1;
-            kernel::insert(&self.network, &self.table, self.supply, state, &mut self.events);
-            if let Some(passive) = &self.passive {
-                passive.supply(self.supply, state);
-            }
-            merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
-        }
     }
 }
 

@@ -31,7 +31,6 @@ pub use passive::Passive;
 pub(super) use sizes::coarse_share;
 
 use super::exits::VoidExits;
-use super::leading::leading_to;
 use super::openings::Ways;
 use super::{Isa, State, Supply};
 use crate::network::{END, Network};
@@ -93,8 +92,8 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Adds this increment's passive particles to the tally, and returns how many they are.
-    pub fn supply(&self, supply: &Supply, state: &mut State) -> u64 {
+    /// Inserts this increment's passive particles.
+    pub fn insert(&mut self, network: &Network, supply: &Supply, state: &mut State) {
         let inserted =
             supply.passive_inserted(state.increment) - supply.passive_inserted(state.increment - 1);
         let tally = &mut state.tally;
@@ -102,12 +101,6 @@ impl<'a> PassiveWalk<'a> {
         tally.passive_inserted += inserted;
         tally.inserted_mass += self.sizes.mass(inserted);
         tally.moving += inserted;
-        inserted
-    }
-
-    /// Inserts this increment's passive particles.
-    pub fn insert(&mut self, network: &Network, supply: &Supply, state: &mut State) {
-        let inserted = self.supply(supply, state);
         let key = passive_key(state);
         match (&mut self.mover, &mut state.passive) {
             (Mover::Counts(flow), Passive::Counts(moving)) => {
@@ -254,7 +247,21 @@ fn leads_out(network: &Network, open: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut exits = network.exits(*void).filter(|&c| open(c)).peekable();
         exits.peek().is_none() || exits.any(|c| network.targets()[c] == END)
     };
-    leading_to(network, &open, ends)
+    let (begin, entrances) = network.entrances();
+    let upstream = network.upstream();
+    let mut stack: Vec<u32> = (0..network.voids() as u32).filter(ends).collect();
+    let mut leads = vec![false; network.voids()];
+    stack.iter().for_each(|&void| leads[void as usize] = true);
+    while let Some(void) = stack.pop() {
+        for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
+            let above = upstream[entrance as usize];
+            if open(entrance as usize) && !leads[above as usize] {
+                leads[above as usize] = true;
+                stack.push(above);
+            }
+        }
+    }
+    leads
 }
 
 #[cfg(test)]

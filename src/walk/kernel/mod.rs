@@ -78,23 +78,6 @@ pub(super) fn step(
     });
 }
 
-/// Inserts this increment's particles and moves none.
-pub(super) fn insert(
-    network: &Network,
-    table: &ExitTable,
-    supply: &Supply,
-    state: &mut State,
-    events: &mut Vec<Events>,
-) {
-    events.resize_with(state.particles.live.len(), Events::default);
-    let insertion = Insertion::new(network, supply, table.isa(), state);
-    let effort = INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
-    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
-    chunks::for_each(&mut state.particles, size, events, receiving, effort, |mut of| {
-        insertion.append(&mut of)
-    });
-}
-
 /// Attempted moves that take as long as a chunk with hardly any.
 const EMPTY_CHUNK: u64 = 16;
 

@@ -72,16 +72,6 @@ impl Expected {
         })
     }
 
-    /// Whether the whole number that has eroded stays, where nothing more leaves but what moves in voids that
-    /// lead out, and some particles came to rest in voids.
-    pub(in crate::walk) fn has_eroded(&self, leads_out: &[bool]) -> bool {
-        let may_leave = self.moving.iter().zip(leads_out).filter(|(_, leads_out)| **leads_out);
-        // Twice, for what is lost where it is added up.
-        let most = self.sums.eroded + 2.0 * may_leave.map(|(n, _)| n).sum::<f64>();
-        let rests = self.sums.counted.at_rest > self.sums.counted.eroded;
-        rests && (most + 0.5).floor() == (self.sums.eroded + 0.5).floor()
-    }
-
     /// Renews the whole numbers that the state counts, and gives those before and after. `holding` are the
     /// voids that retain something, ascending. With `trapped`, what moves beside so many trapped particles is
     /// less than half a particle, and is counted as come to rest.
