@@ -102,6 +102,7 @@ fn thresholds_by(
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 /// Exit thresholds of every void, in the form that suits the network.
+#[derive(Clone)]
 pub struct ExitTable {
     form: Form,
     /// Instructions that read it.
@@ -110,6 +111,7 @@ pub struct ExitTable {
     upstream: Vec<u32>,
 }
 
+#[derive(Clone)]
 pub(super) enum Form {
     /// Three exits a void, targets by arithmetic.
     Lattice(Lattice),
@@ -121,6 +123,7 @@ pub(super) enum Form {
 ///
 /// A step reads the words that suit the particles of its chunk: they say the same, but where one says it with
 /// fewer bits there are more draws that they leave open.
+#[derive(Clone)]
 pub(super) struct Lattice {
     /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
     /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
@@ -147,6 +150,7 @@ pub(super) const CLASS_SHIFT: u32 = 18;
 pub(super) const CLASS: u32 = 0x001f_0000;
 
 /// Thresholds of a general network.
+#[derive(Clone)]
 pub(super) struct General {
     /// By constriction: its threshold.
     pub threshold: Vec<u64>,

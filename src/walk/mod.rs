@@ -154,9 +154,38 @@ pub struct Walk<'a> {
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
+/// Which exit a draw picks on a network of which nothing is blocked: worked out once for the first runs of many
+/// walks.
+pub struct UnblockedExits {
+    table: ExitTable,
+    shares: counts::Shares,
+}
+
+impl UnblockedExits {
+    /// Those of this network.
+    pub fn new(network: &Network) -> Self {
+        let open = bitvec::vec::BitVec::repeat(false, network.constrictions());
+        let shares = counts::Shares::new(network, openings::Ways::Unblocked(&open));
+        Self { table: ExitTable::new(network, &open), shares }
+    }
+}
+
 impl<'a> Walk<'a> {
     /// Prepares to walk from `state` on.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
+        Self::with_exits(network, supply, state, None)
+    }
+
+    /// As [`Walk::new`], with the exits of this network, known already, where nothing is blocked in `state` and
+    /// nothing else hangs on who goes where.
+    pub fn with_exits(
+        network: &'a Network,
+        supply: &'a Supply,
+        state: &State,
+        open: Option<&UnblockedExits>,
+    ) -> Self {
+        let is_open = state.tally.blocked == 0 && !network.exit_rule().needs_flow();
+        let open = open.filter(|_| is_open && state.openings.is_none() && supply.arching().is_none());
         let mut network = Cow::Borrowed(network);
         let (mut directions, mut no_flow) = (None, None);
         if network.exit_rule().needs_flow() {
@@ -167,11 +196,14 @@ impl<'a> Walk<'a> {
         }
         let weighed = weighed(directions.as_ref());
         let table = match (supply.arching(), &state.openings) {
-            (None, None) => ExitTable::new(&network, &state.blocked),
+            (None, None) => {
+                let known = open.map(|open| open.table.clone());
+                known.unwrap_or_else(|| ExitTable::new(&network, &state.blocked))
+            }
             _ => ExitTable::general(&network, state.ways(weighed)),
         };
         let trap = trapped::Search::new(&network, supply.arching());
-        let passive = counts::PassiveWalk::new(&network, supply, state);
+        let passive = counts::PassiveWalk::new(&network, supply, state, open.map(|open| &open.shares));
         Self {
             network,
             directions,

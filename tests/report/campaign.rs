@@ -113,7 +113,7 @@ fn why_cases_are_undecided_is_said_of_each() {
             runs: runs.clone(),
         },
     };
-    outcome.curve_range = CurveRange::new(Verdict::None, &runs, vec![end], false);
+    outcome.curve_range = CurveRange::new(Verdict::None, &runs, vec![end], false, None);
     let by_curve = line("two", "cases/two", &outcome);
     assert_eq!(by_curve.undecided_by, Some(UndecidedBy::Curve));
     let text = words(&page(std::slice::from_ref(&by_curve), root.path()));

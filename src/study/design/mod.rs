@@ -27,8 +27,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-use std::ops::RangeInclusive;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -49,8 +48,8 @@ use crate::run::replicates::have_networks;
 use crate::scene::{BaseGradation, D85};
 use plan::{Wanted, wanted};
 use row::Row;
-use search::{BRACKETS, Done, Hint, METHOD, NARROWEST, Start};
-use spared::{holding_less, is_spared};
+use search::{BRACKETS, Done, Found, Hint, METHOD, NARROWEST};
+use spared::{clear_of, holding_less};
 use specified::{NO_BASE_MM, no_base, write_tables};
 
 /// Finds the boundaries and writes `design.csv` and, last, `design.json`.
@@ -235,61 +234,18 @@ fn searched(
     }
     let text = format!("searching up to {} networks", total - done.len() as u64);
     (callbacks.on_event)(Event::Studying(&text));
-    let was_done: Vec<(usize, u64)> = done.iter().map(|done| (done.row, done.network)).collect();
-    let done = Mutex::new(done);
-    let one = |(row, network): (usize, u64), hint: Hint| {
-        let of = &rows[row];
-        let start = Start { ratio: of.start(), hint, across: of.across() };
-        let found = of.search(network, (bracket, start), callbacks)?;
-        let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
-        let text = format!(
-            "{}, {}, network {network} of {}: no erosion to D15F/D85B {}, continuing from {} ({} ratios \
-             walked)",
-            of.wanted.density,
-            of.wanted.thickness,
-            of.networks(),
-            words(found.no_erosion),
-            words(found.continuing),
-            found.walks.len()
-        );
-        (callbacks.on_event)(Event::Studying(&text));
-        let mut done = done.lock().expect("no search panics while it keeps");
-        done.push(Done { row, network, found });
-        kept.keep(done.len(), &*done)
-    };
-    let hint_of = |row: usize| {
-        let done = done.lock().expect("no search panics while it keeps");
-        done.iter().find(|done| (done.row, done.network) == (row, 1)).map(|first| Hint::of(&first.found))
-    };
-    // The first network of each row says where to look on the others.
-    let left = |row: usize, networks: RangeInclusive<u64>| -> Vec<u64> {
-        networks.filter(|network| !was_done.contains(&(row, *network))).collect()
-    };
-    let first = |row: usize| -> Result<(), RunError> {
-        let network = 1..=rows[row].networks().min(1);
-        left(row, network).into_iter().try_for_each(|network| one((row, network), Hint::default()))
-    };
-    let others = |row: usize| -> Result<(), RunError> {
-        let hint = hint_of(row).unwrap_or_default();
-        let networks = left(row, 2..=rows[row].networks());
-        networks.into_par_iter().try_for_each(|network| one((row, network), hint))
-    };
-    // And whether the others are needed.
+    let searching = Searching { rows, bracket, done: Mutex::new(done), kept, callbacks };
     let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
-    let is_spared = |row: usize| {
-        let done = done.lock().expect("no search panics while it keeps");
-        let less: Vec<(usize, u64)> = less[row].iter().map(|&less| (less, rows[less].networks())).collect();
-        is_spared(&done, row, &less)
-    };
-    let begun = (0..rows.len()).into_par_iter().try_for_each(|row| {
-        first(row)?;
-        if less[row].is_empty() { others(row) } else { Ok(()) }
+    let (ends, others): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&row| !less[row].is_empty());
+    let ended = others.into_par_iter().try_for_each(|row| searching.row(row)).and_then(|()| {
+        // Those that hold more by the look of them are searched where they may set the answer all the same.
+        let row_or_less = |row: usize| match searching.holds_clearly_more(row, &less[row])? {
+            true => Ok(()),
+            false => searching.row(row),
+        };
+        ends.into_par_iter().try_for_each(row_or_less)
     });
-    let ended = begun.and_then(|()| {
-        let may_be = (0..rows.len()).into_par_iter().filter(|&row| !less[row].is_empty());
-        may_be.filter(|&row| !is_spared(row)).try_for_each(others)
-    });
-    let mut done = done.into_inner().expect("no search panics while it keeps");
+    let mut done = searching.done.into_inner().expect("no search panics while it keeps");
     if let Err(error) = ended {
         return Err(match error.exit() {
             Exit::Stopped => kept.stopped(done.len(), total as usize),
@@ -298,4 +254,103 @@ fn searched(
     }
     done.sort_by_key(|done| (done.row, done.network));
     Ok(done)
+}
+
+/// The networks of all rows, those that are done among them.
+struct Searching<'a> {
+    rows: &'a [Row],
+    bracket: [f64; 2],
+    done: Mutex<Vec<Done>>,
+    kept: &'a Kept<'a>,
+    callbacks: &'a Callbacks<'a>,
+}
+
+impl Searching<'_> {
+    /// Searches every network of a row that is not done. The first says where to look on the others; while its
+    /// second run is searched, some of them begin.
+    fn row(&self, row: usize) -> Result<(), RunError> {
+        let of = &self.rows[row];
+        let found = |network: u64| {
+            let done = self.done();
+            done.iter().find(|done| (done.row, done.network) == (row, network)).map(|done| done.found.clone())
+        };
+        let left: Vec<u64> = (1..=of.networks()).filter(|network| found(*network).is_none()).collect();
+        let with = |hint: Hint| (self.bracket, hint);
+        let (others, mut soon) = match left.split_first() {
+            Some((1, others)) => {
+                let first = of.begun(1, with(Hint::default()), self.callbacks)?;
+                let hint = first.hint();
+                let (soon, others) = others.split_at(others.len().min(rayon::current_num_threads()));
+                let begin = |&network: &u64| Ok((network, of.begun(network, with(hint), self.callbacks)?));
+                let (first, soon) = rayon::join(
+                    || self.keep(row, 1, first.ended(None)?),
+                    || soon.par_iter().map(begin).collect::<Result<Vec<_>, RunError>>(),
+                );
+                first?;
+                (others, soon?)
+            }
+            _ => (&left[..], Vec::new()),
+        };
+        let hint = found(1).map(|first| Hint::of(&first)).unwrap_or_default();
+        let (begun, whole) = rayon::join(
+            || {
+                soon.par_drain(..).try_for_each(|(network, begun)| {
+                    self.keep(row, network, begun.ended(hint.boundaries[1])?)
+                })
+            },
+            || {
+                others.par_iter().try_for_each(|&network| {
+                    self.keep(row, network, of.search(network, with(hint), self.callbacks)?)
+                })
+            },
+        );
+        begun.and(whole)
+    }
+
+    /// Whether the first network of an end holds clearly more than these rows, so that it cannot set the answer.
+    fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
+        let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();
+        let first = |done: &Vec<Done>| done.iter().find(|done| done.row == row).map(|of| of.found.spared_at);
+        let (known, ratio) = {
+            let done = self.done();
+            (first(&done), clear_of(&done, &less))
+        };
+        if let Some(spared_at) = known {
+            return Ok(spared_at.is_some());
+        }
+        let Some(ratio) = ratio else { return Ok(false) };
+        match self.rows[row].holding(ratio, self.bracket, self.callbacks)? {
+            Some(found) => self.keep(row, 1, found).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
+    /// Keeps a network that is done.
+    fn keep(&self, row: usize, network: u64, found: Found) -> Result<(), RunError> {
+        let of = &self.rows[row];
+        let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
+        let holds = match found.spared_at {
+            Some(ratio) => format!("D15F/D85B {ratio:.3} holds"),
+            None => format!(
+                "no erosion to D15F/D85B {}, continuing from {}",
+                words(found.no_erosion),
+                words(found.continuing)
+            ),
+        };
+        let text = format!(
+            "{}, {}, network {network} of {}: {holds} ({} ratios walked)",
+            of.wanted.density,
+            of.wanted.thickness,
+            of.networks(),
+            found.walks.len()
+        );
+        (self.callbacks.on_event)(Event::Studying(&text));
+        let mut done = self.done();
+        done.push(Done { row, network, found });
+        self.kept.keep(done.len(), &*done)
+    }
+
+    fn done(&self) -> MutexGuard<'_, Vec<Done>> {
+        self.done.lock().expect("no search panics while it keeps")
+    }
 }

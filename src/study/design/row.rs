@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::options::Thickness;
 use super::plan::Wanted;
-use super::search::{Found, Start, Trial, USUAL_ACROSS, Walker, search};
+use super::search::{Begun, Found, Hint, Start, Trial, USUAL_ACROSS, Walker, holding, search};
 use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, Passage};
@@ -16,7 +16,7 @@ use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
 use crate::verdict::{Finding, finding};
-use crate::walk::Clogged;
+use crate::walk::{Clogged, UnblockedExits};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -174,12 +174,45 @@ impl Row {
     pub fn search(
         &self,
         number: u64,
-        (bracket, start): ([f64; 2], Start),
+        (bracket, hint): ([f64; 2], Hint),
         callbacks: &Callbacks,
     ) -> Result<Found, RunError> {
+        search(self.network(number, callbacks), bracket, self.from(hint))
+    }
+
+    /// Searches the boundary of the first run of network `number`, counted from 1.
+    ///
+    /// # Errors
+    /// A walk that goes wrong, or was stopped.
+    pub fn begun<'a>(
+        &'a self,
+        number: u64,
+        (bracket, hint): ([f64; 2], Hint),
+        callbacks: &'a Callbacks<'a>,
+    ) -> Result<Begun<OneNetwork<'a>>, RunError> {
+        Begun::new(self.network(number, callbacks), bracket, self.from(hint))
+    }
+
+    /// The first network, where it holds this ratio.
+    ///
+    /// # Errors
+    /// A walk that goes wrong, or was stopped.
+    pub fn holding(
+        &self,
+        ratio: f64,
+        bracket: [f64; 2],
+        callbacks: &Callbacks,
+    ) -> Result<Option<Found>, RunError> {
+        holding(self.network(1, callbacks), bracket, (ratio, self.across()))
+    }
+
+    fn network<'a>(&'a self, number: u64, callbacks: &'a Callbacks<'a>) -> OneNetwork<'a> {
         let seed = replicate_seed(self.case.scene.walk.seed, number);
-        let mut walker = OneNetwork { row: self, seed, network: None, clogged: BTreeMap::new(), callbacks };
-        search(&mut walker, bracket, start)
+        OneNetwork { row: self, seed, network: None, clogged: BTreeMap::new(), callbacks }
+    }
+
+    fn from(&self, hint: Hint) -> Start {
+        Start { ratio: self.start(), hint, across: self.across() }
     }
 }
 
@@ -190,11 +223,11 @@ fn is_of_base(error: &CaseError) -> bool {
 }
 
 /// One network, walked at one ratio after another.
-struct OneNetwork<'a> {
+pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
-    /// The network that was walked last.
-    network: Option<Network>,
+    /// The network that was walked last, and its exits.
+    network: Option<(Network, UnblockedExits)>,
     /// What the first run left of the constrictions, by step, of each reading of the base.
     clogged: BTreeMap<i64, Vec<Clogged>>,
     callbacks: &'a Callbacks<'a>,
@@ -217,16 +250,21 @@ impl OneNetwork<'_> {
                 return Err(RunError::Failed(text.into()));
             }
         };
-        let network = case.network_unless(self.network.take(), self.seed)?;
+        let (network, open) = match self.network.take().filter(|(kept, _)| case.has_layers_of(kept)) {
+            Some(kept) => kept,
+            None => {
+                let network = case.network(self.seed)?;
+                let open = UnblockedExits::new(&network);
+                (network, open)
+            }
+        };
         let before = self.clogged.remove(&step);
         let (mut all, mut left): (Option<Eroded>, Vec<Clogged>) = (None, Vec::new());
         for (reading, case) in case.bounds().enumerate() {
-            let open = || Clogged::none(&network);
-            let clogged = match run {
-                1 => open(),
-                _ => before.as_ref().and_then(|before| before.get(reading)).cloned().unwrap_or_else(open),
-            };
-            let (found, clogged) = eroded(case, &network, (self.seed, run), clogged, self.callbacks)?;
+            let before = before.as_ref().and_then(|before| before.get(reading)).filter(|_| run > 1);
+            let clogged = before.cloned().unwrap_or_else(|| Clogged::none(&network));
+            let walked = (&network, Some(&open));
+            let (found, clogged) = eroded(case, walked, (self.seed, run), clogged, self.callbacks)?;
             left.push(clogged);
             let worse = |all: Eroded| Eroded {
                 mass_fraction: all.mass_fraction.max(found.mass_fraction),
@@ -234,7 +272,7 @@ impl OneNetwork<'_> {
             };
             all = Some(all.map_or(found, worse));
         }
-        self.network = Some(network);
+        self.network = Some((network, open));
         let all = all.expect("a case has a reading");
         if run == 1 && !all.below_threshold {
             self.clogged.insert(step, left);

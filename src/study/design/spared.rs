@@ -1,4 +1,4 @@
-//! Ends of a range that cannot set its answer: their first network says so, beside all of the end that holds
+//! Ends of a range that cannot set its answer: their first network holds more than all of the end that holds
 //! least, and the others are not searched.
 
 use super::row::Row;
@@ -6,9 +6,9 @@ use super::search::{Done, Found};
 use crate::outcome::design::Beyond;
 
 /// The first network of an end has to hold so many times as much as the greatest of the networks of the end
-/// that holds least. So even one of its networks that lies as far below its first as those lie apart holds
-/// more than the least of them, as many times as much.
-const CLEAR: f64 = 1.25;
+/// that holds least, or as the square of what lies between those, where that is more. So even one of its
+/// networks that lies twice as far below its first as those lie apart holds more than the least of them.
+const CLEAR: f64 = 1.1;
 
 /// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for
 /// each row that it is an end of. Empty where it holds least itself, or was asked for, or is an end of a row
@@ -33,18 +33,19 @@ pub(super) fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     if least.contains(&at) { Vec::new() } else { least }
 }
 
-/// Whether the first network of row `at` shows that it holds clearly more than these rows, of which all
-/// networks are done.
-pub(super) fn is_spared(done: &[Done], at: usize, holding_less: &[(usize, u64)]) -> bool {
-    let of_row = |row: usize| done.iter().filter(move |done| done.row == row);
-    let first = of_row(at).find(|done| done.network == 1);
-    let Some(own) = first.and_then(|done| holds_to(&done.found)) else { return false };
-    let greatest = |&(row, networks): &(usize, u64)| {
-        let held: Option<Vec<f64>> = of_row(row).map(|done| holds_to(&done.found)).collect();
-        held.filter(|held| held.len() as u64 == networks)?.into_iter().reduce(f64::max)
+/// The ratio that the first network of an end has to hold, so that it cannot set the answer beside rows that hold
+/// less, of which all networks are done; `None` where it is searched whatever it holds.
+pub(super) fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
+    let ratio = |&(row, networks): &(usize, u64)| {
+        let of_row = done.iter().filter(|done| done.row == row);
+        let held: Option<Vec<f64>> = of_row.map(|done| holds_to(&done.found)).collect();
+        let held = held.filter(|held| held.len() as u64 == networks)?;
+        let greatest = held.iter().copied().reduce(f64::max)?;
+        let apart = greatest / held.into_iter().reduce(f64::min)?;
+        Some(greatest * CLEAR.max(apart * apart))
     };
-    let is_clear = |less| greatest(less).is_some_and(|greatest| own >= CLEAR * greatest);
-    own > 0.0 && !holding_less.is_empty() && holding_less.iter().all(is_clear)
+    let each: Option<Vec<f64>> = holding_less.iter().map(ratio).collect();
+    each?.into_iter().reduce(f64::max).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
 }
 
 /// The ratio up to which a network holds; 0 where it erodes at every ratio of the search, `None` where it is
@@ -75,35 +76,32 @@ mod tests {
     }
 
     #[test]
-    fn an_end_is_spared_where_it_clearly_holds_more() {
-        let spared = |less: &Found, own: &Found| {
-            is_spared(&[done(1, 1, less.clone()), done(2, 1, own.clone())], 2, &[(1, 1)])
+    fn an_end_has_to_hold_clearly_more() {
+        let wanted = |less: &[Found]| {
+            let done: Vec<Done> = (1..).zip(less).map(|(network, of)| done(1, network, of.clone())).collect();
+            clear_of(&done, &[(1, less.len() as u64)])
         };
-        assert!(spared(&at(4.0), &at(5.0)));
-        assert!(!spared(&at(4.0), &at(4.9)));
-        assert!(!spared(&at(5.0), &at(4.0)));
+        let near =
+            |ratio: Option<f64>, wanted: f64| ratio.is_some_and(|ratio| (ratio - wanted).abs() < 1e-12);
+        assert!(near(wanted(&[at(4.0)]), 4.4));
+        // 4 % apart, and 25 %.
+        assert!(near(wanted(&[at(4.0), at(4.16)]), 4.16 * 1.1));
+        assert!(near(wanted(&[at(5.0), at(4.0)]), 5.0 * 1.5625));
         let erodes = beyond(Beyond::Below, Ended::Erodes(0.5));
-        assert!(spared(&erodes, &at(4.0)));
-        assert!(!spared(&at(4.0), &erodes));
-        assert!(!spared(&erodes, &erodes));
-        for unknown in [
-            beyond(Beyond::Above, Ended::Holds(1, 100.0)),
-            beyond(Beyond::Above, Ended::NotWalked("too fine".into())),
-        ] {
-            assert!(!spared(&at(4.0), &unknown));
-            assert!(!spared(&unknown, &at(4.0)));
+        let holds = beyond(Beyond::Above, Ended::Holds(1, 100.0));
+        let unknown = beyond(Beyond::Above, Ended::NotWalked("too fine".into()));
+        for less in [erodes, holds, unknown] {
+            assert_eq!(wanted(&[at(4.0), less.clone()]), None, "{less:?}");
+            assert_eq!(wanted(&[less.clone()]), None, "{less:?}");
         }
     }
 
     #[test]
     fn all_networks_of_the_worse_end_and_every_range_count() {
-        let all = [done(1, 2, at(4.8)), done(1, 1, at(4.0)), done(2, 1, at(6.0)), done(3, 1, at(5.0))];
-        assert!(is_spared(&all, 2, &[(1, 2)]));
-        assert!(!is_spared(&all, 2, &[(1, 2), (3, 1)]));
-        assert!(!is_spared(&all, 2, &[(1, 3)]));
-        assert!(!is_spared(&all, 2, &[]));
-        assert!(!is_spared(&all[..2], 2, &[(1, 2)]));
-        // By its first network alone the worse end would be clear.
-        assert!(!is_spared(&[done(1, 1, at(4.0)), done(1, 2, at(4.9)), done(2, 1, at(6.0))], 2, &[(1, 2)]));
+        let all = [done(1, 2, at(4.1)), done(1, 1, at(4.0)), done(3, 1, at(5.0))];
+        assert_eq!(clear_of(&all, &[(1, 2)]), Some(4.1 * CLEAR));
+        assert_eq!(clear_of(&all, &[(1, 2), (3, 1)]), Some(5.0 * CLEAR));
+        assert_eq!(clear_of(&all, &[(1, 3)]), None);
+        assert_eq!(clear_of(&all, &[]), None);
     }
 }

@@ -44,7 +44,7 @@ pub(super) fn design(
     // A row without networks is as the worst of its ends.
     let as_end = |row: &Row| {
         let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
-        let worst = ends.filter_map(|(_, found)| found.as_ref()).filter(|found| !found.is_spared);
+        let worst = ends.filter_map(|(_, found)| found.as_ref()).filter(|found| !found.is_spared());
         let worst = worst.min_by(|a, b| holds_less(a, b));
         worst.expect("a row without networks has ends").named(row)
     };
@@ -72,7 +72,7 @@ pub(super) fn design(
             |other: &Row| other.wanted.thickness == row.wanted.thickness && other.ends.contains(density);
         let all: Vec<_> = found.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
         let only = if let [(only, _)] = all[..] { only.of.as_end.as_ref() } else { None };
-        !of.is_spared && (of.of.end_of.is_none() || only != Some(density))
+        !of.is_spared() && (of.of.end_of.is_none() || only != Some(density))
     };
     let shown = found.iter().zip(rows).filter(is_shown);
     let boundaries: Vec<DesignRow> = shown.map(|(found, _)| found.of.clone()).collect();
@@ -158,11 +158,16 @@ struct FoundRow {
     eroding: u64,
     /// What is to be said of its boundary of no erosion.
     of_boundary: Vec<Finding>,
-    /// Whether it is an end that cannot set the answer, of which the first network alone was searched.
-    is_spared: bool,
+    /// Of an end that cannot set the answer: the ratio that its first network holds, and no more is known.
+    spared_at: Option<f64>,
 }
 
 impl FoundRow {
+    /// Whether it is an end that cannot set the answer.
+    fn is_spared(&self) -> bool {
+        self.spared_at.is_some()
+    }
+
     /// Why no ratio is known that holds; `at` names the curve.
     fn unheld(&self, at: &str) -> Option<Finding> {
         let networks = self.of.networks.len() as u64;
@@ -197,21 +202,21 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
 /// What was found of the row itself, where it was searched, and of the ends of its range.
 fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
     let in_range = rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other));
-    in_range.map(|(_, found)| found).filter(|found| !found.is_spared)
+    in_range.map(|(_, found)| found).filter(|found| !found.is_spared())
 }
 
-/// That an end of a row's range was searched on its first network alone.
+/// That an end of a row's range was not searched.
 fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<String> {
-    let spared = rows.iter().zip(found).filter(|(other, found)| found.is_spared && is_in_range(row, other));
+    let in_range = rows.iter().zip(found).filter(|(other, _)| is_in_range(row, other));
     let said = |(_, end): (&Row, &FoundRow)| {
-        let first = end.of.networks.first().and_then(|of| of.no_erosion).unwrap_or_default();
-        format!(
-            "The end {} holds clearly more, to D15F/D85B {first:.2} on the first of {} networks: it cannot \
-             set the answer, and the other networks were not searched.",
+        let ratio = end.spared_at?;
+        Some(format!(
+            "The end {} holds clearly more: D15F/D85B {ratio:.2} on the first of {} networks. It cannot set the \
+             answer, and its boundary was not searched.",
             end.of.density, row.case.scene.walk.replicates
-        )
+        ))
     };
-    spared.map(said).collect()
+    in_range.filter_map(said).collect()
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
@@ -438,8 +443,8 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         end_of: row.end_of.clone(),
     };
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;
-    let is_spared = (done.len() as u64) < row.networks();
-    let found = FoundRow { of, unsteady, eroding, of_boundary, is_spared };
+    let spared_at = done.iter().find_map(|done| done.found.spared_at);
+    let found = FoundRow { of, unsteady, eroding, of_boundary, spared_at };
     let band_note = found.unheld("").map(|unheld| unheld.sentence());
     FoundRow { of: DesignRow { band_note, ..found.of }, ..found }
 }

@@ -38,7 +38,7 @@ use crate::stream::{Key, Purpose};
 use binomial::Draws;
 use expected::ExpectedFlow;
 use flow::Flow;
-use shares::Shares;
+pub(super) use shares::Shares;
 use sizes::PassiveSizes;
 
 /// The machinery of the passive particles of a run; rebuilt from network and state, and never stored.
@@ -64,9 +64,11 @@ struct Trap {
 }
 
 impl<'a> PassiveWalk<'a> {
-    /// Prepares to move the passive particles of `state`; `None` where there are none but one by one.
-    pub fn new(network: &Network, supply: &'a Supply, state: &State) -> Option<Self> {
-        let shares = || Shares::new(network, Ways::Unblocked(&state.blocked));
+    /// Prepares to move the passive particles of `state`, by the shares of its open exits where they are known;
+    /// `None` where there are none but one by one.
+    pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<&Shares>) -> Option<Self> {
+        let shares =
+            || known.cloned().unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
         let (shares, mover) = match &state.passive {
             Passive::OneByOne => return None,
             Passive::Counts(moving) => (shares(), Mover::Counts(Flow::new(network, moving))),
@@ -161,7 +163,8 @@ impl<'a> PassiveWalk<'a> {
         let (Mover::Expected(flow), Passive::Expected(expected)) = (&self.mover, &mut state.passive) else {
             return;
         };
-        let [before, now] = expected.count(flow.holding(), trapped, &mut state.retained_in_voids);
+        let [before, now] =
+            expected.count((flow.holding(), flow.rests()), trapped, &mut state.retained_in_voids);
         let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
         tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);

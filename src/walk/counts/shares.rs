@@ -7,7 +7,7 @@ use crate::walk::openings::Ways;
 
 /// Which way the passive particles of a void go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Way {
+pub(in crate::walk) enum Way {
     /// No exit is open, and they rest.
     None,
     /// No exit is open until the flow is solved again.
@@ -23,7 +23,8 @@ pub(super) enum Way {
 }
 
 /// How the passive particles of every void are split over its exits.
-pub(super) struct Shares {
+#[derive(Clone)]
+pub(in crate::walk) struct Shares {
     /// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
     /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
     probability: Vec<u64>,

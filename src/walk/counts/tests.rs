@@ -132,7 +132,7 @@ fn both_engines_follow_one_history() {
     let limit = sampler.word_limit(walked.passive_limit);
     let supply = Supply::new(sampler, 1_500_000, 60).with_passive_part(limit, false, 22, 1);
     let mut state = State::new(&network, &supply, classes, open, 22, 1);
-    let mut passive = PassiveWalk::new(&network, &supply, &state).unwrap();
+    let mut passive = PassiveWalk::new(&network, &supply, &state, None).unwrap();
     let (mut inserted, mut eroded) = (Vec::new(), Vec::new());
     let upstream = network.upstream();
     for t in 1..=increments as u64 {

@@ -1,11 +1,11 @@
 //! The boundary of the first run: the least ratio at which it erodes 7.5 %.
 
-use super::trials::{Pair, STOP, Search, Trial, ratio_at};
+use super::trials::{Pair, STOP, Search, Trial, Walker, ratio_at};
 use super::{Beside, Ended, erodes_down_to};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
 
-impl Search<'_> {
+impl<W: Walker> Search<W> {
     /// The boundary of the first run near a hint, below which two stops hold as well; `None` where that is
     /// not so.
     pub(super) fn near_hint(&mut self, hint: Option<i64>) -> Result<Option<Pair>, RunError> {

@@ -22,7 +22,8 @@
 //! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
 //! that erodes; two stops below are tried all the same. Where that finds nothing, it goes by stops.
 //!
-//! The second run is walked only at ratios whose first run erodes, and only near where it begins to erode
+//! The boundary of the second run is searched when that of the first is known, so that other networks can
+//! begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near where it begins to erode
 //! itself: what holds in the first holds in the second.
 
 mod first;
@@ -36,14 +37,15 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::design::{BETWEEN_STEPS, Beyond};
+use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::verdict::{Finding, finding};
 pub(super) use trials::USUAL_ACROSS;
-use trials::{STOP, Search, between, ratio_at, tried_below};
+use trials::{Pair, STOP, Search, between, ratio_at, smallest_seen, tried_below};
 pub(super) use trials::{Trial, Walker};
 
 /// Names this search: networks that another has found are not continued with.
-pub(super) const METHOD: &str = "design search 8";
+pub(super) const METHOD: &str = "design search 9";
 
 /// What a bracket may be.
 pub(super) const BRACKETS: [f64; 2] = [0.1, 1000.0];
@@ -95,6 +97,9 @@ pub(super) struct Found {
     pub is_not_monotone: bool,
     /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
     pub walks: Vec<(f64, f64, Option<f64>)>,
+    /// Of an end of a range that cannot set its answer: a ratio that it holds, and all that was asked of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spared_at: Option<f64>,
 }
 
 /// A network that is done.
@@ -130,7 +135,8 @@ pub(super) struct Hint {
 impl Hint {
     pub fn of(found: &Found) -> Self {
         let is_beyond = |side: &Option<Beside>| matches!(side, Some((_, Ended::Erodes(_))));
-        let erodes_to_end = is_beyond(&found.no_erosion_beyond) && is_beyond(&found.continuing_beyond);
+        let all_erode = found.walks.iter().all(|(_, eroded, _)| *eroded >= THRESHOLD);
+        let erodes_to_end = is_beyond(&found.no_erosion_beyond) && all_erode;
         Self { boundaries: [found.no_erosion, found.continuing], erodes_to_end }
     }
 }
@@ -146,39 +152,85 @@ pub(super) struct Start {
     pub across: u64,
 }
 
-/// Searches between the ratios of a bracket.
-///
-/// # Errors
-/// A walk that goes wrong, or was stopped.
-pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -> Result<Found, RunError> {
-    let up = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 - 1e-9).ceil() as i64 * STOP;
-    let down = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 + 1e-9).floor() as i64 * STOP;
-    // Outwards, within what is allowed.
-    let stops = [down(bracket[0]).max(up(BRACKETS[0])), up(bracket[1]).min(down(BRACKETS[1]))];
-    let below = tried_below(start.across);
-    let mut search = Search { walker, stops, below, first: BTreeMap::new(), second: BTreeMap::new() };
-    let mut found = Found::default();
-    let hints =
-        start.hint.boundaries.map(|at| at.map(|ratio| (libm::log(ratio) / BETWEEN_STEPS).round() as i64));
-    let erodes_to_end = start.hint.erodes_to_end && search.erodes(stops[0])?;
-    let start = stop_near(start.ratio).clamp(stops[0], stops[1].max(stops[0]));
-    let first = if erodes_to_end {
-        Err(erodes_down_to(stops[0]))
-    } else if let Some(pair) = search.near_hint(hints[0])? {
-        Ok(pair)
-    } else {
-        search.no_erosion(start)?
-    };
-    match first {
-        Ok(pair) => {
-            let least = search.smallest_that_erodes(pair.1, Search::try_first)?;
-            let least = Search::smallest_seen(&search.first).unwrap_or(least);
-            if least > stops[0] {
-                found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
-            } else {
-                found.no_erosion_beyond = Some(erodes_down_to(least));
+/// A network of which the boundary of the first run has been searched, between the ratios of a bracket, and
+/// that of the second is to be.
+pub(super) struct Begun<W> {
+    search: Search<W>,
+    /// The last step that holds and the first that erodes, as they were found first.
+    pair: Option<Pair>,
+    found: Found,
+}
+
+impl<W: Walker> Search<W> {
+    fn new(walker: W, bracket: [f64; 2], across: u64) -> Self {
+        let up = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 - 1e-9).ceil() as i64 * STOP;
+        let down = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 + 1e-9).floor() as i64 * STOP;
+        // Outwards, within what is allowed.
+        let stops = [down(bracket[0]).max(up(BRACKETS[0])), up(bracket[1]).min(down(BRACKETS[1]))];
+        let (first, second) = (BTreeMap::new(), BTreeMap::new());
+        Self { walker, stops, below: tried_below(across), first, second }
+    }
+
+    /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
+    fn walks(&self) -> Vec<(f64, f64, Option<f64>)> {
+        let walk = |step: &i64| Some((ratio_at(*step), self.eroded(1, *step)?, self.eroded(2, *step)));
+        self.first.keys().filter_map(walk).collect()
+    }
+}
+
+impl<W: Walker> Begun<W> {
+    /// Searches the boundary of the first run.
+    ///
+    /// # Errors
+    /// A walk that goes wrong, or was stopped.
+    pub fn new(walker: W, bracket: [f64; 2], start: Start) -> Result<Self, RunError> {
+        let mut search = Search::new(walker, bracket, start.across);
+        let mut found = Found::default();
+        let stops = search.stops;
+        let erodes_to_end = start.hint.erodes_to_end && search.erodes(stops[0])?;
+        let hint = step_near(start.hint.boundaries[0]);
+        let start = stop_near(start.ratio).clamp(stops[0], stops[1].max(stops[0]));
+        let first = if erodes_to_end {
+            Err(erodes_down_to(stops[0]))
+        } else if let Some(pair) = search.near_hint(hint)? {
+            Ok(pair)
+        } else {
+            search.no_erosion(start)?
+        };
+        let pair = match first {
+            Ok(pair) => {
+                let least = search.smallest_that_erodes(pair.1, Search::try_first)?;
+                let least = smallest_seen(&search.first).unwrap_or(least);
+                if least > stops[0] {
+                    found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
+                } else {
+                    found.no_erosion_beyond = Some(erodes_down_to(least));
+                }
+                Some(pair)
             }
-            let second = match search.away_from(hints[1], Search::try_second)? {
+            Err(beyond) => {
+                found.no_erosion_beyond = Some(beyond.clone());
+                found.continuing_beyond = Some(beyond);
+                None
+            }
+        };
+        found.walks = search.walks();
+        Ok(Self { search, pair, found })
+    }
+
+    /// Where to look on other networks for the boundary of the first run.
+    pub fn hint(&self) -> Hint {
+        Hint { boundaries: [self.found.no_erosion, None], ..Hint::of(&self.found) }
+    }
+
+    /// Searches the boundary of the second run, near `hint` where there is one.
+    ///
+    /// # Errors
+    /// A walk that goes wrong, or was stopped.
+    pub fn ended(self, hint: Option<f64>) -> Result<Found, RunError> {
+        let Self { mut search, pair, mut found } = self;
+        if let Some(pair) = pair {
+            let second = match search.away_from(step_near(hint), Search::try_second)? {
                 Some(pair) => Ok(pair),
                 None => search.continuing(pair)?,
             };
@@ -186,8 +238,8 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
                 // What does not erode in the first run does not continue.
                 Ok(pair) => {
                     let least = search.smallest_that_erodes(pair.1, Search::try_second)?;
-                    let least = Search::smallest_seen(&search.second).unwrap_or(least);
-                    if least > stops[0] {
+                    let least = smallest_seen(&search.second).unwrap_or(least);
+                    if least > search.stops[0] {
                         let second = between((least - 1, least), |step| search.eroded(2, step));
                         found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
                     } else {
@@ -197,19 +249,37 @@ pub(super) fn search(walker: &mut dyn Walker, bracket: [f64; 2], start: Start) -
                 Err(beyond) => found.continuing_beyond = Some(beyond),
             }
         }
-        Err(beyond) => {
-            found.no_erosion_beyond = Some(beyond.clone());
-            found.continuing_beyond = Some(beyond);
-        }
+        found.is_not_monotone = search.is_not_monotone();
+        found.walks = search.walks();
+        Ok(found)
     }
-    found.is_not_monotone = search.is_not_monotone();
-    let eroded = |trial: &Trial| match trial {
-        Trial::Eroded(eroded) => Some(eroded.mass_fraction),
-        Trial::CannotBe(..) => None,
-    };
-    let walk = |(step, trial): (&i64, &Trial)| {
-        Some((ratio_at(*step), eroded(trial)?, search.second.get(step).and_then(eroded)))
-    };
-    found.walks = search.first.iter().filter_map(walk).collect();
-    Ok(found)
+}
+
+/// Searches both boundaries of a network.
+///
+/// # Errors
+/// A walk that goes wrong, or was stopped.
+pub(super) fn search(walker: impl Walker, bracket: [f64; 2], start: Start) -> Result<Found, RunError> {
+    Begun::new(walker, bracket, start)?.ended(start.hint.boundaries[1])
+}
+
+/// The step nearest to a ratio.
+fn step_near(ratio: Option<f64>) -> Option<i64> {
+    ratio.map(|ratio| (libm::log(ratio) / BETWEEN_STEPS).round() as i64)
+}
+
+/// Whether the first run holds a ratio: the next step above it, and those below that a search tries besides.
+/// `None` where it does not, or is beyond the search.
+///
+/// # Errors
+/// A walk that goes wrong, or was stopped.
+pub(super) fn holding<W: Walker>(
+    walker: W,
+    bracket: [f64; 2],
+    (ratio, across): (f64, u64),
+) -> Result<Option<Found>, RunError> {
+    let mut search = Search::new(walker, bracket, across);
+    let step = (libm::log(ratio) / BETWEEN_STEPS).ceil() as i64;
+    let holds = (search.stops[0]..=search.stops[1]).contains(&step) && search.surely_holds(step)?;
+    Ok(holds.then(|| Found { spared_at: Some(ratio_at(step)), walks: search.walks(), ..Found::default() }))
 }

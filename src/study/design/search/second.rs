@@ -1,6 +1,6 @@
 //! The boundary of the second run: the least ratio at which erosion continues.
 
-use super::trials::{Pair, Search, Trial, ratio_at};
+use super::trials::{Pair, Search, Trial, Walker, ratio_at};
 use super::{Beside, Ended};
 use crate::outcome::design::Beyond;
 use crate::run::error::RunError;
@@ -9,7 +9,7 @@ use crate::run::error::RunError;
 /// broad.
 const SECOND_STOP: i64 = 32;
 
-impl Search<'_> {
+impl<W: Walker> Search<W> {
     pub(super) fn continuing(&mut self, first: Pair) -> Result<Result<Pair, Beside>, RunError> {
         let mut at = (first.1 + SECOND_STOP - 1).div_euclid(SECOND_STOP) * SECOND_STOP;
         at = at.min(self.stops[1].max(first.1));

@@ -52,6 +52,16 @@ pub trait Walker {
     fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
 }
 
+impl<W: Walker + ?Sized> Walker for &mut W {
+    fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
+        (**self).first(step, ratio)
+    }
+
+    fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
+        (**self).second(step, ratio)
+    }
+}
+
 /// D15F/D85B at a step.
 pub(super) fn ratio_at(step: i64) -> f64 {
     libm::exp(BETWEEN_STEPS * step as f64)
@@ -91,8 +101,8 @@ impl Fall {
 }
 
 /// A search under way.
-pub(super) struct Search<'a> {
-    pub(super) walker: &'a mut dyn Walker,
+pub(super) struct Search<W> {
+    pub(super) walker: W,
     /// The first stop and the last.
     pub(super) stops: [i64; 2],
     /// Steps below the smallest ratio that erodes, at which a run is tried besides.
@@ -101,7 +111,7 @@ pub(super) struct Search<'a> {
     pub(super) second: BTreeMap<i64, Trial>,
 }
 
-impl Search<'_> {
+impl<W: Walker> Search<W> {
     pub(super) fn eroded(&self, run: u64, step: i64) -> Option<f64> {
         match if run == 1 { &self.first } else { &self.second }.get(&step)? {
             Trial::Eroded(eroded) => Some(eroded.mass_fraction),
@@ -182,6 +192,12 @@ impl Search<'_> {
         Ok((low, high))
     }
 
+    /// Whether a step holds, and those below it that are tried besides.
+    pub(super) fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
+        let holds = |trial: Trial| matches!(trial, Trial::Eroded(eroded) if eroded.below_threshold);
+        Ok(holds(self.try_first(step)?) && self.smallest_that_erodes(step + 1, Self::try_first)? == step + 1)
+    }
+
     /// The smallest step that is seen to erode, from one that does on, after single steps below it have been
     /// tried: all of them, or as many as it takes to see that what erodes falls steadily.
     pub(super) fn smallest_that_erodes(
@@ -215,12 +231,6 @@ impl Search<'_> {
         }
     }
 
-    /// The smallest of these steps that erodes.
-    pub(super) fn smallest_seen(trials: &BTreeMap<i64, Trial>) -> Option<i64> {
-        let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
-        trials.iter().find(|(_, trial)| erodes(trial)).map(|(step, _)| *step)
-    }
-
     /// Whether a ratio holds above one that erodes, in either run.
     pub(super) fn is_not_monotone(&self) -> bool {
         [&self.first, &self.second].into_iter().any(|trials| {
@@ -234,6 +244,12 @@ impl Search<'_> {
             })
         })
     }
+}
+
+/// The smallest of these steps that erodes.
+pub(super) fn smallest_seen(trials: &BTreeMap<i64, Trial>) -> Option<i64> {
+    let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
+    trials.iter().find(|(_, trial)| erodes(trial)).map(|(step, _)| *step)
 }
 
 /// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway where the lower one was

@@ -6,9 +6,6 @@ use crate::walk::Isa;
 use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
 
-/// Columns in which moves are summed: part of the definition of their sum, whatever the instructions.
-const LANES: usize = 8;
-
 /// Voids that are moved at once, in whole rows: what leaves them stays in the first cache, and short rows
 /// make long loops.
 const AT_ONCE: usize = 1024;
@@ -35,8 +32,9 @@ impl LatticeFlow {
         let across = [shape[0] as usize, shape[1] as usize];
         let rows = rows_at_once(across) * across[0];
         let layer = || vec![0.0; across[0] * across[1]];
-        let voids = shares.probability().len() / 3;
-        let of = |exit: usize| shares.probability()[exit..].iter().step_by(3).map(|&p| as_unit(p)).collect();
+        let (of_void, _) = shares.probability().as_chunks::<3>();
+        let voids = of_void.len();
+        let of = |exit: usize| of_void.iter().map(|of_void| as_unit(of_void[exit])).collect();
         Self {
             across,
             shares: [of(0), of(1)],
@@ -69,7 +67,7 @@ impl LatticeFlow {
             }
         }
         assert!(self.isa.is_available());
-        sums.moves += match self.isa {
+        match self.isa {
             // SAFETY: the machine has the instructions.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx512 => unsafe { with_avx512(self, moving, next) },
@@ -82,29 +80,23 @@ impl LatticeFlow {
     }
 
     /// Moves layer by layer, and some rows at once; what leaves the last layer is first in `along_z` then.
-    /// Returns how many moved.
     #[inline(always)]
-    fn layers(&mut self, moving: &[f64], next: &mut [f64]) -> f64 {
+    fn layers(&mut self, moving: &[f64], next: &mut [f64]) {
         let [nx, ny] = self.across;
         let at_once = rows_at_once(self.across) * nx;
         let Self { shares: [first, second], arriving: [x, y], along_z: [above, below], .. } = self;
         let plane = nx * ny;
-        let mut lanes = [0.0; LANES];
         above.fill(0.0);
         let mut nothing_above = true;
         let shares = first.chunks_exact(plane).zip(second.chunks_exact(plane));
         let layers = moving.chunks_exact(plane).zip(next.chunks_exact_mut(plane)).zip(shares);
         for ((here, next), (first, second)) in layers {
-            let nothing_here = here.iter().all(|&n| n == 0.0);
+            let nothing_here = here.chunks(64).all(is_nothing);
             if nothing_here && nothing_above {
                 next.fill(0.0);
                 continue;
             }
             nothing_above = nothing_here;
-            // A loop, as a fold would be a call without the wide instructions.
-            for row in here.chunks_exact(nx) {
-                lanes = summed(lanes, row);
-            }
             // The last row leads to the first.
             let last = plane - nx..plane;
             let leaving = (&mut x[1..][..nx], &mut y[..nx], &mut below[last.clone()]);
@@ -126,7 +118,6 @@ impl LatticeFlow {
             }
             std::mem::swap(above, below);
         }
-        lanes.iter().sum()
     }
 }
 
@@ -137,14 +128,14 @@ fn rows_at_once([nx, ny]: [usize; 2]) -> usize {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn with_avx512(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) -> f64 {
-    flow.layers(moving, next)
+fn with_avx512(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) {
+    flow.layers(moving, next);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
-fn with_avx2(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) -> f64 {
-    flow.layers(moving, next)
+fn with_avx2(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) {
+    flow.layers(moving, next);
 }
 
 /// What is expected in a void, where that is anything.
@@ -153,21 +144,10 @@ fn some(n: f64) -> f64 {
     if n < NOTHING { 0.0 } else { n }
 }
 
-/// Adds a row to sums in columns.
+/// Whether nothing is expected in any of these voids, without a branch for each.
 #[inline(always)]
-fn summed(mut lanes: [f64; LANES], row: &[f64]) -> [f64; LANES] {
-    let (whole, rest) = row.as_chunks::<LANES>();
-    for some in whole {
-        lanes = std::array::from_fn(|lane| lanes[lane] + some[lane]);
-    }
-    // In registers where it is half as many.
-    let (half, rest) = rest.as_chunks::<{ LANES / 2 }>();
-    for some in half {
-        lanes = std::array::from_fn(|lane| lanes[lane] + some.get(lane).copied().unwrap_or(0.0));
-    }
-    let behind = half.len() * (LANES / 2);
-    rest.iter().zip(&mut lanes[behind..]).for_each(|(n, lane)| *lane += n);
-    lanes
+fn is_nothing(voids: &[f64]) -> bool {
+    voids.iter().fold(0, |bits, n| bits | n.to_bits()) == 0
 }
 
 /// What leaves voids along x, along y and along z. The last open exit is certain: along z goes what is left.

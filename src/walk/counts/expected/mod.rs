@@ -23,6 +23,8 @@ pub(super) struct ExpectedFlow {
     next: Vec<f64>,
     /// Voids that retain something, ascending.
     holding: Vec<u32>,
+    /// What they retain together.
+    rests: f64,
 }
 
 enum ByNetwork {
@@ -33,13 +35,15 @@ enum ByNetwork {
 impl ExpectedFlow {
     pub fn new(network: &Network, shares: &Shares, expected: &Expected) -> Self {
         let holding = expected.retained.iter().enumerate().filter(|(_, n)| **n > 0.0);
+        let holding: Vec<u32> = holding.map(|(void, _)| void as u32).collect();
         Self {
             by_network: match network.shape().filter(|_| !network.exit_rule().needs_flow()) {
                 Some(shape) => ByNetwork::Lattice(LatticeFlow::new(shape, shares)),
                 None => ByNetwork::General(GeneralFlow::new(shares)),
             },
             next: vec![0.0; expected.moving.len()],
-            holding: holding.map(|(void, _)| void as u32).collect(),
+            rests: resting(&holding, expected),
+            holding,
         }
     }
 
@@ -55,6 +59,11 @@ impl ExpectedFlow {
         &self.holding
     }
 
+    /// What they retain together.
+    pub fn rests(&self) -> f64 {
+        self.rests
+    }
+
     /// The shares of one void are others now.
     pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         match &mut self.by_network {
@@ -65,7 +74,7 @@ impl ExpectedFlow {
 
     /// Every particle attempts one move.
     pub fn step(&mut self, network: &Network, shares: &Shares, expected: &mut Expected) {
-        let known = self.holding.len();
+        let (known, eroded) = (self.holding.len(), expected.sums.eroded);
         let into = (&mut self.next[..], &mut self.holding);
         match &mut self.by_network {
             ByNetwork::General(flow) => flow.step(network, shares, expected, into),
@@ -74,6 +83,16 @@ impl ExpectedFlow {
         if self.holding.len() > known {
             self.holding.sort_unstable();
         }
+        self.rests = resting(&self.holding, expected);
+        if matches!(self.by_network, ByNetwork::Lattice(_)) {
+            // All that was inserted and had neither left nor come to rest.
+            expected.sums.moves += expected.sums.inserted as f64 - eroded - self.rests;
+        }
         std::mem::swap(&mut expected.moving, &mut self.next);
     }
+}
+
+/// What these voids retain together.
+fn resting(holding: &[u32], expected: &Expected) -> f64 {
+    holding.iter().map(|&void| expected.retained[void as usize]).sum()
 }

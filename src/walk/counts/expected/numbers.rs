@@ -73,15 +73,14 @@ impl Expected {
     }
 
     /// Renews the whole numbers that the state counts, and gives those before and after. `holding` are the
-    /// voids that retain something, ascending. With `trapped`, what moves beside so many trapped particles is
+    /// voids that retain something, ascending, and what they retain together. With `trapped`, what moves beside so many trapped particles is
     /// less than half a particle, and is counted as come to rest.
     pub(in crate::walk::counts) fn count(
         &mut self,
-        holding: &[u32],
+        (holding, stranded): (&[u32], f64),
         trapped: Option<f64>,
         retained_in_voids: &mut [u64],
     ) -> [Counted; 2] {
-        let stranded: f64 = holding.iter().map(|&void| self.retained[void as usize]).sum();
         let whole = |x: f64| ((x + 0.5).floor() as u64).min(self.sums.inserted);
         let mut at_rest = whole(self.sums.eroded + stranded);
         let mut eroded = whole(self.sums.eroded);
