@@ -8,7 +8,9 @@ use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
 use crate::outcome::design::specification::{ProductMargin, Specification};
 use crate::outcome::numbers::{significant, trimmed};
+use crate::outcome::with_inches;
 use crate::run::RunError;
+use crate::scene::SheetUnits;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
 
@@ -22,6 +24,7 @@ pub(super) fn specification(args: &DesignArgs, base: &Path) -> Result<(), RunErr
         base: base.to_owned(),
         dispersive: args.dispersive,
         sieves: args.sieves,
+        inches: args.units == Some(SheetUnits::Us),
         out: out.clone(),
         overwrite: args.overwrite,
     };
@@ -39,7 +42,8 @@ fn words(of: &Specification) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |said: &str| {
-        let _ = writeln!(text, "{}", plain(said).trim_end());
+        let said = if of.inches { with_inches(said) } else { said.to_owned() };
+        let _ = writeln!(text, "{}", plain(&said).trim_end());
     };
     line(&format!("Specification of a filter for {}, by the rules of practice alone", of.base));
     let mut source = "";

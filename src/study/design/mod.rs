@@ -14,6 +14,7 @@
 
 #[cfg(test)]
 mod answer_tests;
+mod each;
 mod judged;
 mod options;
 mod plan;
@@ -33,6 +34,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+pub use each::{SampleDesignOptions, each};
 pub use options::{DesignOptions, Thickness, ThicknessList};
 pub use specified::{SpecifyOptions, specify};
 
