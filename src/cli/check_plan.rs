@@ -66,14 +66,23 @@ fn words(check: &PlanCheck) -> String {
     }
     let runs = check.cases.iter().map(|case| case.runs_to_walk).sum();
     line("to walk", format!("{} runs", count(runs)));
-    line("memory", format!("{} for the largest case, of {}", in_words(check.bytes), in_words(check.bytes_allowed)));
+    line(
+        "memory",
+        format!("{} for the largest case, of {}", in_words(check.bytes), in_words(check.bytes_allowed)),
+    );
     if check.packings > 0 {
         let made = check.packings - check.packings_to_make;
         let said = counted(check.packings, "packing", "packings");
         line("packings", format!("{said} of filters, {made} made already"));
-        line("time to pack", format!("about {} of one core, a rough guess", duration(check.packing_core_seconds)));
+        line(
+            "time to pack",
+            format!("about {} of one core, a rough guess", duration(check.packing_core_seconds)),
+        );
     }
-    line("time to walk", format!("about {} of one core for all, a rough guess", duration(check.core_seconds)));
+    line(
+        "time to walk",
+        format!("about {} of one core for all, a rough guess", duration(check.core_seconds)),
+    );
     let wrong = check.cases.iter().filter(|case| !case.problem.is_empty()).count();
     if wrong == 0 {
         line("next", format!("voidwalk campaign {}", check.plan));

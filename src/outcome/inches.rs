@@ -95,7 +95,10 @@ mod tests {
         for (text, said) in [
             ("D15F up to 0.700 mm (practice)", "D15F up to 0.700 mm (0.0276\u{202f}in) (practice)"),
             ("25.4\u{202f}mm", "25.4\u{202f}mm (1.00\u{202f}in)"),
-            ("must lie between 0.14 and 0.7 mm.", "must lie between 0.14 and 0.7 mm (0.00551 and 0.0276\u{202f}in)."),
+            (
+                "must lie between 0.14 and 0.7 mm.",
+                "must lie between 0.14 and 0.7 mm (0.00551 and 0.0276\u{202f}in).",
+            ),
             ("of No. 4 and 0.5 mm", "of No. 4 and 0.5 mm (0.0197\u{202f}in)"),
             ("1\u{202f}270 mm", "1\u{202f}270 mm (50.0\u{202f}in)"),
         ] {

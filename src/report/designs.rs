@@ -56,7 +56,11 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         code { "designs.json" } " holds this page’s numbers, " code { "designs.csv" }
         " its table with further columns."
     } };
-    let footer = if all.filter.is_empty() { html! {} } else { citation() };
+    let footer = if all.filter.is_empty() {
+        html! {}
+    } else {
+        citation()
+    };
     Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
         .words(&first)
         .contents()

@@ -16,9 +16,9 @@ use crate::run::error::RunError;
 use crate::run::folder::{DESIGN, FolderKind, LATTICES, STUDY, clear, shown};
 use crate::run::results::json;
 use crate::run::unfinished::{self, Unfinished};
+use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use crate::store::format::from_json;
 use crate::store::{Folder, read_whole};
-use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 
 /// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
 /// start of it found, and not at all where all but its page is there. `study` writes its tables; then come

@@ -266,11 +266,9 @@ impl DesignedSamples {
                 first.sample,
                 rounded_down(greatest)
             ),
-            Some((_, least)) => format!(
-                "A filter for {of}: D15F from {} to {} mm",
-                rounded_up(least),
-                rounded_down(greatest)
-            ),
+            Some((_, least)) => {
+                format!("A filter for {of}: D15F from {} to {} mm", rounded_up(least), rounded_down(greatest))
+            }
             None => format!("A filter for {of}: D15F up to {} mm", rounded_down(greatest)),
         }
     }
@@ -336,13 +334,18 @@ mod tests {
         // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
-        assert_eq!((core.limit_mm, core.d15f_max_mm, core.set_by()), (Some(0.7), Some(0.7), Some("practice")));
+        assert_eq!(
+            (core.limit_mm, core.d15f_max_mm, core.set_by()),
+            (Some(0.7), Some(0.7), Some("practice"))
+        );
         let limit = sand.limit_mm.unwrap();
         assert!((limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9, "{sand:?}");
         let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
         let said = by_practice.in_words();
         assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
-        assert!(said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm"));
+        assert!(
+            said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
+        );
         // The walk allows less of one, and nothing is known of another.
         let rows = vec![
             walked(sand.clone(), Some(0.4)),
