@@ -253,19 +253,22 @@ impl DesignedSamples {
         };
         let of = match open {
             0 => format!("all {} samples", self.rows.len()),
-            _ => format!("the {} samples that are settled, {open} are not", self.rows.len() - open),
+            1 => format!("the {} samples that are settled (1 is not)", self.rows.len() - 1),
+            _ => format!("the {} samples that are settled ({open} are not)", self.rows.len() - open),
         };
         let greatest = first.d15f_max_mm.unwrap_or_default();
         match self.drainage() {
-            Some((row, least)) if least > greatest => format!(
-                "No one filter serves {of}: {} needs D15F {} mm or more{} to drain, and {} allows {} mm at \
-                 most",
-                row.sample,
-                rounded_up(least),
-                if row.d15f_min_at_most { ", or less, as its fines are not known," } else { "" },
-                first.sample,
-                rounded_down(greatest)
-            ),
+            Some((row, least)) if least > greatest => {
+                let fines = if row.d15f_min_at_most { ", or less, as its fines are not known," } else { "" };
+                let [least, greatest] = [rounded_up(least), rounded_down(greatest)];
+                let and =
+                    if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
+                format!(
+                    "No one filter serves {of}: {} needs D15F {least} mm or more{fines} to drain{and} allows \
+                     {greatest} mm at most",
+                    row.sample
+                )
+            }
             Some((_, least)) => {
                 format!("A filter for {of}: D15F from {} to {} mm", rounded_up(least), rounded_down(greatest))
             }
@@ -348,7 +351,7 @@ mod tests {
         );
         // The walk allows less of one, and nothing is known of another.
         let rows = vec![
-            walked(sand.clone(), Some(0.4)),
+            walked(sand.clone(), Some(0.65)),
             core,
             walked(row("silt", &[(0.005, 0.0), (0.075, 90.0), (0.2, 100.0)]), None),
         ];
@@ -356,8 +359,8 @@ mod tests {
         assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(1), Some(2), None]);
         let said = all.in_words().join("\n");
         for words in [
-            "the 2 samples that are settled, 1 are not: D15F from ",
-            "Governing sample sand: D15F up to 0.400 mm (the walk)",
+            "the 2 samples that are settled (1 is not): D15F from ",
+            "Governing sample sand: D15F up to 0.650 mm (the walk)",
             "Practice sets the greatest D15F of 1, the walk that of 1",
             "May govern, as no greatest D15F is known: silt",
         ] {
