@@ -68,7 +68,11 @@ fn last_number(text: &str) -> Option<(f64, usize)> {
     is_alone.then_some((value, start))
 }
 
-/// A page with inches behind every length in mm of its words; figures and what no reader sees stay.
+/// What keeps its words: figures, what no reader sees, and the small print with formulas and sources.
+const KEPT: [(&str, &str); 4] =
+    [("<svg", "</svg"), ("<style", "</style"), ("<title", "</title"), ("<span class=\"small\"", "</span")];
+
+/// A page with inches behind every length in mm of its words, figures and small print apart.
 pub fn page_with_inches(page: &str) -> String {
     let (mut out, mut rest, mut hidden) = (String::new(), page, None);
     while let Some(at) = rest.find('<') {
@@ -77,9 +81,9 @@ pub fn page_with_inches(page: &str) -> String {
         out += &if hidden.is_some() { words.to_owned() } else { with_inches(words) };
         out += tag;
         hidden = match hidden {
-            Some(name) if tag.starts_with(&format!("</{name}")) => None,
-            Some(name) => Some(name),
-            None => ["svg", "style", "title"].into_iter().find(|name| tag.starts_with(&format!("<{name}"))),
+            Some(end) if tag.starts_with(end) => None,
+            Some(end) => Some(end),
+            None => KEPT.into_iter().find(|(begin, _)| tag.starts_with(begin)).map(|(_, end)| end),
         };
         rest = &rest[end..];
     }
@@ -112,9 +116,10 @@ mod tests {
 
     #[test]
     fn a_page_keeps_its_figures_and_its_tags() {
-        let page = "<title>2 mm</title><p title=\"2 mm\">2 mm</p><svg><text>2 mm</text></svg><td>0.5 mm</td>";
+        let page = "<title>2 mm</title><p title=\"2 mm\">2 mm</p><svg><text>2 mm</text></svg>\
+            <span class=\"small\">A/25 + 0.7 mm</span><td>0.5 mm</td>";
         let said = page_with_inches(page);
         assert!(said.starts_with("<title>2 mm</title><p title=\"2 mm\">2 mm (0.0787\u{202f}in)</p><svg>"));
-        assert!(said.ends_with("<text>2 mm</text></svg><td>0.5 mm (0.0197\u{202f}in)</td>"), "{said}");
+        assert!(said.ends_with("+ 0.7 mm</span><td>0.5 mm (0.0197\u{202f}in)</td>"), "{said}");
     }
 }
