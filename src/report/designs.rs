@@ -38,12 +38,13 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         }
     };
     let said = all.in_words();
-    let first = html! { div.first {
+    let has_walks = !all.model_leaves_out.is_empty();
+    let first = html! { div.first[has_walks] {
         section.verdict {
             p.word.long { (clean(&said[0])) "." }
             ul { @for said in &said[1..] { li { (clean(said)) "." } } }
         }
-        @if !all.model_leaves_out.is_empty() {
+        @if has_walks {
             (leaves_out(&all.model_leaves_out, &html! {
                 p { "The boundaries of the walk are the model’s. They do not replace a filter test or a \
                     designer’s judgement." }
@@ -131,8 +132,11 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     if !walked.is_empty() {
         figure.add_points("no erosion by walk", walked.iter().map(|of| point(of).hollow()));
     }
-    let caption = "Full: the strictest limit of practice of each sample. Hollow: the D15F up to which the walk \
-                   shows no erosion. Square: the sample that governs. The dashed line is the greatest D15F \
-                   that serves all samples that have one.";
+    let hollow =
+        if walked.is_empty() { "" } else { " Hollow: the D15F up to which the walk shows no erosion." };
+    let caption = format!(
+        "The strictest limit of practice of each sample.{hollow} Square: the sample that governs. The dashed \
+         line is the greatest D15F that serves all samples that have one."
+    );
     Some(Drawn::new("designs", figure, caption))
 }
