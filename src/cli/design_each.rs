@@ -9,7 +9,8 @@ use super::print::{json, plain, shown, to_stdout};
 use super::progress::followed;
 use crate::run::RunError;
 use crate::store::format;
-use crate::study::design::{DesignOptions, SampleDesignOptions, each};
+use crate::study::design::DesignOptions;
+use crate::study::designs::{SampleDesignOptions, each};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::{DesignedSample, DesignedSamples};
 

@@ -13,7 +13,7 @@ const BETWEEN: [&str; 2] = [" to ", " and "];
 /// ```
 /// use voidwalk::outcome::with_inches;
 /// assert_eq!(with_inches("D15F up to 0.7 mm"), "D15F up to 0.7 mm (0.0276\u{202f}in)");
-/// assert_eq!(with_inches("from 0.25 to 1.1 mm, D15F"), "from 0.25 to 1.1 mm (0.00984 to 0.0433\u{202f}in), D15F");
+/// assert_eq!(with_inches("0.25 to 1.1 mm"), "0.25 to 1.1 mm (0.00984 to 0.0433\u{202f}in)");
 /// assert_eq!(with_inches("2 mm\u{b2}"), "2 mm\u{b2}");
 /// ```
 pub fn with_inches(sentence: &str) -> String {

@@ -215,7 +215,6 @@ impl FolderKind {
                 DESIGN[0],
                 DESIGN[1],
             ],
-            // The design of each sample stays.
             Self::Designs => &["designs.json", "designs.html", "designs.csv"],
             Self::Specification => &[
                 "specification.json",

@@ -210,7 +210,7 @@ impl DesignedSample {
 }
 
 impl DesignedSamples {
-    /// Of these rows, with those that govern: the least greatest D15F first, and of equal ones the finer base.
+    /// Of these rows, with those that govern: the least D15F first, and of equal ones the finer base.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
         let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
         let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));

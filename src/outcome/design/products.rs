@@ -54,8 +54,8 @@ pub const PRODUCTS: [Product; 5] = [
             (12.5, 90.0, 100.0),
             (19.0, 100.0, 100.0),
         ],
-        source: "AASHTO M 43, as table 703.01-1M of a highway specification cites it; the standard itself was \
-                 not read",
+        source: "AASHTO M 43, as table 703.01-1M of a highway specification cites it; the standard itself \
+                 was not read",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",

@@ -70,7 +70,7 @@ impl Default for DesignOptions {
 
 impl DesignOptions {
     /// Whether the settings say that the base is dispersive.
-    pub(super) fn says_dispersive(&self) -> bool {
+    pub(in crate::study) fn says_dispersive(&self) -> bool {
         let is_said = |setting: &String| {
             let said = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
             said == Some(("base.dispersive", "true"))

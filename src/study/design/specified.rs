@@ -74,7 +74,7 @@ fn no_filter_within(file: &Path, curves: &[NamedCurve]) -> Result<(), RunError> 
 }
 
 /// Refuses stones: a size in micrometres under a header in mm, most likely.
-pub(super) fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
+pub(in crate::study) fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
     match base.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
         Some(d85) => Err(RunError::Refused(format!("{}: {name}: {}", shown(file), no_base(d85)))),
         None => Ok(()),

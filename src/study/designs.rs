@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::super::file_names::numbered;
-use super::super::kept;
-use super::options::DesignOptions;
-use super::specified::is_a_base;
-use super::{drafts, run, work};
+use super::design::{DesignOptions, identity, is_a_base, run};
+use super::file_names::numbered;
+use super::kept;
 use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
@@ -93,11 +91,10 @@ impl Planned {
         let (mut folders, mut filter) = (Vec::new(), String::new());
         for (row, name) in rows.iter_mut().zip(names).filter(|_| !options.by_practice_alone) {
             let of_sample = options.of_sample(row, PathBuf::new());
-            let work_of = match drafts(&of_sample) {
-                Ok(drafted) => {
-                    let rows: Vec<_> = drafted.into_iter().map(|of| of.row).collect();
-                    filter = rows.first().map_or(filter, |row| row.case.record().filter.name);
-                    work(&rows, of_sample.bracket)
+            let work_of = match identity(&of_sample) {
+                Ok(of) => {
+                    filter = of.filter;
+                    of.work
                 }
                 Err(problem) => {
                     row.not_walked = problem.to_string();
@@ -133,8 +130,8 @@ impl Planned {
         if there.work == self.work {
             return Ok(Some(there));
         }
-        let problem = "holds the designs of other samples, or with other settings; name another folder or add \
-                       --overwrite";
+        let problem =
+            "holds the designs of other samples or settings; name another folder or add --overwrite";
         Err(RunError::Refused(format!("{}: {problem}", shown(out))))
     }
 
