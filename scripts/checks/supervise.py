@@ -52,6 +52,7 @@ FILES = {
     "filter.csv": "opening_mm,percent_finer\n4,100\n2,50\n1,0\n",
     "other.csv": "opening_mm,percent_finer\n2,100\n1.4,50\n0.7,0\n",
     "base.csv": "opening_mm,percent_finer\n0.4,100\n0.2,50\n0.08,0\n",
+    "samples.csv": "Sieve (mm),north,south\n0.4,100,100\n0.2,50,40\n0.08,0,0\n",
     "plan.toml": 'title = "two"\nseed = 5\n[set]\nreplicates = 2\nnetwork = { nx = 5, ny = 5, nz = 6 }\nbase = { n_base = 20000 }\n'
     'engine = "particles"\nrecord = { sensitivity = [] }\n[[factor]]\nname = "cu_b"\nsetting = "base.cu"\nvalues = [1.5, 3]\n',
 }
@@ -94,6 +95,7 @@ WORKS = {
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
     "design": ([*DESIGN, "--thickness", "6layers"], None, ["r"]),
+    "designs": (["design", "samples.csv", "--each", *DESIGN[2:], "--thickness", "6layers"], None, ["r"]),
     "specification": (["design", "base.csv", "--steps", "--out", "r", "-q"], None, ["r"]),
     "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
     "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "bias", "scaling", *STUDY], None, ["r"]),
@@ -131,8 +133,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "batch.json", "case.json")
-PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html", "batch.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "batch.json", "designs.json", "case.json")
+PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html", "batch.html", "designs.html")
 
 
 class Find(Exception):
@@ -535,13 +537,14 @@ class Trial:
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
             "precision": ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
             "design": DESIGN,
+            "designs": ["design", "samples.csv", "--each", *DESIGN[2:]],
         }
         if not os.path.exists(os.path.join(self.out, MARK)) and not self.is_campaign:
             return False
         if self.is_campaign and not os.path.isdir(os.path.join(self.out, "cases")):
             return False
         own = next(word for word in WORKS[self.command][0] if word != "python").replace("judge", "run")
-        own = "batch" if self.command == "batch" else own
+        own = self.command if self.command in ("batch", "designs") else own
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}

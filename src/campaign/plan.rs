@@ -30,6 +30,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use toml::de::DeTable;
 
 use crate::scene::{Origin, Scene, SceneError};
 use crate::schema::hints;
@@ -138,6 +139,16 @@ type Level = (String, Vec<String>);
 impl CampaignPlan {
     /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
     pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
+
+    /// Whether a file has what a plan alone has, whatever else is wrong with it.
+    pub fn is_plan(path: &Path) -> bool {
+        let bytes = read_regular(path, LARGEST_FILE).ok().flatten().unwrap_or_default();
+        hints::as_text(&bytes).is_ok_and(|text| match DeTable::parse(text) {
+            Ok(table) => hints::is_plan(table.get_ref()),
+            // No scene has a list of tables.
+            Err(_) => ["[[factor]]", "[[case]]"].iter().any(|head| text.contains(head)),
+        })
+    }
 
     /// Reads a plan and every scene in it.
     ///
@@ -293,7 +304,8 @@ impl PlannedCase {
     }
 }
 
-fn folder_name(name: &str) -> String {
+/// A name as that of a folder: one that is not plain ends with its hash.
+pub(crate) fn folder_name(name: &str) -> String {
     let safe = |c: char| if is_plain(c) { c } else { '_' };
     let plain: String = name.chars().take(120).map(safe).collect();
     if plain == name {

@@ -80,13 +80,13 @@ impl CampaignOptions {
 }
 
 /// Whether any two cases have one seed, and so may have networks in common.
-fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
+pub(super) fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
     let seeds: BTreeSet<u64> = cases.iter().map(|case| case.scene.walk.seed).collect();
     seeds.len() < cases.len()
 }
 
 /// Of what there is, what a case may take; and what the networks may that cases have in common.
-fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (ResourceLimits, Option<u64>) {
+pub(super) fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (ResourceLimits, Option<u64>) {
     let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
     limits.memory -= shared.unwrap_or(0);
     (limits, shared)

@@ -7,8 +7,8 @@ use clap::{Args, Parser, Subcommand};
 
 use super::exit::FailOn;
 use super::values::{
-    assignment, authority, bracket, decide, density, facets, form, lattice_size, length, seed, target_error,
-    threads, time,
+    assignment, authority, bracket, decide, density, facets, form, lattice_size, length, seed, sheet_units,
+    target_error, threads, time,
 };
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
@@ -17,7 +17,7 @@ use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
-use crate::scene::Density;
+use crate::scene::{Density, SheetUnits};
 use crate::store::format::Format;
 use crate::study::design::ThicknessList;
 use crate::study::precision::Tier;
@@ -200,7 +200,8 @@ pub struct ResultArgs {
 /// Which scene.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
-    /// Scene (TOML) [default: the built-in scene, a loose filter of Cu 1.5 and a base of Cu 1.5 at Dc5]
+    /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
+    /// 1.5 and a base of Cu 1.5 at Dc5]
     pub scene: Option<PathBuf>,
     /// What is set in it, and how it is prepared.
     #[command(flatten)]
@@ -244,7 +245,8 @@ pub struct SoilArgs {
     pub file: Option<PathBuf>,
     /// Write a workbook to fill in into this new file, and read nothing: a base and a filter as examples
     #[cfg(feature = "xlsx")]
-    #[arg(long, value_name = "FILE.xlsx", conflicts_with_all = ["file", "d0_mm", "figure", "json"])]
+    #[arg(long, value_name = "FILE.xlsx", conflicts_with_all = ["file", "d0_mm", "figure", "names",
+          "json"])]
     pub template: Option<PathBuf>,
     /// Finest size of a table whose finest percent is not 0
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
@@ -255,6 +257,9 @@ pub struct SoilArgs {
     /// Coarse sizes on the left of the figure, as in the United States
     #[arg(long, requires = "figure")]
     pub coarse_left: bool,
+    /// Print the names alone, one a line, as a command line takes them: FILE#NAME of one of several soils
+    #[arg(long, conflicts_with_all = ["d0_mm", "figure", "json"])]
+    pub names: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -430,8 +435,14 @@ pub struct ReproduceArgs {
 #[derive(Debug, Args)]
 pub struct DesignArgs {
     /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
-    /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope
+    /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope;
+    /// with --each also a folder of tables
     pub base: Option<PathBuf>,
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: a
+    /// design for each, one table and the samples that govern in --out [default: voidwalk-designs]. The same
+    /// command continues what was stopped or killed. With --steps nothing is walked
+    #[arg(long, requires = "base", conflicts_with_all = ["inverse", "authority"])]
+    pub each: bool,
     /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
     /// sieve and standard products
     #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
@@ -441,6 +452,9 @@ pub struct DesignArgs {
     /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]
     pub sieves: SieveSeries,
+    /// Units of page and terminal: us has inches beside mm, metric has none (about.units)
+    #[arg(long, value_name = "UNITS", value_parser = sheet_units)]
+    pub units: Option<SheetUnits>,
     /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
     #[arg(long)]
     pub dispersive: bool,

@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use super::args::{SceneArgs, SettingArgs};
+use super::check_plan::check_plan;
 use super::print::{count, json, plain, to_stdout};
 use super::values::with_options;
+use crate::campaign::CampaignPlan;
 use crate::constrictions::shipped;
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
@@ -42,8 +44,11 @@ impl SceneArgs {
     }
 }
 
-/// Says what a run would do.
+/// Says what a run would do, or the cases of a plan.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
+    if let Some(plan) = args.scene.as_deref().filter(|file| CampaignPlan::is_plan(file)) {
+        return check_plan(plan, &args.set);
+    }
     let check = run::check(args.scene()?, &args.set.prepare(None))?;
     to_stdout(&if args.set.json { json(format::CHECK, &check)? } else { words(&check) });
     check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))

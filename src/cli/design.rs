@@ -1,6 +1,7 @@
 //! `voidwalk design`: how coarse a filter may be.
 
 use super::args::DesignArgs;
+use super::design_each::design_each;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::specification;
@@ -8,6 +9,7 @@ use super::values::{of_soils, with_options};
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::record::Confidence;
+use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError};
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
@@ -17,12 +19,13 @@ use crate::verdict::words::capital;
 
 /// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    if let (true, Some(base)) = (args.steps, &args.base) {
+    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
         return specification(args, base);
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
     let [dispersive, _] = of_soils(args.dispersive, None);
-    let settings = with_options(&args.settings, [("--seed", seed), dispersive])?;
+    let units = args.units.map(|units| format!("about.units={}", units.name()));
+    let settings = with_options(&args.settings, [("--seed", seed), dispersive, ("--units", units)])?;
     let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),
@@ -45,6 +48,9 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
             threads: args.threads,
         },
     };
+    if let (true, Some(samples)) = (args.each, &args.base) {
+        return design_each(args, samples, options);
+    }
     let found = followed(args.quiet, |callbacks| design::run(&options, callbacks))?;
     if args.json {
         to_stdout(&json(format::DESIGN, &found)?);
@@ -92,7 +98,8 @@ fn words(design: &Design) -> String {
     }
     lines.push(left_out_in_brief(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
-    lines.into_iter().map(|line| plain(&line) + "\n").collect()
+    let said = |line: String| if design.shows_inches() { with_inches(&line) } else { line };
+    lines.into_iter().map(|line| plain(&said(line)) + "\n").collect()
 }
 
 fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {

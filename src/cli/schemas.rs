@@ -5,6 +5,7 @@ use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
 use super::soil::Soils;
+use crate::campaign::PlanCheck;
 use crate::constrictions::Summary;
 use crate::outcome::comparison::Comparison;
 use crate::outcome::design::{Design, Specification};
@@ -17,7 +18,7 @@ use crate::outcome::record::{Manifest, Outcome};
 use crate::run::{Check, Reproduced};
 use crate::scene::SceneReference;
 use crate::store::format::{self, Format};
-use crate::verdict::{PairRules, WalkedBatch};
+use crate::verdict::{DesignedSamples, PairRules, WalkedBatch};
 
 /// Writes the schemas anew where this variable is set.
 const UPDATE: &str = "VOIDWALK_UPDATE_SCHEMAS";
@@ -28,6 +29,7 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::OUTCOME, of::<Outcome>()),
         (format::MANIFEST, of::<Manifest>()),
         (format::DESIGN, of::<Design>()),
+        (format::DESIGNS, of::<DesignedSamples>()),
         (format::SPECIFICATION, of::<Specification>()),
         (format::COMPARISON, of::<Comparison>()),
         (format::BATCH, of::<WalkedBatch>()),
@@ -39,6 +41,7 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::PRECISION, of::<Precision>()),
         (format::SERVE, of::<Nothing>()),
         (format::CHECK, of::<Check>()),
+        (format::PLAN_CHECK, of::<PlanCheck>()),
         (format::RULES, of::<PairRules>()),
         (format::SOILS, of::<Soils>()),
         (format::REPRODUCED, of::<Reproduced>()),

@@ -16,7 +16,7 @@ use crate::constrictions::shipped;
 use crate::outcome::rules::Authority;
 use crate::packing::LengthUnit;
 use crate::run::RunError;
-use crate::scene::{Density, LibraryDensity, Scene};
+use crate::scene::{Density, LibraryDensity, Scene, SheetUnits};
 use crate::schema::KeyInfo;
 use crate::store::format::FORMATS;
 use crate::store::{StoreError, write_whole};
@@ -31,23 +31,64 @@ fn script(shell: Shell) -> String {
     let mut script = Vec::new();
     generate(shell, &mut with_values(shell), "voidwalk", &mut script);
     let mut script = String::from_utf8_lossy(&script).into_owned();
-    if shell == Shell::Bash {
-        script.push_str(BASH_SETTINGS);
-    }
+    script.push_str(match shell {
+        Shell::Bash => BASH_MORE,
+        Shell::Zsh => ZSH_MORE,
+        Shell::Fish => FISH_MORE,
+        _ => "",
+    });
     script
 }
 
-/// In bash nothing is put behind `base.cu=`, where its value is still to come.
-const BASH_SETTINGS: &str = "
+/// In bash the soils of a file stand behind `FILE#`, and nothing behind `base.cu=`, where its value is still
+/// to come.
+const BASH_MORE: &str = r##"
 _voidwalk_and_values() {
-    _voidwalk \"$@\"
+    local word="${COMP_WORDS[COMP_CWORD]}" quote="" name
+    case $word in \"*|\'*) quote=${word:0:1} word=${word:1} ;; *) word=${word//\\/} ;; esac
+    COMPREPLY=()
+    if [[ $word == *"#"* && -f ${word%%"#"*} ]]; then
+        while IFS= read -r name; do
+            [[ $name == "$word"* ]] || continue
+            if [[ -n $quote ]]; then COMPREPLY+=("$name"); else COMPREPLY+=("$(printf %q "$name")"); fi
+        done < <("$1" soil "${word%%"#"*}" --names 2>/dev/null)
+        return
+    fi
+    _voidwalk "$@"
     if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]]; then
         compopt -o nospace 2>/dev/null
     fi
 }
 complete -F _voidwalk_and_values -o nosort -o bashdefault -o default voidwalk 2>/dev/null ||
     complete -F _voidwalk_and_values -o bashdefault -o default voidwalk
-";
+"##;
+
+/// The soils of a file behind `FILE#`, in zsh.
+const ZSH_MORE: &str = r#"
+_voidwalk_and_soils() {
+    local word=${(Q)words[CURRENT]}
+    if [[ $word == *'#'* && -f ${word%%'#'*} ]]; then
+        local -a soils
+        soils=(${(f)"$($words[1] soil ${word%%'#'*} --names 2>/dev/null)"})
+        compadd -a soils
+    else
+        _voidwalk "$@"
+    fi
+}
+compdef _voidwalk_and_soils voidwalk
+"#;
+
+/// The same in fish.
+const FISH_MORE: &str = r#"
+function __voidwalk_soils
+    set -l word (string unescape -- (commandline -ct))
+    set -l file (string split -m1 '#' -- $word)[1]
+    if string match -q '*#*' -- $word; and test -f "$file"
+        voidwalk soil $file --names 2>/dev/null
+    end
+end
+complete -c voidwalk -a '(__voidwalk_soils)'
+"#;
 
 /// The program's arguments with the values that each may have. What may be a file as well has them in bash
 /// alone, which goes on to files where none of them fits.
@@ -69,6 +110,7 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
         "settings" => assignments(),
         "authority" => named(&Authority::ALL.map(Authority::word)),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
+        "units" => named(&SheetUnits::ALL.map(SheetUnits::name)),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
         "facets" => named(&FACETS.map(|(word, _)| word)),
         "tiers" => named(&Tier::ALL.map(Tier::name)),

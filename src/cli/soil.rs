@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::args::SoilArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::case::CaseError;
-use crate::gradation::{SoilSummary, soils_in_file};
+use crate::gradation::{SoilSummary, samples_in, soils_in_file};
 #[cfg(feature = "xlsx")]
 use crate::report::soil_template;
 use crate::report::soils_figure;
@@ -30,6 +30,11 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
         return template(path);
     }
     let Some(file) = &args.file else { return Err(RunError::refused("name a file of soils")) };
+    if args.names {
+        let samples = samples_in(file).map_err(RunError::refused)?;
+        to_stdout(&samples.iter().map(|sample| format!("{}\n", shown(&sample.path))).collect::<String>());
+        return Ok(());
+    }
     let soils = soils_in_file(file, args.d0_mm).map_err(CaseError::from)?;
     if let Some(path) = &args.figure {
         let curves = soils.iter().map(|soil| (soil.name.as_str(), soil.points.as_slice()));

@@ -8,7 +8,9 @@ use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
 use crate::outcome::design::specification::{ProductMargin, Specification};
 use crate::outcome::numbers::{significant, trimmed};
+use crate::outcome::with_inches;
 use crate::run::RunError;
+use crate::scene::SheetUnits;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
 
@@ -22,6 +24,7 @@ pub(super) fn specification(args: &DesignArgs, base: &Path) -> Result<(), RunErr
         base: base.to_owned(),
         dispersive: args.dispersive,
         sieves: args.sieves,
+        inches: args.units == Some(SheetUnits::Us),
         out: out.clone(),
         overwrite: args.overwrite,
     };
@@ -37,6 +40,8 @@ pub(super) fn specification(args: &DesignArgs, base: &Path) -> Result<(), RunErr
 /// Steps, limits and products.
 fn words(of: &Specification) -> String {
     let mut text = String::new();
+    // Formulas and titles of sources stay as they are written.
+    let sized = |said: &str| if of.inches { with_inches(said) } else { said.to_owned() };
     // Writing to a string cannot fail.
     let mut line = |said: &str| {
         let _ = writeln!(text, "{}", plain(said).trim_end());
@@ -47,12 +52,13 @@ fn words(of: &Specification) -> String {
         line(&format!("{:>2}  {}", step.step, step.does));
         for value in &step.values {
             let number = value.words().unwrap_or_else(|| "not known".into());
-            line(&format!("      {}: {number}", value.name));
+            line(&sized(&format!("      {}: {number}", value.name)));
         }
         // What several steps in a row rest on is said once.
         let again = std::mem::replace(&mut source, step.source.as_str()) == step.source;
         let source = if again { "" } else { step.source.as_str() };
-        let more = [step.formula.as_str(), step.note.as_str(), source];
+        let note = sized(&step.note);
+        let more = [step.formula.as_str(), note.as_str(), source];
         more.into_iter()
             .filter(|text| !text.is_empty())
             .flat_map(|text| wrapped(text, 6))
@@ -60,7 +66,7 @@ fn words(of: &Specification) -> String {
     }
     line("");
     if let Some(why) = &of.no_band {
-        line(&format!("No band. {why}"));
+        line(&sized(&format!("No band. {why}")));
     }
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
@@ -73,11 +79,12 @@ fn words(of: &Specification) -> String {
                 trimmed(limit.max_percent_finer)
             ));
         }
-        of.beside_limits().iter().flat_map(|text| wrapped(text, 0)).for_each(|text| line(&text));
+        let beside = of.beside_limits().map(|said| sized(&said));
+        beside.iter().flat_map(|text| wrapped(text, 0)).for_each(|text| line(&text));
         line("");
     }
     for product in &of.products {
-        line(&format!(
+        line(&sized(&format!(
             "{}, D15 {} to {} mm: {}",
             product.product,
             significant(product.d15_fine_mm),
@@ -91,7 +98,7 @@ fn words(of: &Specification) -> String {
                 }
                 None => "no result",
             }
-        ));
+        )));
         line(&format!("    {}", margins(product)));
     }
     if let Some(nearest) = of.nearest_product() {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::constrictions::Facets;
 use crate::outcome::rules::Authority;
 use crate::run::RunError;
-use crate::scene::Density;
+use crate::scene::{Density, SheetUnits};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::format::{FORMATS, Format};
 
@@ -65,6 +65,12 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
 pub(super) fn authority(text: &str) -> Result<Authority, String> {
     let words = Authority::ALL.map(Authority::word).join(", ");
     Authority::named(text).ok_or_else(|| format!("one of {words}"))
+}
+
+/// What a sheet shows beside mm.
+pub(super) fn sheet_units(text: &str) -> Result<SheetUnits, String> {
+    let named = SheetUnits::ALL.into_iter().find(|units| units.name() == text);
+    named.ok_or_else(|| SheetUnits::ALL.map(SheetUnits::name).join(" or "))
 }
 
 /// The form of a file of JSON, by its name.

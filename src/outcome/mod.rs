@@ -19,7 +19,7 @@
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`numbers`] is how a page writes a number.
+//!   [`numbers`] is how a page writes a number; [`with_inches`] has inches behind lengths.
 
 mod applied;
 mod base_size;
@@ -31,6 +31,7 @@ mod curve_range;
 pub mod design;
 pub(crate) mod digits;
 pub(crate) mod early_stop;
+mod inches;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
@@ -59,6 +60,7 @@ pub mod verdict;
 
 pub use base_size::BaseSize;
 pub(crate) use base_size::three;
+pub use inches::{page_with_inches, with_inches};
 pub use infiltration::infiltration;
 pub(crate) use least_squares::{Straight, log_log_slope};
 pub(crate) use metrics::eroded_mass_fraction;

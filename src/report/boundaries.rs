@@ -2,7 +2,7 @@
 //! lines on the sheet of gradations.
 
 use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
-use super::numbers::SizeUnit;
+use super::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{Outcome, RuleQuantity};
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION};
 
@@ -53,7 +53,9 @@ pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
     }
     let one = |(place, limit, at_most): &Boundary| {
         let at_most = if *at_most { " or less" } else { "" };
-        format!("{} {}{at_most}", LIMITS[*place].3, unit.size(*limit))
+        // As in the table of rules: no more than the limit.
+        let size = format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside(*limit));
+        format!("{} {size}{at_most}", LIMITS[*place].3)
     };
     let all: Vec<String> = boundaries.iter().map(one).collect();
     format!(

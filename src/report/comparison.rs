@@ -8,6 +8,7 @@ use super::cases;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
+use super::first_page::colour;
 use super::names::soil_name;
 use super::numbers::threshold;
 use super::run_figures::run_name;
@@ -22,6 +23,9 @@ use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
+
+/// How the line of practice begins where a rule of retention is broken.
+const NOT_MET: &str = "not met";
 
 /// Writes `compare.html` and `figures/*.svg` into the folder of a comparison.
 ///
@@ -168,12 +172,16 @@ fn lead(comparison: &Comparison) -> String {
 fn answers(comparison: &Comparison) -> Markup {
     html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
         @let headline = if case.headline.is_empty() { case.verdict.words() } else { &case.headline };
-        p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
-        ul {
-            @for (line, said) in [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)] {
-                @if !said.is_empty() { li { b { (line) } ": " (unbroken(said)) "." } }
+        @let fails = case.practice.starts_with(NOT_MET);
+        section.verdict.(colour(case.verdict, case.confidence, fails)) {
+            p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
+            ul {
+                @let lines = [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)];
+                @for (line, said) in lines {
+                    @if !said.is_empty() { li { b { (line) } ": " (unbroken(said)) "." } }
+                }
+                @if !case.by_authority.is_empty() { li { (unbroken(&case.by_authority)) } }
             }
-            @if !case.by_authority.is_empty() { li { (unbroken(&case.by_authority)) } }
         }
     } }
 }

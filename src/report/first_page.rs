@@ -107,7 +107,8 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
     let [(_, headline), lines @ ..] = outcome.first_lines();
     let (foremost, more) = outcome.foremost();
     html! {
-        section.verdict.(colour(outcome)) {
+        @let fails = standing(&outcome.rules) == Standing::Fails;
+        section.verdict.(colour(outcome.verdict, outcome.confidence, fails)) {
             p.word { (clean(&capital(&headline))) "." }
             @for (name, said) in &lines { p.practice { b { (name) } ": " (unbroken(said)) "." } }
             @if !foremost.is_empty() {
@@ -120,12 +121,11 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
 
 /// The colour of the answer: never green where the model was not checked or practice does not agree, and
 /// never that of a filter that holds where practice says that it does not.
-fn colour(outcome: &Outcome) -> &'static str {
-    let fails = standing(&outcome.rules) == Standing::Fails;
-    match outcome.verdict {
+pub(super) fn colour(verdict: Verdict, confidence: Confidence, fails: bool) -> &'static str {
+    match verdict {
         Verdict::Continuing => "continuing",
         Verdict::Some | Verdict::Undecided if fails => "continuing",
-        Verdict::None if fails || outcome.confidence != Confidence::Within => "doubted",
+        Verdict::None if fails || confidence != Confidence::Within => "doubted",
         Verdict::None => "none",
         Verdict::Some => "some",
         Verdict::Undecided => "undecided",

@@ -5,8 +5,9 @@
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
 //! against run time; [`write_comparison()`] that of several cases side by side, [`write_batch()`]
-//! that of many samples against filters, [`write_design()`] that of a
-//! design and [`write_specification()`] that of a specification by practice alone. They write
+//! that of many samples against filters, [`write_design()`] that of a design, [`write_designs()`]
+//! that of the designs of many samples, and [`write_specification()`] that of a specification by
+//! practice alone. They write
 //! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages without a folder
@@ -40,6 +41,7 @@ mod cases;
 mod comparison;
 mod connectivity;
 mod design;
+mod designs;
 mod error;
 mod export;
 pub mod figures;
@@ -74,6 +76,7 @@ pub use batch::write_batch;
 pub use campaign::{campaign_page, write_campaign};
 pub use comparison::write_comparison;
 pub use design::write_design;
+pub use designs::write_designs;
 pub use error::ReportError;
 pub use export::{Exported, export};
 pub use folder::RunTexts;

@@ -8,6 +8,7 @@ use maud::{Markup, PreEscaped, html};
 use super::error::ReportError;
 use super::shell::{Drawn, contents, figure, whole_page};
 use super::written::{Written, write_page_as};
+use crate::outcome::page_with_inches;
 
 /// A page that is put together from above.
 pub(super) struct Sections {
@@ -15,13 +16,19 @@ pub(super) struct Sections {
     header: Markup,
     main: String,
     drawn: Vec<Drawn>,
+    inches: bool,
 }
 
 impl Sections {
     /// A page with its title for a browser, its first heading, and below that what it is about.
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
-        Self { title: title.into(), header, main: String::new(), drawn: Vec::new() }
+        Self { title: title.into(), header, main: String::new(), drawn: Vec::new(), inches: false }
+    }
+
+    /// With inches behind every length in mm, or without.
+    pub(super) fn inches(self, inches: bool) -> Self {
+        Self { inches, ..self }
     }
 
     /// With words, or a table.
@@ -54,7 +61,8 @@ impl Sections {
 
     /// The page as text, with this at its end.
     pub(super) fn text(&self, footer: &Markup) -> String {
-        whole_page(&self.title, &self.header, &PreEscaped(self.main.clone()), footer)
+        let main = if self.inches { page_with_inches(&self.main) } else { self.main.clone() };
+        whole_page(&self.title, &self.header, &PreEscaped(main), footer)
     }
 
     /// Writes the figures and then the page, with this at its end, under its name in the folder.

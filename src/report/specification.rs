@@ -8,7 +8,7 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
-use super::numbers::{known, rounded_down, rounded_up, significant, trimmed};
+use super::numbers::{SizeUnit, known, rounded_down, rounded_up, significant, trimmed};
 use super::section::Sections;
 use super::shell::{Drawn, clean};
 use super::table::Table;
@@ -40,6 +40,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
+        .inches(of.inches)
         .words(&answer(&of))
         .figures(stated.figure)
         .section("Limits sieve by sieve", &stated.limits)
@@ -150,6 +151,7 @@ fn limits(of: &Specification) -> Markup {
     let Some(band) = &of.band else {
         return html! { @if let Some(why) = &of.no_band { p { (clean(why)) } } };
     };
+    let unit = SizeUnit::of(false, of.inches);
     html! {
         (Table::of(&of.limits)
             .name("Sieve", |limit| clean(&limit.sieve))
@@ -164,8 +166,8 @@ fn limits(of: &Specification) -> Markup {
         }
         (Table::of(&band.sizes)
             .name("Size of the band", |size| format!("D{}", size.percent))
-            .number("Least (mm)", |size| rounded_up(size.min_mm))
-            .number("Greatest (mm)", |size| rounded_down(size.max_mm))
+            .number("Least (mm)", |size| rounded_up(size.min_mm) + &unit.beside(size.min_mm))
+            .number("Greatest (mm)", |size| rounded_down(size.max_mm) + &unit.beside(size.max_mm))
             .render())
     }
 }
@@ -189,12 +191,13 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
     };
-    let drainage_open = of.d15f_min_at_most;
+    let (drainage_open, unit) = (of.d15f_min_at_most, SizeUnit::of(false, of.inches));
     let mut table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
         .number("D15, fine to coarse side (mm)", |of| {
-            format!("{} to {}", significant(of.d15_fine_mm), significant(of.d15_coarse_mm))
+            let size = |mm: f64| significant(mm) + &unit.beside(mm);
+            format!("{} to {}", size(of.d15_fine_mm), size(of.d15_coarse_mm))
         })
         .number("Drains: finest D15 / least D15F", |of| margin(of.drains_by))
         .number("Retains: greatest D15F / coarsest D15", |of| margin(of.holds_by))

@@ -52,6 +52,8 @@ pub enum FolderKind {
     Batch,
     /// How coarse a filter may be.
     Design,
+    /// How coarse a filter may be for each of many samples.
+    Designs,
     /// The specification of a filter by practice alone.
     Specification,
     /// Sheets and jobs of a page on this machine.
@@ -62,7 +64,7 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
@@ -71,6 +73,7 @@ impl FolderKind {
         Self::Comparison,
         Self::Batch,
         Self::Design,
+        Self::Designs,
         Self::Specification,
         Self::Serve,
         Self::Constrictions,
@@ -87,6 +90,7 @@ impl FolderKind {
             Self::Comparison => "comparison",
             Self::Batch => "batch",
             Self::Design => "design",
+            Self::Designs => "set of designs",
             Self::Specification => "specification",
             Self::Serve => "page's sheets and jobs",
             Self::Constrictions => "set of constrictions",
@@ -104,6 +108,7 @@ impl FolderKind {
             Self::Comparison => format::COMPARISON,
             Self::Batch => format::BATCH,
             Self::Design => format::DESIGN,
+            Self::Designs => format::DESIGNS,
             Self::Specification => format::SPECIFICATION,
             Self::Serve => format::SERVE,
             Self::Constrictions => format::CONSTRICTIONS,
@@ -120,9 +125,9 @@ impl FolderKind {
         !matches!(self, Self::Constrictions | Self::Serve)
     }
 
-    /// Whether it holds cases that continue by themselves, each in a run folder of its own.
+    /// Whether it holds cases that continue by themselves, each in a folder of its own.
     pub(crate) fn has_cases(self) -> bool {
-        matches!(self, Self::Comparison | Self::Batch)
+        matches!(self, Self::Comparison | Self::Batch | Self::Designs)
     }
 
     /// What else marks such a folder, finished or not.
@@ -136,6 +141,7 @@ impl FolderKind {
             Self::Comparison => &["walks"],
             Self::Batch => &["pairs"],
             Self::Design => &DESIGN,
+            Self::Designs => &["samples"],
             // Versions that wrote no record had them.
             Self::Serve => &["sheets"],
             _ => &[],
@@ -209,6 +215,7 @@ impl FolderKind {
                 DESIGN[0],
                 DESIGN[1],
             ],
+            Self::Designs => &["designs.json", "designs.html", "designs.csv"],
             Self::Specification => &[
                 "specification.json",
                 "specification.html",
@@ -254,6 +261,7 @@ impl FolderKind {
             Self::Comparison => &["compared-runs", "compared-differences"],
             Self::Batch => &["batch-limits", "batch-eroded"],
             Self::Design => &["design", "specification"],
+            Self::Designs => &["designs"],
             Self::Specification => &["specification"],
             Self::Campaign | Self::Serve | Self::Constrictions => &[],
         }

@@ -22,7 +22,7 @@ use serde::Serialize;
 pub use crate::schema::{Origin, SceneError};
 pub use keys::{
     About, Base, CurveSource, Density, ExitKeys, Filter, FilterPacking, LibraryDensity, NetworkKeys,
-    NetworkMadeOf, Record, Regrade, WalkKeys,
+    NetworkMadeOf, Record, Regrade, SheetUnits, WalkKeys,
 };
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,

@@ -46,6 +46,8 @@ formats! {
     MANIFEST = "manifest" / 1, "manifest.json";
     /// How coarse a filter may be.
     DESIGN = "design" / 1, "design.json";
+    /// How coarse a filter may be for each of many samples.
+    DESIGNS = "designs" / 1, "designs.json";
     /// The specification of a filter by practice alone.
     SPECIFICATION = "specification" / 1, "specification.json";
     /// Several cases side by side.
@@ -68,6 +70,8 @@ formats! {
     SERVE = "serve" / 1, "serve.json";
     /// What a run would do.
     CHECK = "check" / 1, "voidwalk check --json";
+    /// What the cases of a plan would take.
+    PLAN_CHECK = "plan-check" / 1, "voidwalk check PLAN --json";
     /// The rules of practice for two soils.
     RULES = "rules" / 1, "voidwalk rules --json";
     /// The soils of a file.

@@ -5,6 +5,8 @@
 //! its seed alone, so the whole is that of a study that nobody stopped. A comparison or a batch keeps no such
 //! file: its cases are run folders, each of which continues by itself.
 
+use std::path::Path;
+
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::xxh3_128;
@@ -14,8 +16,9 @@ use crate::run::error::RunError;
 use crate::run::folder::{DESIGN, FolderKind, LATTICES, STUDY, clear, shown};
 use crate::run::results::json;
 use crate::run::unfinished::{self, Unfinished};
-use crate::store::Folder;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
+use crate::store::format::from_json;
+use crate::store::{Folder, read_whole};
 
 /// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
 /// start of it found, and not at all where all but its page is there. `study` writes its tables; then come
@@ -68,6 +71,17 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     folder.remove_all(kept.files)?;
     unfinished::end(folder)?;
     Ok(record)
+}
+
+/// The record of a finished folder.
+///
+/// # Errors
+/// It cannot be read.
+pub(super) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
+    let path = folder.join(kind.record());
+    let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
+    let bytes = read_whole(&path).map_err(|error| failed(&error))?;
+    from_json(&bytes).map_err(|error| failed(&error))
 }
 
 /// Keeps what is found in a folder.

@@ -4,6 +4,7 @@
 pub mod batch;
 pub mod compare;
 pub mod design;
+pub mod designs;
 mod file_names;
 mod kept;
 mod of_cases;

@@ -14,7 +14,7 @@ use crate::outcome::record::Outcome;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
-use crate::store::{Folder, read_whole};
+use crate::store::Folder;
 
 /// A study of cases.
 pub(super) struct StudyOfCases<'a> {
@@ -114,8 +114,5 @@ impl StudyOfCases<'_> {
 
 /// The outcome of a case that is done.
 pub(super) fn outcome(case: &Path) -> Result<Outcome, RunError> {
-    let path = case.join(FolderKind::Run.record());
-    let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
-    let bytes = read_whole(&path).map_err(|error| failed(&error))?;
-    serde_json::from_slice(&bytes).map_err(|error| failed(&error))
+    kept::record(case, FolderKind::Run)
 }

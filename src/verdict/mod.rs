@@ -9,6 +9,7 @@
 //! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
+//! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
@@ -27,6 +28,7 @@ pub(crate) mod beside;
 pub(crate) mod by_authority;
 mod conclusion;
 mod design;
+mod designed_samples;
 mod entry;
 pub(crate) mod evidence;
 pub(crate) mod finding;
@@ -50,6 +52,7 @@ pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
 pub use conclusion::FOREMOST;
 pub use design::{FinestBase, design_answer};
+pub use designed_samples::{DesignedSample, DesignedSamples, SampleDesign};
 pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;

@@ -300,6 +300,26 @@ fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
     }
 }
 
+/// Behind `FILE#` bash offers the soils of that very file, quoted where their names have blanks.
+#[test]
+fn bash_completes_the_soils_of_a_file() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("site.csv"), "mm,North 1,South 2\n2,100,100\n1,50,40\n0.5,0,0\n").unwrap();
+    let asked = "source <(\"$1\" completions bash); COMP_WORDS=(voidwalk judge \"$2\"); COMP_CWORD=2; \
+                 _voidwalk_and_values \"$1\" \"$2\" judge; printf '%s\\n' \"${COMPREPLY[@]}\"";
+    let completed = |word: &str| {
+        let words = ["-c", asked, "bash", env!("CARGO_BIN_EXE_voidwalk"), word];
+        let bash = Command::new("bash").args(words).current_dir(root.path()).output().unwrap();
+        String::from_utf8(bash.stdout).unwrap()
+    };
+    assert_eq!(completed("site.csv#"), "site.csv#North\\ 1\nsite.csv#South\\ 2\n");
+    assert_eq!(completed("site.csv#North\\ "), "site.csv#North\\ 1\n");
+    assert_eq!(completed("\"site.csv#S"), "site.csv#South 2\n");
+    assert_eq!(completed("gone.csv#").trim(), "");
+    let names = voidwalk(root.path(), &["soil", "site.csv", "--names"]);
+    assert_eq!(String::from_utf8(names.stdout).unwrap(), "site.csv#North 1\nsite.csv#South 2\n");
+}
+
 /// What a shell and `man` are given, and what the program says of itself.
 #[test]
 fn shells_and_man_know_every_command() {

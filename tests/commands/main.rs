@@ -9,6 +9,7 @@ mod checkpoints;
 mod compare;
 mod contract;
 mod design;
+mod designs;
 mod first_hour;
 mod formats;
 mod full_disk;

@@ -118,7 +118,7 @@ pub fn specification(
 ) -> PyResult<String> {
     let sieves =
         sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
-    let options = SpecifyOptions { base, dispersive, sieves, out, overwrite };
+    let options = SpecifyOptions { base, dispersive, sieves, inches: false, out, overwrite };
     let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
 }

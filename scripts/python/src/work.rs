@@ -133,6 +133,7 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, AnyError> {
         FolderKind::Comparison => report::write_comparison(folder)?,
         FolderKind::Batch => report::write_batch(folder)?,
         FolderKind::Design => report::write_design(folder)?,
+        FolderKind::Designs => report::write_designs(folder)?,
         FolderKind::Specification => report::write_specification(folder)?,
         FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
     };

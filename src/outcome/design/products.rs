@@ -31,8 +31,7 @@ pub const PRODUCTS: [Product; 5] = [
             (4.75, 95.0, 100.0),
             (9.5, 100.0, 100.0),
         ],
-        source: "civilengineer.co.in/articles/grading-requirements-of-fine-aggregates, which cites Table 1 \
-                 of ASTM C33",
+        source: "ASTM C33, table 1, as others cite it; the standard itself was not read",
     },
     Product {
         name: "ASTM C33/D448 No. 8 stone",
@@ -43,9 +42,7 @@ pub const PRODUCTS: [Product; 5] = [
             (9.5, 85.0, 100.0),
             (12.5, 100.0, 100.0),
         ],
-        source: "a highway specification's table 703.01-1M (AASHTO M 43), at \
-                 muhaz.org/100-general-provisions.html?page=80; Colorado DOT's table 703-1 (from AASHTO \
-                 M 43) has the same limits",
+        source: "Colorado DOT, table 703-1, from AASHTO M 43",
     },
     Product {
         name: "ASTM C33/D448 No. 78 stone",
@@ -57,9 +54,8 @@ pub const PRODUCTS: [Product; 5] = [
             (12.5, 90.0, 100.0),
             (19.0, 100.0, 100.0),
         ],
-        source: "a highway specification's table 703.01-1M (AASHTO M 43), at \
-                 muhaz.org/100-general-provisions.html?page=80, whose No. 57, 67 and 8 are those of other \
-                 sources",
+        source: "AASHTO M 43, as table 703.01-1M of a highway specification cites it; the standard itself \
+                 was not read",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",
@@ -71,8 +67,7 @@ pub const PRODUCTS: [Product; 5] = [
             (25.0, 100.0, 100.0),
         ],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 5 (67), which sets \
-                 limits at these sieves and one of its own at 0.075 mm: \
-                 iowadot.gov/erl/current/IM/content/209ad.htm",
+                 limits at these sieves and one of its own at 0.075 mm",
     },
     Product {
         name: "ASTM C33/D448 No. 57 stone",
@@ -84,8 +79,7 @@ pub const PRODUCTS: [Product; 5] = [
             (37.5, 100.0, 100.0),
         ],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 3 (57), which sets \
-                 limits at these sieves and one of its own at 0.075 mm: \
-                 iowadot.gov/erl/current/IM/content/209ad.htm",
+                 limits at these sieves and one of its own at 0.075 mm",
     },
 ];
 

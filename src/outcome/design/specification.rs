@@ -23,6 +23,9 @@ pub struct Specification {
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
+    /// Whether inches stand beside mm on its page.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
     /// Every step, with its numbers.

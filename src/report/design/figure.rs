@@ -39,9 +39,9 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let row = least.or_else(|| rows().find(with_boundary)).or_else(|| rows().next())?;
     let walks: Vec<&WalkRow> = walks.iter().filter(|walk| is_of(row, walk)).collect();
     // In mm where the base has a size and stays as it is.
-    let (d85, unit) = match design.base.d85_mm.filter(|_| !design.inverse) {
-        Some(d85) => (d85, "D15F (mm)"),
-        None => (1.0, "D15F/D85B (–)"),
+    let (d85, axis, unit) = match design.base.d85_mm.filter(|_| !design.inverse) {
+        Some(d85) => (d85, "D15F (mm)", " mm"),
+        None => (1.0, "D15F/D85B (–)", ""),
     };
     let limits = of_rules(design, d85);
     let shown = walks.iter().map(|walk| walk.d15f_over_d85b * d85).chain(limits.iter().map(|of| of.1));
@@ -51,7 +51,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     if low > high {
         return None;
     }
-    let x = Axis::log(unit, low, if high > low { high } else { 2.0 * low });
+    let x = Axis::log(axis, low, if high > low { high } else { 2.0 * low });
     let ends = (x.low, x.high);
     let what = "Percent of the base eroded against D15F in both runs of every network, with the zones of no, \
                 some and continuing erosion and the limits of practice";
@@ -86,7 +86,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
         caption += " The other densities and thicknesses are in the table.";
     }
     let lines: Vec<String> =
-        limits.iter().map(|(rule, at)| format!("{} {}", rule.name, significant(*at))).collect();
+        limits.iter().map(|(rule, at)| format!("{} {}{unit}", rule.name, significant(*at))).collect();
     if !lines.is_empty() {
         caption += &format!(" Dotted: {}.", lines.join("; "));
     }

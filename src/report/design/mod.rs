@@ -58,6 +58,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
+        .inches(design.shows_inches())
         .words(&sheet)
         .figures(figure::erosion(&design, &walks))
         .contents()

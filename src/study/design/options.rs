@@ -68,6 +68,17 @@ impl Default for DesignOptions {
     }
 }
 
+impl DesignOptions {
+    /// Whether the settings say that the base is dispersive.
+    pub(in crate::study) fn says_dispersive(&self) -> bool {
+        let is_said = |setting: &String| {
+            let said = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+            said == Some(("base.dispersive", "true"))
+        };
+        self.settings.iter().any(is_said)
+    }
+}
+
 /// What a filter's thickness is stated in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Thickness {

@@ -25,6 +25,8 @@ pub struct SpecifyOptions {
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
+    /// Whether its page shows inches beside mm.
+    pub inches: bool,
     /// Folder for the results.
     pub out: PathBuf,
     /// Whether earlier results there are replaced.
@@ -44,9 +46,10 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let (dispersive, sieves) = (options.dispersive, options.sieves);
     let specified = SpecificationOptions { dispersive, sieves, walked_mm: None };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
+    let specification = Specification { inches: options.inches, ..specification };
     let kind = FolderKind::Specification;
     let folder = claim(&options.out, kind, options.overwrite)?;
-    let work = format!("{dispersive} {sieves} {bases:?}");
+    let work = format!("{dispersive} {sieves} {} {bases:?}", options.inches);
     kept::study((&folder, kind, options.overwrite), work, callbacks, |_, _: Option<()>| {
         write_tables(&folder, &specification)?;
         Ok(specification)
@@ -71,7 +74,7 @@ fn no_filter_within(file: &Path, curves: &[NamedCurve]) -> Result<(), RunError> 
 }
 
 /// Refuses stones: a size in micrometres under a header in mm, most likely.
-fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
+pub(in crate::study) fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
     match base.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
         Some(d85) => Err(RunError::Refused(format!("{}: {name}: {}", shown(file), no_base(d85)))),
         None => Ok(()),

@@ -19,6 +19,7 @@ use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::scene::SheetUnits;
 use crate::verdict::by_authority::of_design;
 use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
 
@@ -145,7 +146,9 @@ fn specification(
         sieves: options.sieves,
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };
-    Some(Specification::of(name, &[(name.to_owned(), given.clone())], specified))
+    let inches = row.stated.scene.about.units == Some(SheetUnits::Us);
+    let of = Specification::of(name, &[(name.to_owned(), given.clone())], specified);
+    Some(Specification { inches, ..of })
 }
 
 /// A row as its networks have it, and what they say against it.

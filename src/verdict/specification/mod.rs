@@ -67,6 +67,7 @@ impl Specification {
             base: name.into(),
             dispersive: options.dispersive,
             sieves: options.sieves,
+            inches: false,
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
             d15f_min_mm: d15f_min,

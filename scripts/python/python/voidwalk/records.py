@@ -1860,6 +1860,8 @@ class Specification(_Specification, total=False):
         Whether it was said to be dispersive.
     sieves
         The sieves at which the limits are stated.
+    inches
+        Whether inches stand beside mm on its page.
     curves
         The curves of the base, in the order of the file.
     steps
@@ -1880,6 +1882,7 @@ class Specification(_Specification, total=False):
         Standard products beside it; empty where neither limit of D15F is known.
     """
 
+    inches: bool
     d15f_min_at_most: bool
     no_band: Optional[str]
 

@@ -1,0 +1,166 @@
+//! What the cases of a plan would take, and what is wrong in them, before any of it is done.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::cases::{FailedCase, named, wanted};
+use super::plan::{CampaignPlan, PlannedCase};
+use super::run::{CampaignOptions, have_common_seeds, rooms};
+use crate::case::{Case, PackingPlan};
+use crate::run::error::RunError;
+use crate::run::machine::threads;
+use crate::run::planned::runs_to_walk;
+use crate::run::prepare::{Draft, PrepareOptions};
+use crate::run::replicates::have_networks;
+
+/// What the cases of a plan would take; sizes and times are estimates.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct PlanCheck {
+    /// The plan's file.
+    pub plan: String,
+    /// Its title.
+    pub title: String,
+    /// Its factors.
+    pub factors: Vec<String>,
+    /// Each case, in the order of the plan.
+    pub cases: Vec<CaseCheck>,
+    /// Packings of filters that the cases need, each once.
+    pub packings: u64,
+    /// How many of them are still to be made; until then sizes and times of their cases are guesses.
+    pub packings_to_make: u64,
+    /// Seconds of one core of this machine for these packings.
+    pub packing_core_seconds: f64,
+    /// Seconds of one core of this machine for all walks.
+    pub core_seconds: f64,
+    /// Memory of the largest case (bytes).
+    pub bytes: u64,
+    /// Memory that a case may take (bytes).
+    pub bytes_allowed: u64,
+}
+
+/// What one case would take.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct CaseCheck {
+    /// Its name.
+    pub case: String,
+    /// Base particles of a run.
+    pub n_base: u64,
+    /// Runs to walk.
+    pub runs_to_walk: u64,
+    /// Memory of a walk (bytes).
+    pub bytes: u64,
+    /// Seconds of one core of this machine for its walks.
+    pub core_seconds: f64,
+    /// What is wrong with it; empty for a sound case, whose other fields are 0 otherwise.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub problem: String,
+}
+
+impl PlanCheck {
+    /// Why the plan would be refused all the same: its cases that are wrong.
+    pub fn refusal(&self) -> Option<RunError> {
+        let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
+        let wrong = wrong.map(|of| FailedCase { case: of.case.clone(), problem: of.problem.clone() });
+        let wrong: Vec<FailedCase> = wrong.collect();
+        (!wrong.is_empty()).then(|| RunError::Refused(named(&wrong)))
+    }
+}
+
+/// Says what the cases of a plan would take, here and with these options, and what is wrong in each; packs
+/// nothing, claims nothing and writes nothing.
+///
+/// # Errors
+/// There is no such part of the plan, or no such folder of packings.
+pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<PlanCheck, RunError> {
+    let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
+    let wanted = wanted(plan, &options.part)?;
+    let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
+    let pool = threads(options.threads)?;
+    let workers = pool.current_num_threads() as u64;
+    let look = |planned: &PlannedCase| -> Result<(Case, Option<PackingPlan>), RunError> {
+        let (draft, guessed) = Draft::new(planned.scene.clone())?;
+        let made = match &draft.packing {
+            Some(packing) => options.packed(packing)?,
+            None => None,
+        };
+        let mut case = if made.is_some() { draft.case(made)? } else { guessed };
+        case.place(&limits, workers, &options.out)?;
+        have_networks(&case)?;
+        Ok((case, draft.packing))
+    };
+    let of = |planned: &PlannedCase| {
+        let looked = look(planned);
+        let none = CaseCheck {
+            case: planned.name.clone(),
+            n_base: 0,
+            runs_to_walk: 0,
+            bytes: 0,
+            core_seconds: 0.0,
+            problem: String::new(),
+        };
+        match looked {
+            Err(problem) => (CaseCheck { problem: problem.to_string(), ..none }, None),
+            Ok((case, packing)) => {
+                let bytes = case.readings().map(|of| of.bytes(of.n_base, workers) + of.kept_bytes()).max();
+                let check = CaseCheck {
+                    n_base: case.n_base,
+                    runs_to_walk: runs_to_walk(&case),
+                    bytes: bytes.unwrap_or(0),
+                    core_seconds: case.core_seconds_here(),
+                    ..none
+                };
+                (check, packing)
+            }
+        }
+    };
+    let looked: Vec<_> = pool.install(|| wanted.into_par_iter().map(of).collect());
+    let mut packings: BTreeMap<String, PackingPlan> = BTreeMap::new();
+    for packing in looked.iter().filter_map(|(_, packing)| packing.as_ref()) {
+        packings.entry(packing.fingerprint()).or_insert_with(|| packing.clone());
+    }
+    let is_missing = |packing: &&PackingPlan| matches!(options.packed(packing), Ok(None));
+    let missing: Vec<&PackingPlan> = packings.values().filter(is_missing).collect();
+    let cases: Vec<CaseCheck> = looked.into_iter().map(|(case, _)| case).collect();
+    Ok(PlanCheck {
+        plan: plan.file.clone(),
+        title: plan.title.clone(),
+        factors: plan.factors.clone(),
+        packings: packings.len() as u64,
+        packings_to_make: missing.len() as u64,
+        packing_core_seconds: missing.iter().map(|packing| packing.core_seconds_here()).sum(),
+        core_seconds: cases.iter().map(|case| case.core_seconds).sum(),
+        bytes: cases.iter().map(|case| case.bytes).max().unwrap_or(0),
+        bytes_allowed: limits.memory,
+        cases,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn a_plan_says_what_each_case_takes_and_what_is_wrong() {
+        let text = "[set]\nreplicates = 3\nrecord.sensitivity = []\n\
+            [[factor]]\nname = \"layers\"\nsetting = \"network.nz\"\nvalues = [20, 40]\n\
+            [[case]]\nname = \"gone\"\nset = { \"base.sieve\" = \"nowhere.csv\" }\n";
+        let plan = CampaignPlan::parse(text.as_bytes(), Path::new("plan.toml")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let options = CampaignOptions { out: folder.path().join("c"), ..CampaignOptions::default() };
+        let check = check_plan(&plan, &options).unwrap();
+        let [thin, thick, gone] = &check.cases[..] else { panic!("{check:?}") };
+        assert!(thick.n_base > thin.n_base && thick.bytes > thin.bytes && thin.core_seconds > 0.0);
+        assert_eq!((thin.runs_to_walk, check.packings), (6, 0));
+        assert!(gone.problem.contains("nowhere.csv") && gone.n_base == 0, "{gone:?}");
+        assert_eq!(check.bytes, thick.bytes);
+        let refusal = check.refusal().unwrap();
+        assert!(refusal.to_string().starts_with("case gone: "), "{refusal}");
+        assert_eq!(refusal.exit().code(), 2);
+        assert!(!options.out.exists());
+    }
+}

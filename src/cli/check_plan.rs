@@ -1,0 +1,91 @@
+//! `voidwalk check` on the plan of a campaign: what its cases would take.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::args::SettingArgs;
+use super::print::{count, counted, json, plain, to_stdout};
+use crate::campaign::{self, CampaignOptions, CampaignPlan, PlanCheck};
+use crate::case::in_words;
+use crate::run::cost::duration;
+use crate::run::{PrepareOptions, RunError};
+use crate::store::format;
+
+/// No more cases are listed.
+const LISTED: usize = 20;
+
+/// Says what the cases of a plan would take, and what is wrong in each.
+///
+/// # Errors
+/// A plan that cannot be read, settings beside it, and its cases that are wrong.
+pub(super) fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
+    if !set.settings()?.is_empty() {
+        return Err(RunError::refused(
+            "--set, --seed, --target-error and --decide go with a scene: a plan has the settings of all its \
+             cases under [set]",
+        ));
+    }
+    let plan = CampaignPlan::read(path)?;
+    // Where nobody names a folder of packings, a campaign keeps them in its own.
+    let is_named = set.packings != PrepareOptions::default().packings;
+    let packings = is_named.then(|| set.packings.clone());
+    let options = CampaignOptions { packings, memory: set.memory, ..CampaignOptions::default() };
+    let check = campaign::check_plan(&plan, &options)?;
+    to_stdout(&if set.json { json(format::PLAN_CHECK, &check)? } else { words(&check) });
+    check.refusal().map_or(Ok(()), Err)
+}
+
+fn words(check: &PlanCheck) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<22}{}", plain(&value));
+    };
+    let title = if check.title.is_empty() { String::new() } else { format!(": {}", check.title) };
+    line("plan", format!("{}{title}", check.plan));
+    let factors = match check.factors.is_empty() {
+        true => String::new(),
+        false => format!(", factors {}", check.factors.join(", ")),
+    };
+    line("cases", format!("{}{factors}", check.cases.len()));
+    for case in check.cases.iter().take(LISTED) {
+        let said = match case.problem.is_empty() {
+            true => format!(
+                "{} base particles a run, {} runs, {}, about {}",
+                count(case.n_base),
+                count(case.runs_to_walk),
+                in_words(case.bytes),
+                duration(case.core_seconds)
+            ),
+            false => format!("cannot be walked: {}", case.problem.replace('\n', " ")),
+        };
+        line(&format!("  {}", case.case), format!(" {said}"));
+    }
+    if check.cases.len() > LISTED {
+        line("", format!("and {} more: --json has all", check.cases.len() - LISTED));
+    }
+    let runs = check.cases.iter().map(|case| case.runs_to_walk).sum();
+    line("to walk", format!("{} runs", count(runs)));
+    line(
+        "memory",
+        format!("{} for the largest case, of {}", in_words(check.bytes), in_words(check.bytes_allowed)),
+    );
+    if check.packings > 0 {
+        let made = check.packings - check.packings_to_make;
+        let said = counted(check.packings, "packing", "packings");
+        line("packings", format!("{said} of filters, {made} made already"));
+        line(
+            "time to pack",
+            format!("about {} of one core, a rough guess", duration(check.packing_core_seconds)),
+        );
+    }
+    line(
+        "time to walk",
+        format!("about {} of one core for all, a rough guess", duration(check.core_seconds)),
+    );
+    let wrong = check.cases.iter().filter(|case| !case.problem.is_empty()).count();
+    if wrong == 0 {
+        line("next", format!("voidwalk campaign {}", check.plan));
+    }
+    text
+}

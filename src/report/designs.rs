@@ -1,0 +1,142 @@
+//! The page of the designs of many samples, from `designs.json` alone.
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::error::ReportError;
+use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
+use super::files::json;
+use super::names::soil_name;
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out};
+use super::table::Table;
+use super::written::Written;
+use crate::verdict::{DesignedSample, DesignedSamples};
+
+const RECORD: &str = "designs.json";
+
+/// Rows of the page's table; all are in `designs.csv`.
+const LISTED: usize = 2000;
+
+/// Writes `designs.html` and `figures/designs.svg` into the folder of the designs of many samples.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
+    let path = folder.join(RECORD);
+    let all: DesignedSamples = json(&path)?;
+    if all.rows.is_empty() {
+        let (field, value, allowed) = ("rows".into(), "empty".into(), "one or more".into());
+        return Err(ReportError::Value { path, field, value, allowed });
+    }
+    let names = html! {
+        "Samples " b { bdi { (name(&soil_name(&all.samples))) } }
+        @if all.dispersive { ", dispersive" }
+        @if all.filter.is_empty() { ", by the rules of practice alone" } @else {
+            ", filter of the shape " b { bdi { (name(&soil_name(&all.filter))) } }
+        }
+    };
+    let said = all.in_words();
+    let has_walks = !all.model_leaves_out.is_empty();
+    let first = html! { div.first[has_walks] {
+        section.verdict {
+            p.word.long { (clean(&said[0])) "." }
+            ul { @for said in &said[1..] { li { (clean(said)) "." } } }
+        }
+        @if has_walks {
+            (leaves_out(&all.model_leaves_out, &html! {
+                p { "The boundaries of the walk are the model’s. They do not replace a filter test or a \
+                    designer’s judgement." }
+            }))
+        }
+    } };
+    let made = html! { p {
+        "voidwalk " (clean(&all.version)) ". "
+        @if !all.filter.is_empty() { "The design of each sample has a page of its own. " }
+        code { "designs.json" } " holds this page’s numbers, " code { "designs.csv" }
+        " its table with further columns."
+    } };
+    let footer = if all.filter.is_empty() {
+        html! {}
+    } else {
+        citation()
+    };
+    Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
+        .words(&first)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures(limits(&all))
+        .section("Samples", &table(folder, &all))
+        .section("Notes on the files", &notes(&all))
+        .section("How this was made", &made)
+        .write(folder, "designs.html", &footer)
+}
+
+fn name(name: &str) -> String {
+    clean(&shorten(name, 60))
+}
+
+fn notes(all: &DesignedSamples) -> Markup {
+    html! { @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(note)) } } } } }
+}
+
+fn table(folder: &Path, all: &DesignedSamples) -> Markup {
+    let sample = |row: &DesignedSample| {
+        let page = row.design.as_ref().map(|of| format!("{}/design.html", of.folder));
+        let page = page.filter(|page| folder.join(page).is_file());
+        html! { bdi {
+            @if let Some(page) = page { a href=(page) { (name(&row.sample)) } } @else { (name(&row.sample)) }
+        } }
+    };
+    let table = Table::of(all.rows.iter().take(LISTED))
+        .class("cases")
+        .columns(DesignedSample::columns(), |row| row)
+        .named_by("sample", sample);
+    html! {
+        (table.render())
+        @if all.rows.len() > LISTED { p.small { "The rest is in designs.csv." } }
+        p.small {
+            "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
+             least D15F that drains it. "
+            @if !all.filter.is_empty() {
+                "No erosion by walk up to: the D15F that nearly all networks hold. "
+            }
+            "D15F up to: the greatest that both allow. Governs: 1 for the sample with the least of these."
+        }
+    }
+}
+
+/// The limit of practice and the greatest D15F of every sample against its D85B; none without a number.
+fn limits(all: &DesignedSamples) -> Option<Drawn> {
+    let of = |row: &DesignedSample, mm: Option<f64>| Some((row.d85b_mm?, mm?, row.governs == Some(1)));
+    let practice: Vec<_> = all.rows.iter().filter_map(|row| of(row, row.limit_mm)).collect();
+    let walk = |row: &DesignedSample| row.design.as_ref().and_then(|of| of.no_erosion_d15f_mm);
+    let walked: Vec<_> = all.rows.iter().filter_map(|row| of(row, walk(row))).collect();
+    let both = || practice.iter().chain(&walked);
+    both().next()?;
+    let (low, high) = positive_range(both().map(|(d85, ..)| *d85));
+    let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
+    let (low, high) = positive_range(both().map(|(_, mm, _)| *mm));
+    let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
+    let what = "Greatest D15F by practice and by the walk against D85B of each sample";
+    let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
+    let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
+    if let Some(mm) = governs {
+        figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
+    }
+    let point = |(d85, mm, governs): &(f64, f64, bool)| {
+        Point::new(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
+    };
+    figure.add_points("limit of practice", practice.iter().map(point));
+    if !walked.is_empty() {
+        figure.add_points("no erosion by walk", walked.iter().map(|of| point(of).hollow()));
+    }
+    let hollow =
+        if walked.is_empty() { "" } else { " Hollow: the D15F up to which the walk shows no erosion." };
+    let caption = format!(
+        "The strictest limit of practice of each sample.{hollow} Square: the sample that governs. The dashed \
+         line is the greatest D15F that serves all samples that have one."
+    );
+    Some(Drawn::new("designs", figure, caption))
+}

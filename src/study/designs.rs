@@ -1,0 +1,191 @@
+//! Many samples: a design for each, in a folder of its own, and one table of all.
+
+use std::path::PathBuf;
+
+use super::design::{DesignOptions, identity, is_a_base, run};
+use super::file_names::numbered;
+use super::kept;
+use crate::campaign::plan::folder_name;
+use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
+use crate::outcome::design::{Design, Specification};
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::error::{Exit, RunError};
+use crate::run::folder::{FolderKind, claim, shown};
+use crate::run::machine::on_threads;
+use crate::store::Folder;
+use crate::verdict::{DesignedSample, DesignedSamples, SpecificationOptions};
+
+/// Folder of the designs, inside that of all.
+const SAMPLES: &str = "samples";
+
+/// One row a sample.
+const TABLE: &str = "designs.csv";
+
+/// A refusal of all samples names no more of them.
+const NAMED: usize = 3;
+
+/// Which samples are designed for, and how.
+#[derive(Clone, Debug)]
+pub struct SampleDesignOptions {
+    /// A file of samples, or a folder of such files.
+    pub samples: PathBuf,
+    /// Whether nothing is walked: practice alone.
+    pub by_practice_alone: bool,
+    /// How each is designed for; its base is the sample, and its folder is that of all.
+    pub design: DesignOptions,
+}
+
+/// The samples, each found sound.
+struct Planned {
+    /// What practice says of each.
+    rows: Vec<DesignedSample>,
+    /// The folder of each sample's design.
+    folders: Vec<String>,
+    filter: String,
+    dispersive: bool,
+    notes: Vec<String>,
+    /// Everything that the table follows from, as a hash.
+    work: String,
+}
+
+/// Finds how coarse a filter may be for every sample, and writes `designs.csv` and, last, `designs.json`; the
+/// design of each sample is in a folder of its own. A sample that cannot be walked stays in the table, with
+/// the reason. Where the folder holds this very table already, nothing is walked.
+///
+/// # Errors
+/// Samples that cannot be read, of which none can be walked, or one that is none, and a folder that cannot be
+/// claimed, are refused before any work; then as [`run`]. After a stop or a kill the same command continues.
+pub fn each(options: &SampleDesignOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
+    let planned = on_threads(options.design.prepare.threads, || Planned::new(options))?;
+    let (kind, out, overwrite) = (FolderKind::Designs, &options.design.out, options.design.overwrite);
+    if !overwrite && let Some(found) = planned.found(options)? {
+        return Ok(found);
+    }
+    let folder = claim(out, kind, overwrite)?;
+    let work = planned.work.clone();
+    let all = kept::study((&folder, kind, overwrite), work, callbacks, |_, _: Option<()>| {
+        let all = planned.designed(options, &folder, callbacks)?;
+        folder.write(TABLE, &DesignedSample::columns().csv(&all.rows))?;
+        Ok(all)
+    });
+    all.map_err(|error| match error.exit() {
+        Exit::Stopped => {
+            RunError::Stopped(format!("progress saved; continue with the same command on {}", shown(out)))
+        }
+        _ => error,
+    })
+}
+
+impl Planned {
+    fn new(options: &SampleDesignOptions) -> Result<Self, RunError> {
+        let samples = samples_in(&options.samples).map_err(RunError::refused)?;
+        samples.iter().try_for_each(|of| is_a_base(&of.path, &of.name, &of.curve))?;
+        let dispersive = options.design.says_dispersive();
+        let of = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+        let row = |sample: &SoilSample| {
+            let curve = (sample.name.clone(), sample.curve.clone());
+            DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], of))
+        };
+        let mut rows: Vec<DesignedSample> = samples.iter().map(row).collect();
+        let names = numbered(rows.iter().map(|row| row.sample.clone()).collect());
+        let (mut folders, mut filter) = (Vec::new(), String::new());
+        for (row, name) in rows.iter_mut().zip(names).filter(|_| !options.by_practice_alone) {
+            let of_sample = options.of_sample(row, PathBuf::new());
+            let work_of = match identity(&of_sample) {
+                Ok(of) => {
+                    filter = of.filter;
+                    of.work
+                }
+                Err(problem) => {
+                    row.not_walked = problem.to_string();
+                    String::new()
+                }
+            };
+            // Other work has another folder, whatever the sample is called.
+            folders.push(folder_name(&format!("{name} {}", &work_of.get(..8).unwrap_or_default())));
+        }
+        if !rows.is_empty() && !options.by_practice_alone && rows.iter().all(|row| !row.not_walked.is_empty())
+        {
+            let why = |row: &DesignedSample| format!("{}: {}", row.sample, row.not_walked);
+            let reasons: Vec<String> = rows.iter().take(NAMED).map(why).collect();
+            return Err(RunError::Refused(format!("no sample can be walked\n{}", reasons.join("\n"))));
+        }
+        let curves: Vec<_> = samples.iter().map(|of| of.curve.points()).collect();
+        let text = format!("{} {dispersive} {folders:?} {rows:?} {curves:?}", shown(&options.samples));
+        let work = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
+        Ok(Self { rows, folders, filter, dispersive, notes: notes(&samples)?, work })
+    }
+
+    /// The table that the folder holds already; `None` where [`each`] begins there or goes on.
+    fn found(&self, options: &SampleDesignOptions) -> Result<Option<DesignedSamples>, RunError> {
+        let (kind, out) = (FolderKind::Designs, &options.design.out);
+        if out.symlink_metadata().is_err() {
+            return Ok(None);
+        }
+        let folder = claim(out, kind, true)?;
+        if !kind.is_finished(folder.path())? {
+            return Ok(None);
+        }
+        let there: DesignedSamples = kept::record(folder.path(), kind)?;
+        if there.work == self.work {
+            return Ok(Some(there));
+        }
+        let problem =
+            "holds the designs of other samples or settings; name another folder or add --overwrite";
+        Err(RunError::Refused(format!("{}: {problem}", shown(out))))
+    }
+
+    /// The table, with every sample designed for that is not yet.
+    fn designed(
+        &self,
+        options: &SampleDesignOptions,
+        folder: &Folder,
+        callbacks: &Callbacks,
+    ) -> Result<DesignedSamples, RunError> {
+        let (mut rows, mut leaves_out) = (Vec::new(), Vec::new());
+        for (at, row) in self.rows.iter().enumerate() {
+            let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
+                rows.push(row.clone());
+                continue;
+            };
+            let text = format!("sample {} of {}: {}", at + 1, self.rows.len(), row.sample);
+            (callbacks.on_event)(Event::Studying(&text));
+            let place = format!("{SAMPLES}/{name}");
+            let of_sample = options.of_sample(row, folder.path().join(&place));
+            let is_done = of_sample.out.is_dir() && FolderKind::Design.is_finished(&of_sample.out)?;
+            let design: Design = match is_done {
+                true => kept::record(&of_sample.out, FolderKind::Design)?,
+                false => run(&of_sample, callbacks)?,
+            };
+            leaves_out.clone_from(&design.model_leaves_out);
+            rows.push(row.clone().designed(&design, place));
+        }
+        let all = DesignedSamples::new(shown(&options.samples), rows);
+        Ok(DesignedSamples {
+            work: self.work.clone(),
+            filter: self.filter.clone(),
+            dispersive: self.dispersive,
+            notes: self.notes.clone(),
+            model_leaves_out: leaves_out,
+            ..all
+        })
+    }
+}
+
+impl SampleDesignOptions {
+    fn of_sample(&self, row: &DesignedSample, out: PathBuf) -> DesignOptions {
+        DesignOptions { base: Some(row.path.clone()), out, overwrite: false, ..self.design.clone() }
+    }
+}
+
+/// What was assumed of the files, once each.
+fn notes(samples: &[SoilSample]) -> Result<Vec<String>, RunError> {
+    let mut files: Vec<PathBuf> = samples.iter().map(|sample| file_and_soil(&sample.path).0).collect();
+    files.dedup();
+    let mut all = Vec::new();
+    for file in files {
+        let of_file = notes_in_file(&file).map_err(RunError::refused)?;
+        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(&file))));
+    }
+    Ok(all)
+}

@@ -1,0 +1,184 @@
+//! `design --each`: how coarse a filter may be for each of many samples; inches in designs.
+
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+use std::time::Duration;
+
+use serde_json::Value;
+use voidwalk::run::FolderKind;
+
+use crate::judge::SMALL;
+use crate::program::{call, done, figures_are_listed, refused};
+
+/// Three sands.
+const SAMPLES: &str = "Sieve (mm),Core,Shell,Till\n10,100,100,100\n1,100,100,100\n0.5,100,80,60\n\
+    0.25,40,20,10\n0.1,0,0,0\n";
+
+fn site() -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("samples.csv"), SAMPLES).unwrap();
+    fs::write(root.path().join("other.csv"), SAMPLES.replace("80,60", "85,60")).unwrap();
+    root
+}
+
+fn words<'a>(samples: &'a str, out: &'a str) -> Vec<&'a str> {
+    let each = ["design", samples, "--each", "--filter", "cu1.5-loose", "--out", out];
+    [&each[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12"]].concat()
+}
+
+fn designed(at: &Path, words: &[&str]) -> Output {
+    let output = call(at, words);
+    done(&output);
+    output
+}
+
+fn record(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("designs.json")).unwrap()).unwrap()
+}
+
+fn tables(folder: &Path) -> [Vec<u8>; 3] {
+    ["designs.csv", "designs.json", "designs.html"].map(|name| fs::read(folder.join(name)).unwrap())
+}
+
+#[test]
+fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
+    let root = site();
+    let at = root.path();
+    let said = String::from_utf8(designed(at, &words("samples.csv", "d")).stdout).unwrap();
+    let all = record(&at.join("d"));
+    let rows = all["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 3);
+    for row in rows {
+        let sample = row["sample"].as_str().unwrap();
+        let one = ["design", &format!("samples.csv#{sample}"), "--filter", "cu1.5-loose", "--out", sample];
+        let one = [&one[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12"]].concat();
+        designed(at, &one);
+        let design: Value =
+            serde_json::from_slice(&fs::read(at.join(sample).join("design.json")).unwrap()).unwrap();
+        assert_eq!(row["d15f_max_mm"], design["answer"]["d15f_max_mm"], "{sample}");
+        assert_eq!(row["design"]["set_by"], design["answer"]["set_by"]);
+        assert_eq!(row["design"]["said"], design["answer"]["said"]);
+        let place = at.join("d").join(row["design"]["folder"].as_str().unwrap());
+        assert!(place.join("design.html").is_file());
+    }
+    let least = rows.iter().min_by(|a, b| {
+        let of = |row: &Value| row["d15f_max_mm"].as_f64().unwrap();
+        of(a).total_cmp(&of(b))
+    });
+    let least = least.unwrap();
+    assert_eq!(least["governs"], 1);
+    let governing = format!("Governing sample {}: D15F up to ", least["sample"].as_str().unwrap());
+    let page = fs::read_to_string(at.join("d/designs.html")).unwrap();
+    for words in [
+        governing.as_str(),
+        "No one filter serves all 3 samples: Till needs D15F ",
+        "Practice sets the greatest D15F of ",
+    ] {
+        assert!(said.contains(words) && page.contains(words), "{words}: {said}");
+    }
+    assert!(page.contains("/design.html\"") && page.contains("No erosion by walk up to"));
+    figures_are_listed(FolderKind::Designs, &at.join("d"));
+    // Again: the same words, and nothing is walked; other samples and settings are refused.
+    let before = tables(&at.join("d"));
+    assert_eq!(String::from_utf8(designed(at, &words("samples.csv", "d")).stdout).unwrap(), said);
+    assert_eq!(tables(&at.join("d")), before);
+    refused(&call(at, &words("other.csv", "d")), "holds the designs of other samples");
+    let seed = [&words("samples.csv", "d")[..], &["--seed", "7"]].concat();
+    refused(&call(at, &seed), "holds the designs of other samples");
+    assert_eq!(tables(&at.join("d")), before);
+    // The page is made again from the record alone.
+    fs::remove_file(at.join("d/designs.html")).unwrap();
+    designed(at, &["report", "d"]);
+    assert_eq!(tables(&at.join("d")), before);
+    refused(&call(at, &["reproduce", "d"]), "is not reproduced");
+    // Other samples in its place.
+    designed(at, &[&words("other.csv", "d")[..], &["--overwrite"]].concat());
+    assert_ne!(tables(&at.join("d"))[0], before[0]);
+}
+
+#[test]
+fn killed_at_any_time_and_continued_the_table_is_the_same() {
+    let root = site();
+    let at = root.path();
+    designed(at, &words("samples.csv", "whole"));
+    let again = words("samples.csv", "killed");
+    for wait in [40, 150, 400] {
+        let mut running = std::process::Command::new(env!("CARGO_BIN_EXE_voidwalk"))
+            .args(&again)
+            .current_dir(at)
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(wait));
+        let _ = running.kill();
+        running.wait().unwrap();
+    }
+    designed(at, &again);
+    let text = |name: &str| tables(&at.join(name)).map(|bytes| String::from_utf8(bytes).unwrap());
+    assert_eq!(text("killed"), text("whole"));
+}
+
+#[test]
+fn by_practice_alone_nothing_is_walked_and_a_folder_of_sheets_is_taken() {
+    let root = site();
+    let at = root.path();
+    fs::create_dir(at.join("sheets")).unwrap();
+    fs::rename(at.join("samples.csv"), at.join("sheets/one.csv")).unwrap();
+    fs::write(at.join("sheets/two.csv"), "mm,percent finer\n2,100\n0.075,60\n0.002,5\n").unwrap();
+    let said = designed(at, &["design", "sheets", "--each", "--steps"]).stdout;
+    let said = String::from_utf8(said).unwrap();
+    let all = record(&at.join("voidwalk-designs"));
+    let rows = all["rows"].as_array().unwrap();
+    let names: Vec<&str> = rows.iter().map(|row| row["sample"].as_str().unwrap()).collect();
+    assert_eq!(names, ["one/Core", "one/Shell", "one/Till", "two"]);
+    assert!(rows.iter().all(|row| row["design"].is_null() && row["d15f_max_mm"] == row["limit_mm"]));
+    assert!(said.contains("Governing sample two: D15F up to 0.700 mm (practice: "), "{said}");
+    assert!(!at.join("voidwalk-designs/samples").exists() && !said.contains("model leaves out"));
+    // The limits are those of the specification of each.
+    designed(at, &["design", "sheets/two.csv", "--steps", "--out", "s"]);
+    let steps: Value = serde_json::from_slice(&fs::read(at.join("s/specification.json")).unwrap()).unwrap();
+    assert_eq!(rows[3]["limit_mm"], steps["d15f_max_mm"]);
+    assert_eq!(rows[3]["d15f_min_mm"], steps["d15f_min_mm"]);
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_before_anything_is_written() {
+    let root = site();
+    let at = root.path();
+    let none = call(at, &["design", "samples.csv", "--each", "--filter", "nowhere.csv", "--out", "d"]);
+    refused(&none, "no sample can be walked");
+    refused(&call(at, &["design", "gone.csv", "--each"]), "gone.csv");
+    for more in [["--inverse", "-q"], ["--authority", "nrcs"]] {
+        let words = [&["design", "samples.csv", "--each"][..], &more].concat();
+        assert_eq!(call(at, &words).status.code(), Some(2), "{more:?}");
+    }
+    assert!(!at.join("d").exists() && !at.join("voidwalk-designs").exists());
+}
+
+#[test]
+fn inches_stand_beside_mm_where_they_are_asked_for() {
+    let root = site();
+    let at = root.path();
+    let steps = ["design", "samples.csv#Core", "--steps", "--units", "us", "--out", "s"];
+    let said = String::from_utf8(designed(at, &steps).stdout).unwrap();
+    let page = fs::read_to_string(at.join("s/specification.html")).unwrap();
+    assert!(said.contains("\u{202f}in)") || said.contains(" in)"), "{said}");
+    assert!(page.contains("in), by practice.") && !page.contains("<title>Specification of a filter ("));
+    let csv = fs::read_to_string(at.join("s/specification.csv")).unwrap();
+    assert!(csv.contains("No. 200") && !csv.contains(" in)"), "{csv}");
+    let walk = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--units", "us", "--out", "w"];
+    let walk = [&walk[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12"]].concat();
+    let said = String::from_utf8(designed(at, &walk).stdout).unwrap();
+    let page = fs::read_to_string(at.join("w/design.html")).unwrap();
+    assert!(said.lines().nth(1).unwrap().contains("in)"), "{said}");
+    assert!(page.matches("in)").count() > 5);
+    // Numbers in files stay in mm, and the page that is made again is the same.
+    designed(at, &["report", "w"]);
+    assert_eq!(fs::read_to_string(at.join("w/design.html")).unwrap(), page);
+    let metric = ["design", "samples.csv#Core", "--steps", "--out", "m"];
+    assert!(!String::from_utf8(designed(at, &metric).stdout).unwrap().contains("in)"));
+    let twice = ["design", "samples.csv#Core", "--units", "us", "--set", "about.units=us"];
+    refused(&call(at, &twice), "say the same thing twice");
+}
