@@ -7,8 +7,8 @@
 The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
 thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
-`--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one. Every step is timed. Ends with the
-exit code of the first step that fails.
+`--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
+Ends with the exit code of the first step that fails.
 """
 
 import argparse
@@ -93,7 +93,7 @@ def main():
     parser.add_argument("workflow", type=Path)
     parser.add_argument("job")
     parser.add_argument("--matrix", nargs="*", default=[], metavar="NAME=VALUE", help="picks a combination of the matrix")
-    parser.add_argument("--instead", nargs="*", default=[], metavar="ACTION=COMMAND", help="runs a command in the place of an action")
+    parser.add_argument("--instead", nargs="*", default=[], metavar="NAME=COMMAND", help="runs a command in the place of an action or a step")
     parser.add_argument("--ref", default="v0.0.0-trial", help="name of the tag or branch (v0.0.0-trial)")
     parser.add_argument("--target", type=Path, help="a folder for what cargo builds, with this machine's CARGO_HOME, to save time")
     parser.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
@@ -204,6 +204,8 @@ def run(workflow, job, args, matrix, instead, work, clone):
         else:
             script = runner.script(step)
             name = step.get("name", script.splitlines()[0])
+            if name in instead:
+                name, script = f"{name}, here: {instead[name]}", instead[name]
         print(f"== {name}", flush=True)
         at = time.monotonic()
         code = runner.run(step, script, shell)
