@@ -16,6 +16,7 @@ import sys
 import time
 
 import console
+import gallery
 import links
 import mentions
 import pages
@@ -47,7 +48,7 @@ def main():
     docs = write_docs(source)
     (source / "scene.md").write_text(reference.scene_page(binary))
     write_front(source, results, commands)
-    write_summary(source, tutorials, docs, commands, results)
+    write_summary(source, tutorials, write_gallery(source), docs, commands, results)
     subprocess.run([os.environ.get("MDBOOK", "mdbook"), "build", HERE, "--dest-dir", out / "html"],
                    check=True, env={**os.environ, "MDBOOK_BOOK__SRC": str(source), "MDBOOK_LOG": "warn"})
     dead, outside = links.dead(out / "html")
@@ -80,6 +81,16 @@ def run_tutorials(source, work, binary, update):
         return dict(zip(TUTORIALS, pool.map(one, TUTORIALS)))
 
 
+def write_gallery(source):
+    """The gallery as one page a picture; their titles."""
+    shown, pictures, titles = gallery.split((source / "gallery.md").read_text(), "gallery")
+    (source / "gallery.md").write_text(shown)
+    (source / "gallery").mkdir()
+    for name, text in pictures.items():
+        (source / "gallery" / f"{name}.md").write_text(text)
+    return titles
+
+
 def held_to(what, folder, listed):
     """A page that is there and not listed, or the other way round, is an error."""
     there = {path.stem for path in folder.glob("*.md")}
@@ -89,7 +100,7 @@ def held_to(what, folder, listed):
 
 def wrong_names(source, binary, commands):
     """Commands, options and settings that the pages name and the program does not know; results are of their date."""
-    texts = {path.name: path.read_text() for path in [*source.glob("*.md"), ROOT / "README.md"]}
+    texts = {path.name: path.read_text() for path in [*source.glob("*.md"), *source.glob("gallery/*.md"), ROOT / "README.md"]}
     return mentions.faults(texts, {name: reference.options(binary, name) for name in commands}, reference.settings(binary))
 
 
@@ -140,10 +151,11 @@ def write_front(source, results, commands):
         (source / path.name).write_text(re.sub(r"\{\{(\w+)\}\}", lambda match: made[match[1]], text))
 
 
-def write_summary(source, tutorials, docs, commands, results):
+def write_summary(source, tutorials, pictures, docs, commands, results):
     """The table of contents, with the pages that were made."""
     made = {
         "tutorials": [f"- [{title}]({name}.md)" for name, title in tutorials.items()],
+        "pictures": [f"  - [{title}]({path})" for path, title in pictures.items()],
         "docs": [f"- [{title}]({name}.md)" for name, title in docs.items()],
         "commands": [f"  - [voidwalk {name}](commands/{name}.md)" for name in commands],
         "results": [f"  - [{title}]({path})" for path, title in results.items()],

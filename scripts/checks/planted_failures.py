@@ -14,7 +14,6 @@ compiled stays in target/planted-failures.
 """
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
@@ -23,7 +22,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from run_workflow import ROOT, Runner, combination, yaml
+from run_workflow import CARGO_HOME, ROOT, Runner, combination, yaml
 
 #: In two parts, as the spelling of this file is looked at, too.
 MISSPELT = "rec" + "ieves"
@@ -225,7 +224,7 @@ class Trial:
             shutil.copy(args.wheel, self.clone / "packages")
         self.runner = Runner(workflow, self.job, combination(self.job, {}), self.work, self.clone)
         # A crate at another place is another crate to cargo.
-        self.runner.environment["CARGO_HOME"] = os.environ.get("CARGO_HOME", str(Path.home() / ".cargo"))
+        self.runner.environment["CARGO_HOME"] = CARGO_HOME
         #: Of steps that passed without a mistake: seconds.
         self.passed = {}
 

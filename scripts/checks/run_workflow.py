@@ -7,8 +7,8 @@
 The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
 thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
-`--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one. Every step is timed. Ends with the
-exit code of the first step that fails.
+`--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
+Ends with the exit code of the first step that fails.
 """
 
 import argparse
@@ -36,6 +36,8 @@ except ModuleNotFoundError:
 
 #: What a clean environment keeps of this one: how packages are fetched, and how many processors may be used.
 KEPT = re.compile(r"(PIP_|CARGO_BUILD_JOBS$|CARGO_NET_|SSL_CERT|.*_proxy$)", re.IGNORECASE)
+#: Where this machine's cargo keeps the crates that it fetched.
+CARGO_HOME = os.environ.get("CARGO_HOME", str(Path.home() / ".cargo"))
 #: Stands in for rustup, which would change the toolchains of this machine.
 RUSTUP = """#!/bin/sh
 echo "not done here: rustup $*; $(rustc --version) is taken"
@@ -91,9 +93,9 @@ def main():
     parser.add_argument("workflow", type=Path)
     parser.add_argument("job")
     parser.add_argument("--matrix", nargs="*", default=[], metavar="NAME=VALUE", help="picks a combination of the matrix")
-    parser.add_argument("--instead", nargs="*", default=[], metavar="ACTION=COMMAND", help="runs a command in the place of an action")
+    parser.add_argument("--instead", nargs="*", default=[], metavar="NAME=COMMAND", help="runs a command in the place of an action or a step")
     parser.add_argument("--ref", default="v0.0.0-trial", help="name of the tag or branch (v0.0.0-trial)")
-    parser.add_argument("--target", type=Path, help="a folder for what cargo builds that outlives the run, to save time")
+    parser.add_argument("--target", type=Path, help="a folder for what cargo builds, with this machine's CARGO_HOME, to save time")
     parser.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
     args = parser.parse_args()
     workflow = yaml.safe_load(args.workflow.read_text(encoding="utf-8"))
@@ -131,7 +133,7 @@ class Runner:
         stand_ins.mkdir()
         (stand_ins / "rustup").write_text(RUSTUP)
         (stand_ins / "rustup").chmod(0o755)
-        fetched = Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo")) / "registry"
+        fetched = Path(CARGO_HOME) / "registry"
         if fetched.is_dir():
             (cargo / "registry").symlink_to(fetched)
         self.files = {name: work / name for name in ["GITHUB_ENV", "GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"]}
@@ -186,6 +188,9 @@ class Runner:
 def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
     runner = Runner(workflow, job, matrix, work, clone, args.ref)
+    if args.target:
+        # A crate at another place is another crate to cargo.
+        runner.environment["CARGO_HOME"] = CARGO_HOME
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()
     for step in job["steps"]:
@@ -199,6 +204,8 @@ def run(workflow, job, args, matrix, instead, work, clone):
         else:
             script = runner.script(step)
             name = step.get("name", script.splitlines()[0])
+            if name in instead:
+                name, script = f"{name}, here: {instead[name]}", instead[name]
         print(f"== {name}", flush=True)
         at = time.monotonic()
         code = runner.run(step, script, shell)

@@ -21,7 +21,7 @@ use crate::soil::Curve;
 use crate::work::at_work;
 
 /// A network of the library, and which of its exits stands for each throat.
-#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+#[pyclass(frozen, module = "voidwalk._voidwalk")]
 pub struct Network {
     pub inner: Arc<network::Network>,
     exit: Vec<u32>,

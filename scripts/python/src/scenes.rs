@@ -65,7 +65,7 @@ fn json(outcome: &Outcome) -> PyResult<String> {
 }
 
 /// A scene of the library.
-#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+#[pyclass(frozen, module = "voidwalk._voidwalk")]
 pub struct Scene {
     inner: voidwalk::Scene,
 }

@@ -31,7 +31,7 @@ pub fn density_named(word: &str) -> PyResult<Density> {
 }
 
 /// A sieve curve of the library.
-#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+#[pyclass(frozen, module = "voidwalk._voidwalk")]
 pub struct Gradation {
     pub inner: gradation::Gradation,
 }
@@ -124,7 +124,7 @@ impl Gradation {
 }
 
 /// A constriction curve of the library, in mm.
-#[pyclass(frozen, module = "voidwalk._voidwalk", skip_from_py_object)]
+#[pyclass(frozen, module = "voidwalk._voidwalk")]
 pub struct Curve {
     pub inner: constrictions::Curve,
 }

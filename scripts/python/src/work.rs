@@ -24,7 +24,7 @@ use crate::problem::of_run;
 const TICK: Duration = Duration::from_millis(50);
 
 /// How far a call is, as a progress callback is told: some twenty times a second at most, and once at the end.
-#[pyclass(frozen, get_all, module = "voidwalk", skip_from_py_object)]
+#[pyclass(frozen, get_all, module = "voidwalk")]
 #[derive(Clone, Debug, Default)]
 pub struct Progress {
     /// What is done: "packing", "walking" or "cases".

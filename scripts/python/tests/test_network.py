@@ -233,8 +233,13 @@ def test_the_number_of_base_particles_is_never_guessed() -> None:
         vw.walk(plain, base, grains_per_void=0.6)
     given = vw.walk(plain, base, filter=filter, grains_per_void=made.grains_per_void, replicates=2)
     assert given.outcome["n_base"] == given.outcome["n_base_eq2"] == eq2
-    with pytest.raises(ValueError, match="filter = float is not allowed; a Gradation"):
+    with pytest.raises(ValueError, match="filter = float is not allowed; a file, a Gradation"):
         vw.walk(plain, base, filter=1.0)  # type: ignore[arg-type]
+    # A soil in any form, as `judge` takes it.
+    sizes, percents = [0.5, 2.0], [0.0, 100.0]
+    forms = [vw.Gradation(sizes, percents), (sizes, percents)]
+    rows = [vw.walk(plain, base, filter=form, grains_per_void=0.6, replicates=1).row() for form in forms]
+    assert rows[0] == rows[1] and rows[0]["d15f_mm"] == pytest.approx(vw.Gradation(sizes, percents).d(15))
 
 
 def test_what_speaks_against_a_verdict_stands_beside_it() -> None:

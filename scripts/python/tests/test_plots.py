@@ -69,6 +69,13 @@ def test_a_result_is_drawn_in_four_ways() -> None:
     walked = vw.walk(vw.Network.cubic([6, 6, 9]), 0.2, n_base=1000, replicates=2)
     for what in ("progress", "layers", "curves"):
         walked.plot(what)
+    # Replicates come to rest at different increments; nothing that has eroded comes back.
+    of_run = walked.series["run"] == 1
+    ends = [walked.series["increment"][of_run & (walked.series["replicate"] == one)].max() for one in (1, 2)]
+    assert ends[0] != ends[1]
+    mean = walked.plot("progress").lines[0].get_ydata()
+    assert np.all(np.diff(mean) >= 0)
+    assert mean[-1] == pytest.approx(100 * walked.summary[0]["eroded_mass_fraction"]["mean"])
     with pytest.raises(ValueError, match="voidwalk.rules gives them"):
         walked.plot("rules")
     matplotlib.pyplot.close("all")

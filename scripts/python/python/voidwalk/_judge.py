@@ -57,7 +57,8 @@ def judge(
         Density of the filter, whose constrictions come from the library of packings. Loose and dense are both
         walked without it.
     pack : bool
-        Pack the grains of this very filter and measure its constrictions; loose without a density.
+        Pack the grains of this very filter and measure its constrictions; loose without a density. A warning calls
+        it the setting ``filter.density``.
     quick : bool
         A first look: five replicates, no studies of the amount of base and of the thickness.
     as_sampled : bool
@@ -73,7 +74,8 @@ def judge(
     replicates : int, optional
         Walks with random numbers of their own.
     settings : mapping, optional
-        Further settings of the scene, as ``{"network.nx": 20}``.
+        Further settings of the scene, as ``{"network.nx": 20}``. A name with a point in a message, as
+        ``filter.d0_mm``, is one of them; ``filter.sieve`` and ``base.sieve`` are the files given here.
     overwrite, packings, memory, checkpoint_every, progress
         As for :func:`run`.
 

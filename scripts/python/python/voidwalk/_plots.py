@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Tuple, cast
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence, Tuple, Union, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,31 +101,24 @@ def plot_result(
     raise ValueError(f"what = {what!r} is not allowed; one of {', '.join(FIGURES)}")
 
 
-def _mean_and_range(
-    of_runs: Counts, run: int, along: Counts, value: Floats
-) -> Tuple[Counts, List[float], List[float], List[float]]:
-    """Mean, least and greatest over the replicates of a run."""
-    of_run = of_runs == run
-    places = np.unique(along[of_run])
-    groups = [value[of_run & (along == place)] for place in places]
-    return (
-        places,
-        [float(group.mean()) for group in groups],
-        [float(group.min()) for group in groups],
-        [float(group.max()) for group in groups],
-    )
-
-
-def _by_run(ax: Axes, of_runs: Counts, along: Counts, value: Floats) -> None:
-    for run in np.unique(of_runs):
-        places, mean, low, high = _mean_and_range(of_runs, int(run), along, value)
-        (line,) = ax.plot(places, mean, label=f"Run {run}, mean and range of replicates")
-        ax.fill_between(places, low, high, alpha=0.2, color=line.get_color())
+def _by_run(ax: Axes, table: Union[Series, Layers], along: Counts, value: Floats) -> None:
+    """Mean and range over the replicates of each run. A replicate that has come to rest keeps what it had."""
+    for run in np.unique(table["run"]):
+        of_run = table["run"] == run
+        places = np.unique(along[of_run])
+        rows = []
+        for replicate in np.unique(table["replicate"][of_run]):
+            own = of_run & (table["replicate"] == replicate)
+            last = np.searchsorted(along[own], places, side="right") - 1
+            rows.append(np.where(last < 0, 0.0, value[own][np.maximum(last, 0)]))
+        by_replicate = np.array(rows)
+        (line,) = ax.plot(places, by_replicate.mean(axis=0), label=f"Run {run}, mean and range of replicates")
+        ax.fill_between(places, by_replicate.min(axis=0), by_replicate.max(axis=0), alpha=0.2, color=line.get_color())
 
 
 def _progress(series: Series, threshold: float, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
-    _by_run(drawn, series["run"], series["increment"], 100 * series["eroded_mass_fraction"])
+    _by_run(drawn, series, series["increment"], 100 * series["eroded_mass_fraction"])
     drawn.axhline(100 * threshold, color="black", linestyle="--", linewidth=1, label="Erosion begins")
     drawn.set_xlabel("Increment")
     drawn.set_ylabel("Eroded mass (% of the mass inserted)")
@@ -136,7 +129,7 @@ def _progress(series: Series, threshold: float, ax: Optional[Axes]) -> Axes:
 
 def _layers(layers: Layers, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
-    _by_run(drawn, layers["run"], layers["layer"], 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
+    _by_run(drawn, layers, layers["layer"], 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
     drawn.set_xlabel("Layer, along the flow")
     drawn.set_ylabel("Blocked constrictions (%)")
     drawn.set_ylim(bottom=0)

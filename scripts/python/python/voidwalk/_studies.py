@@ -110,8 +110,11 @@ class Comparison:
         return len(self.cases)
 
     def __repr__(self) -> str:
-        rows = "; ".join(f"{case['name']}: {case['verdict']}, {case['confidence']}" for case in self.cases)
-        return f"Comparison({rows})"
+        rows = []
+        for case in self.cases:
+            eroded = " then ".join(f"{100 * run['mean']:.2f} %" for run in case["runs"])
+            rows.append(f"{case['name']}: {case['verdict']}, {eroded} eroded, {case['confidence']}")
+        return f"Comparison({'; '.join(rows)})"
 
     def _repr_html_(self) -> str:
         rows = []

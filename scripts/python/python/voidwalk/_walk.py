@@ -38,7 +38,7 @@ def walk(
     base: Union[Soil, float],
     *,
     n_base: Optional[int] = None,
-    filter: Optional[Gradation] = None,
+    filter: Optional[Soil] = None,
     grains_per_void: Optional[float] = None,
     mass_ratio: float = 0.05,
     as_given: bool = False,
@@ -65,9 +65,9 @@ def walk(
     n_base : int, optional
         Base particles of a run. The class of erosion follows from their number: without it that of the paper's
         Eq. (2), for which `filter` and `grains_per_void` are given or known to the network.
-    filter : Gradation, optional
-        The filter, which rules of practice are asked about. Without it the network's own, where it knows it: of
-        lattices with a shipped curve.
+    filter : Gradation, path-like, or pair of array_like, optional
+        The filter, as for :func:`judge`, which rules of practice are asked about. Without it the network's own,
+        where it knows it: of lattices with a shipped curve.
     grains_per_void : float, optional
         Filter grains per void, of Eq. (2). Without it the network's own, where it knows it: of lattices with a
         shipped or measured curve, and of packings.
@@ -149,9 +149,7 @@ def walk(
     else:
         raise ValueError(f"network = {type(network).__name__} is not allowed; a Network, or what makes one")
     # What is given goes before what the network knows; a line that was assumed is no sieve curve.
-    of, is_measured = (filter, True) if filter is not None else (networks[0].filter, False)
-    if of is not None and not isinstance(of, Gradation):
-        raise ValueError(f"filter = {type(of).__name__} is not allowed; a Gradation")
+    of, is_measured = (gradation("filter", filter), True) if filter is not None else (networks[0].filter, False)
     grains = networks[0].grains_per_void if grains_per_void is None else float(grains_per_void)
     if n_base is None and (of is None or grains is None):
         missing = " and ".join(name for name, known in [("filter", of), ("grains_per_void", grains)] if known is None)
