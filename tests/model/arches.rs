@@ -163,8 +163,8 @@ fn how_many_are_in_arches_does_not_hang_on_the_chunk() {
         let inside: Vec<f64> = found.iter().map(|tally| tally.retained_in_arches as f64).collect();
         is_near(&arches, ways as f64 * (1.0 - none));
         is_near(&inside, ways as f64 * retained);
-        // Less than one in fifty off would be seen.
-        assert!(variance(&inside).sqrt() * 5.0 / 20f64.sqrt() < 0.02 * ways as f64 * retained);
+        // Three in a hundred off would be seen.
+        assert!(variance(&inside).sqrt() * 5.0 / 20f64.sqrt() < 0.03 * ways as f64 * retained);
     }
 }
 
@@ -175,11 +175,11 @@ fn by_void_the_concentration_is_that_of_the_others() {
     const NETWORK: &str = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
     let law = Law::named("marin-2018").unwrap();
     for size in ArchSize::ALL {
-        let by_void = || Arching::by_void(law, ByVoid { void_cube: 40.0, size });
+        let by_void = || Arching::by_void(law, ByVoid { void_cube: 20.0, size });
         for n in [2u64, 6, 13] {
             let found: Vec<f64> =
                 (1..=SEEDS).map(|seed| walk_by(NETWORK, by_void(), n, 1, seed).eroded as f64).collect();
-            let p = law.probability(2.0, (n - 1) as f64 / 40.0);
+            let p = law.probability(2.0, (n - 1) as f64 / 20.0);
             let ways = |k: u64| (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
             let jam = |k: u64| ways(k) * p.powi(k as i32) * (1.0 - p).powi((n - k) as i32);
             is_near(&found, n as f64 - (0..=n).map(|k| jam(k) * k.min(5) as f64).sum::<f64>());
