@@ -1,8 +1,8 @@
 //! Arches, once the particles of all chunks have attempted their move: who of those that jammed stays.
 //!
 //! Those that jammed in one constriction in one increment are one arch (module `arching`): the first in the
-//! order of insertion says how many it has, and those beyond it pass the constriction after all. They are in the
-//! void beyond it then, or have left the filter, and keep their place in the order of insertion.
+//! order of insertion says how many it has, and those beyond it pass the constriction after all. They are in
+//! the void beyond it then, or have left the filter, and keep their place in the order of insertion.
 
 use std::collections::HashMap;
 

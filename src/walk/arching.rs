@@ -2,8 +2,8 @@
 //!
 //! # What is decided
 //! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
-//! probability that a [`Law`] gives, by a draw of its own. Those that jam in one constriction in one increment
-//! are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
+//! probability that a [`Law`] gives, by a draw of its own. Those that jam in one constriction in one
+//! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
 //! ([`in_arch`]); those beyond pass (module `arches`). Particles so fine that the law gives no arch pass, and
 //! are none of an arch.
 //!
@@ -11,9 +11,9 @@
 //! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
 //! fewer than an arch has.
 //!
-//! Whether a particle jams hangs on itself, the constriction and what lies in its void alone, and who stays on
-//! the order of insertion alone. So the cutting of the particles into chunks plays no part, but in which draw
-//! a particle takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run,
+//! Whether a particle jams hangs on itself, the constriction and what lies in its void alone, and who stays
+//! on the order of insertion alone. So the cutting of the particles into chunks plays no part, but in which
+//! draw a particle takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run,
 //! increment, `c`), completed to 64 bits where sixteen do not decide.
 //!
 //! # Passive particles
@@ -259,9 +259,9 @@ impl Arching {
         ((f32::from(draw).to_bits() >> 22) as usize).saturating_sub(CLASS_OF_ONE)
     }
 
-    /// Particles of the arch of which a particle of this size is the first, which jams in this constriction by
-    /// this word, in a void with this number of particles and sum of their diameters cubed; `None` where it
-    /// passes.
+    /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
+    /// by this word, in a void with this number of particles and sum of their diameters cubed; `None` where
+    /// it passes.
     #[inline]
     pub(super) fn jams(&self, width: f32, diameter: f32, word: u64, crowd: (u32, f64)) -> Option<u32> {
         if !self.may(width, diameter) {

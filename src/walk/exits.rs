@@ -127,8 +127,8 @@ pub(super) struct Lattice {
     /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
     /// 0: +x wraps. A void without open exits has the first above the second.
     pub plain: Vec<u32>,
-    /// For coarser ones, unless widths are read: the same, but bits 21..32: top eleven bits of the second threshold, and bits 16..21:
-    /// class of the void's finest open exit.
+    /// For coarser ones, unless widths are read: the same, but bits 21..32: top eleven bits of the second
+    /// threshold, and bits 16..21: class of the void's finest open exit.
     pub classed: Vec<u32>,
     /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in a word. Bit 2: not the
     /// first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that does not

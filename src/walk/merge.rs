@@ -29,7 +29,8 @@ pub(super) struct Events {
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
-    /// Particles that jammed, in particle order; none of them is among those stopped or those that still move.
+    /// Particles that jammed, in particle order; none of them is among those stopped or those that still
+    /// move.
     pub jams: Vec<Jam>,
     /// Void and diameter of the particles without open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,

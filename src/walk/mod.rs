@@ -31,9 +31,9 @@
 //! no width.
 //!
 //! # Arches
-//! A particle that fits may jam (module `arching`) where a law of that is asked for. How densely particles lie
-//! is stated, or counted in each void (module `crowding`). Those that jam in one constriction in one increment
-//! are one arch: step 3 keeps as many as it has (module `arches`), and lets the others pass.
+//! A particle that fits may jam (module `arching`) where a law of that is asked for. How densely particles
+//! lie is stated, or counted in each void (module `crowding`). Those that jam in one constriction in one
+//! increment are one arch: step 3 keeps as many as it has (module `arches`), and lets the others pass.
 //!
 //! # Residual openings
 //! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),

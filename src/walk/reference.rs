@@ -231,9 +231,9 @@ impl<'a> Reference<'a> {
         crowd
     }
 
-    /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch that
-    /// the first of an increment began there has room. `crowd`: what its void holds. `begun`: by constriction,
-    /// the room that is left.
+    /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
+    /// that the first of an increment began there has room. `crowd`: what its void holds. `begun`: by
+    /// constriction, the room that is left.
     fn arches(
         &self,
         (chunk, place): (u64, u64),

@@ -216,8 +216,8 @@ impl State {
         self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
     }
 
-    /// A particle of this size is stopped in an exit, whose constriction it blocks or narrows; `upstream` says
-    /// of which void the exit is.
+    /// A particle of this size is stopped in an exit, whose constriction it blocks or narrows; `upstream`
+    /// says of which void the exit is.
     pub(super) fn stop(&mut self, network: &Network, upstream: &[u32], exit: usize, diameter: f32) {
         let void = upstream[exit] as usize;
         self.retained_in_constrictions[void] += 1;

@@ -175,11 +175,11 @@ fn by_void_the_concentration_is_that_of_the_others() {
     const NETWORK: &str = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
     let law = Law::named("marin-2018").unwrap();
     for size in ArchSize::ALL {
-        let by_void = || Arching::by_void(law, ByVoid { void_cube: 20.0, size });
-        for n in [2u64, 6, 13] {
+        for (n, void_cube) in [(2u64, 15.0), (6, 40.0), (13, 40.0)] {
+            let by_void = || Arching::by_void(law, ByVoid { void_cube, size });
             let found: Vec<f64> =
                 (1..=SEEDS).map(|seed| walk_by(NETWORK, by_void(), n, 1, seed).eroded as f64).collect();
-            let p = law.probability(2.0, (n - 1) as f64 / 20.0);
+            let p = law.probability(2.0, (n - 1) as f64 / void_cube);
             let ways = |k: u64| (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
             let jam = |k: u64| ways(k) * p.powi(k as i32) * (1.0 - p).powi((n - k) as i32);
             is_near(&found, n as f64 - (0..=n).map(|k| jam(k) * k.min(5) as f64).sum::<f64>());
@@ -189,7 +189,8 @@ fn by_void_the_concentration_is_that_of_the_others() {
             assert!((all - wanted).abs() < 5.0 * error, "{n}: {all} and not {wanted}");
         }
         // One by one none has another beside it.
-        assert_eq!(walk_by(NETWORK, by_void(), 120, 120, 3).eroded, 120);
+        let by_void = Arching::by_void(law, ByVoid { void_cube: 15.0, size });
+        assert_eq!(walk_by(NETWORK, by_void, 120, 120, 3).eroded, 120);
     }
 }
 

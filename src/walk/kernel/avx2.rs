@@ -115,13 +115,14 @@ fn predict<R: Reads>(
             passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
         }
         let coarse = if R::WIDTHS {
-            // The exit by its place: the second where past the first threshold alone, the third past the second.
+            // The exit by its place: the second where past the first threshold alone, the third past the
+            // second.
             let past_second = _mm256_srli_epi32::<31>(past);
             let past_either = _mm256_or_si256(_mm256_and_si256(past, _mm256_set1_epi32(1)), past_second);
             let first = _mm256_add_epi32(from, _mm256_slli_epi32::<1>(from));
             let exit = _mm256_add_epi32(first, _mm256_add_epi32(past_second, past_either));
-            // SAFETY: voids are within the table, and exits less than 3, so that constrictions are less than 3
-            // times its length, the number of widths.
+            // SAFETY: voids are within the table, and exits less than 3, so that constrictions are less than
+            // 3 times its length, the number of widths.
             let width = unsafe { _mm256_i32gather_ps::<4>(widths.as_ptr(), exit) };
             let mut size = _mm256_castsi256_ps(d);
             if let Some(reach) = reach {

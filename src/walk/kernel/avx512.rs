@@ -206,9 +206,9 @@ fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
     _mm512_permutex2var_ps(reach[0], class, reach[1])
 }
 
-/// Which of the lanes that may jam do: asked one by one, in order, with the constriction that each has chosen,
-/// its size and the block of the draws by which they jam. Those that leave or are stopped for another reason
-/// have a bit in `gone`; `kept` before this vector still move.
+/// Which of the lanes that may jam do: asked one by one, in order, with the constriction that each has
+/// chosen, its size and the block of the draws by which they jam. Those that leave or are stopped for another
+/// reason have a bit in `gone`; `kept` before this vector still move.
 #[inline(never)]
 #[target_feature(enable = "avx512f,popcnt")]
 fn jammed(

@@ -227,8 +227,8 @@ impl<'a> LatticeChunk<'a> {
         fetch(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
-    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way, by the draws of
-    /// both streams; all were written from `kept` on. Returns a bit for each that is gone from there.
+    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way, by the draws
+    /// of both streams; all were written from `kept` on. Returns a bit for each that is gone from there.
     #[inline]
     pub fn settle<R: Reads>(&mut self, begin: usize, draws: [&Draws; 2], mut rare: u64, kept: usize) -> u64 {
         let mut gone = 0u64;
@@ -287,8 +287,8 @@ impl<'a> LatticeChunk<'a> {
         kept
     }
 
-    /// The attempt of the particle at `place` by draw `index` of both streams in full: where it is then, if it
-    /// still moves. So many before it do.
+    /// The attempt of the particle at `place` by draw `index` of both streams in full: where it is then, if
+    /// it still moves. So many before it do.
     #[inline]
     fn attempt<R: Reads>(
         &mut self,
