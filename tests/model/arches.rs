@@ -127,8 +127,8 @@ fn an_arch_keeps_its_particles() {
     assert_eq!((wide.eroded, wide.arches), (50, 0));
 }
 
-/// However many come in one increment, in however many chunks, they begin one arch in a constriction, and those
-/// beyond it pass: out of the filter, or into the next void.
+/// However many come in one increment, in however many chunks, they begin one arch in a constriction, and
+/// those beyond it pass: out of the filter, or into the next void.
 #[test]
 fn one_arch_begins_in_a_constriction_and_an_increment() {
     for n in [16_384, 16_385, 65_000, 200_000] {
@@ -142,15 +142,16 @@ fn one_arch_begins_in_a_constriction_and_an_increment() {
     }
 }
 
-/// Sixteen particles in front of each of many constrictions in one increment, in one chunk or spread over five:
-/// how many jam in one is binomial, five of them stay, and as many constrictions close.
+/// Sixteen particles on average in front of each of many constrictions in one increment, in one chunk or
+/// spread over five: how many jam in one is binomial, five of them stay, and as many constrictions close.
 #[test]
 fn how_many_are_in_arches_does_not_hang_on_the_chunk() {
     let p = probability("zuriguel-2005", 2.0);
     for chunks in [1, 5] {
         let n = chunks * CHUNK as u64;
         let ways = n / 16;
-        let network = format!("from,to,diameter_mm\nstart,0,\n{}", "0,end,2\n".repeat(ways as usize));
+        let way = |void| format!("start,{void},\n{void},end,2\n");
+        let network = format!("from,to,diameter_mm\n{}", (0..ways).map(way).collect::<String>());
         let each = p / ways as f64;
         let (mut jam, mut retained) = ((n as f64 * (-each).ln_1p()).exp(), 0.0);
         let none = jam;
