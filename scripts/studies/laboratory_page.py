@@ -425,7 +425,7 @@ def page(cells, name, head):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f.", help="date, machine and commit of the walks")
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches of `laboratory.csv` and `openings.csv` are by the rule of these commits, by which each chunk of 16,384 particles began an arch of its own; the rule has changed since (`src/docs/arches.md`).", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))

@@ -16,6 +16,9 @@ const WATER_PROTOCOL: u32 = 5;
 /// follows from them in another way than before.
 const RANGE_PROTOCOL: u32 = 400;
 
+/// What is added where particles arch: raised whenever the program gives other results for these alone.
+const ARCHING_PROTOCOL: u32 = 10_000;
+
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -57,6 +60,9 @@ impl Case {
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
         if !self.curve_ends.is_empty() || !self.other_readings.is_empty() {
             protocol += RANGE_PROTOCOL;
+        }
+        if scene.law().is_some() {
+            protocol += ARCHING_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.library.is_some() {

@@ -1,22 +1,20 @@
 //! Arches: a particle that fits through a constriction may jam in it together with others that arrive.
 //!
 //! # What is decided
-//! A particle that would pass a constriction of `R` times its size (diameter by diameter) starts an arch with
-//! the probability that a [`Law`] gives. It stays, and with it as many more of those of its chunk that follow
-//! it through this constriction in the same increment as an arch of this `R` has, as far as they come. The
-//! constriction closes from the next increment on, as one that a coarser particle blocked. Particles so fine
-//! that the law gives no arch pass, and are none of an arch.
+//! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
+//! probability that a [`Law`] gives, by a draw of its own. Those that jam in one constriction in one
+//! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
+//! ([`in_arch`]); those beyond pass (module `arches`). Particles so fine that the law gives no arch pass, and
+//! are none of an arch.
 //!
-//! A chunk is 16,384 particles in the order of insertion ([`CHUNK`](super::CHUNK)). Those of one increment
-//! may be in many chunks, and one chunk may hold those of many increments. **Each chunk begins an arch of its
-//! own** in a constriction, whatever others do there in the same increment, so that a constriction retains as
-//! many arches as chunks come through it. How many particles are in arches, how many arches there are, and
-//! their mass therefore depend on the chunk and on the width of the lattice: they are no physical numbers. An
-//! arch counted once for each constriction and increment is left to do.
+//! The constriction closes from the next increment on, as one that a coarser particle blocked, however many
+//! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
+//! fewer than an arch has.
 //!
-//! Decisions are independent of each other and made on the open set at the start of the increment, so the
-//! order of chunks and threads plays no part. The particle at place `j` of chunk `c` takes word `j` of the
-//! stream (seed, arching, run, increment, `c`).
+//! Whether a particle jams hangs on itself, the constriction and what lies in its void alone, and who stays
+//! on the order of insertion alone. So the cutting of the particles into chunks plays no part, but in which
+//! draw a particle takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run,
+//! increment, `c`), completed to 64 bits where sixteen do not decide.
 //!
 //! # Passive particles
 //! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
@@ -170,6 +168,14 @@ const STEPS: usize = 1 << 14;
 /// Bits of a draw that decide.
 const BITS: u32 = 48;
 
+/// The power of two of 1, as a class.
+pub(super) const CLASS_OF_ONE: usize = 254;
+
+/// A little wider, so that rounding jams no particle beyond its reach.
+fn wider(ratio: f64) -> f32 {
+    (ratio * (1.0 + 1e-6)) as f32
+}
+
 /// A law as a walk reads it, at one concentration or at that of each void.
 #[derive(Clone, Debug)]
 pub struct Arching {
@@ -178,7 +184,12 @@ pub struct Arching {
     /// where the concentration is that of each void.
     table: Vec<f64>,
     by_void: Option<ByVoid>,
+    reach: Reach,
 }
+
+/// By the sixteen bits of a draw, in classes of half a power of two ([`Arching::class_of`]): up to how many
+/// times a particle's size a constriction may be in which it jams by that draw; at least 1.
+pub(super) type Reach = [f32; 32];
 
 impl Arching {
     /// A law at this concentration (volume of particles by volume of voids).
@@ -189,12 +200,21 @@ impl Arching {
             let ratio = 1.0 + step * k as f64;
             (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration)
         };
-        Self { law, table: (0..=STEPS).map(at).collect(), by_void: None }
+        let table: Vec<f64> = (0..=STEPS).map(at).collect();
+        let reach = std::array::from_fn(|class| {
+            // The least draw of the class: half a power of two above a power of two.
+            let least =
+                if class == 0 { 0.0 } else { (1 << (class / 2)) as f64 * (1.0 + 0.5 * (class % 2) as f64) };
+            let jams = |&probability: &f64| probability * 65_536.0 > least.floor();
+            let above = table.iter().rposition(jams).map_or(0, |k| (k + 1).min(STEPS));
+            wider(1.0 + step * above as f64)
+        });
+        Self { law, table, by_void: None, reach }
     }
 
     /// A law at the concentration of each void (module `crowding`).
     pub fn by_void(law: &'static Law, by_void: ByVoid) -> Self {
-        Self { law, table: Vec::new(), by_void: Some(by_void) }
+        Self { law, table: Vec::new(), by_void: Some(by_void), reach: [wider(law.widest); 32] }
     }
 
     /// How the concentration of each void is worked out, where it is.
@@ -224,14 +244,29 @@ impl Arching {
 
     /// Whether a particle of this size may arch in this constriction, which it fits.
     #[inline]
-    pub(super) fn may(&self, width: f32, diameter: f32) -> bool {
+    fn may(&self, width: f32, diameter: f32) -> bool {
         f64::from(width) < self.law.widest * f64::from(diameter)
     }
 
-    /// Particles of the arch that a particle of this size starts in this constriction by this word, in a void
-    /// with this number of particles and sum of their diameters cubed; `None` where it starts none.
+    /// [`Reach`] of this law.
+    pub(super) fn reach(&self) -> &Reach {
+        &self.reach
+    }
+
+    /// The class of a draw: twice its power of two, and one more from half way to the next on.
+    #[inline(always)]
+    pub(super) fn class_of(draw: u16) -> usize {
+        ((f32::from(draw).to_bits() >> 22) as usize).saturating_sub(CLASS_OF_ONE)
+    }
+
+    /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
+    /// by this word, in a void with this number of particles and sum of their diameters cubed; `None` where
+    /// it passes.
     #[inline]
-    pub(super) fn begun(&self, width: f32, diameter: f32, word: u64, crowd: (u32, f64)) -> Option<u32> {
+    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64, crowd: (u32, f64)) -> Option<u32> {
+        if !self.may(width, diameter) {
+            return None;
+        }
         let draw = (word >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
         let (ratio, probability) = match &self.by_void {
             None => {
@@ -305,6 +340,33 @@ mod tests {
         assert!((law.probability(2.0, 0.2) - 0.2213).abs() < 1e-4);
         assert_eq!(law.probability(2.0, 0.0), 0.0);
         assert!(law.probability(1.5, 0.02) < 0.01 && law.probability(2.9, 0.6) > 0.9);
+    }
+
+    /// No draw jams a particle beyond its reach, and the reach is no wider than half a power of two asks for.
+    #[test]
+    fn no_draw_jams_beyond_its_reach() {
+        let by_void = Arching::by_void(&LAWS[1], ByVoid { void_cube: 9.0, size: crate::walk::ArchSize::Own });
+        let laws = LAWS.iter().map(|law| Arching::new(law, 0.2)).chain([by_void]);
+        for arching in laws {
+            for draw in 0..=u16::MAX {
+                let class = Arching::class_of(draw);
+                assert!(class < 32 && class >= Arching::class_of(draw.saturating_sub(1)));
+                let reach = arching.reach()[class];
+                assert!(reach >= 1.0 && f64::from(reach) <= arching.widest() * 1.000_01);
+                if draw % 37 != 0 {
+                    continue;
+                }
+                for k in 1..=40u8 {
+                    let width = reach * (1.0 + f32::from(k) / 40.0 * 3.0);
+                    let word = u64::from(draw) << 48;
+                    assert_eq!(arching.jams(width, 1.0, word, (9, 9.0)), None, "{draw} {width}");
+                }
+            }
+        }
+        let dense = Arching::new(&LAWS[0], 0.6);
+        // 1 / 102.3 of all draws jam at R = 3: 640 of them.
+        assert!(dense.reach()[Arching::class_of(500)] > 3.0 && dense.reach()[Arching::class_of(1024)] < 3.0);
+        assert_eq!(dense.reach()[31], wider(1.0));
     }
 
     #[test]

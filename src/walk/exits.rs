@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::crowding::Crowd;
 use super::openings::Ways;
+use super::reads::Reads;
 use super::{Arching, Isa};
 use crate::network::Network;
 
@@ -32,7 +33,8 @@ pub(super) fn of_each(
     // Chosen here, once for all voids.
     match ways {
         Ways::Unblocked(blocked) => {
-            let find = |void, into: &mut _| thresholds(network, blocked, void, into);
+            let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
+            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
             each_by(network, voids, find, look);
         }
         ways => {
@@ -63,12 +65,11 @@ fn each_by(
 /// of the last open exit, or `None` where every exit is closed.
 pub(super) fn thresholds(
     network: &Network,
-    blocked: &BitSlice,
+    ways: Ways,
     void: u32,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
-    let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
-    thresholds_by(network, void, weight, thresholds)
+    thresholds_by(network, void, |c| ways.weight(network, c), thresholds)
 }
 
 /// The same by the weights of exits.
@@ -129,8 +130,8 @@ pub(super) struct Lattice {
     /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
     /// 0: +x wraps. A void without open exits has the first above the second.
     pub plain: Vec<u32>,
-    /// For coarser ones: the same, but bits 21..32: top eleven bits of the second threshold, and bits 16..21:
-    /// class of the void's finest open exit.
+    /// For coarser ones, unless widths are read: the same, but bits 21..32: top eleven bits of the second
+    /// threshold, and bits 16..21: class of the void's finest open exit.
     pub classed: Vec<u32>,
     /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in a word. Bit 2: not the
     /// first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that does not
@@ -139,6 +140,8 @@ pub(super) struct Lattice {
     /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
     /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
     pub finest: u32,
+    /// Particles are held against widths: there are no words with classes.
+    by_widths: bool,
     nx: u32,
     plane: u32,
 }
@@ -228,9 +231,12 @@ fn waits(network: &Network, void: u32) -> bool {
 pub(super) struct OpenExits<'a> {
     pub network: &'a Network,
     pub table: &'a ExitTable,
-    pub blocked: &'a BitSlice,
+    /// What of the exits is open.
+    pub ways: Ways<'a>,
+    /// By constriction: its widest way.
+    pub widths: &'a [f32],
     pub passive_limit: f32,
-    /// How particles arch; only with a table of the general form.
+    /// How particles arch; only with a table of the general form, or that has widths read.
     pub arching: Option<&'a Arching>,
     /// The particles in each void, where arches depend on them.
     pub crowd: Option<&'a Crowd>,
@@ -244,6 +250,15 @@ impl ExitTable {
         let finest = network.finest_open(|c| blocked[c]).to_bits();
         let form = Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest));
         Self::filled(network, ways, form)
+    }
+
+    /// The same for particles that arch or constrictions that leave openings: each particle is held against
+    /// the width of the exit that it chose.
+    pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
+        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
+        let mut lattice = Lattice::new(network.voids(), nx, nx * ny, 0);
+        (lattice.by_widths, lattice.classed) = (true, Vec::new());
+        Self::filled(network, ways, Form::Lattice(lattice))
     }
 
     /// The same in the form that any network has.
@@ -269,6 +284,9 @@ impl ExitTable {
         match &mut self.form {
             Form::Lattice(lattice) => {
                 let VoidExits { void, thresholds, last_open, .. } = of_void;
+                if lattice.by_widths {
+                    return lattice.set_plain(void, thresholds, last_open);
+                }
                 let open = network.exits(void).filter(|&c| ways.weight(network, c) > 0.0);
                 let finest = open.map(|c| network.diameters()[c]).fold(f32::INFINITY, f32::min);
                 lattice.set(void, thresholds, last_open, finest);
@@ -387,39 +405,49 @@ impl Lattice {
             8..12 => 1 << 31,
             _ => plane,
         });
-        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, nx, plane }
+        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
     }
 
+    /// Whether particles are held against widths.
+    pub fn by_widths(&self) -> bool {
+        self.by_widths
+    }
+
+    /// Both words of a void.
     fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
+        self.set_plain(void, thresholds, last_open);
+        // Nothing opens again.
+        let class = finest.to_bits().checked_sub(self.finest).expect("no open exit is finer") >> CLASS_SHIFT;
+        let class = (class << 16).min(CLASS);
+        let plain = self.plain[void as usize];
+        self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
+    }
+
+    fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
         let (x, row) = (void % self.nx, void % self.plane);
         let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
         let [first, second] = match last_open {
             Some(_) => [thresholds[0] >> 50, thresholds[1] >> 48],
             None => [0x3fff, 0],
         };
-        let lower = (first as u32) << 2 | wraps;
-        // Nothing opens again.
-        let class = finest.to_bits().checked_sub(self.finest).expect("no open exit is finer") >> CLASS_SHIFT;
-        let class = (class << 16).min(CLASS);
-        self.plain[void as usize] = (second as u32) << 16 | lower;
-        self.classed[void as usize] = (second as u32 >> 5) << 21 | class | lower;
+        self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
     }
 
     /// The words with or without classes.
-    pub fn words<const CLASSED: bool>(&self) -> &[u32] {
-        if CLASSED { &self.classed } else { &self.plain }
+    pub fn words<R: Reads>(&self) -> &[u32] {
+        if R::CLASSED { &self.classed } else { &self.plain }
     }
 
     /// Bits of a word that are of no threshold.
-    pub const fn below<const CLASSED: bool>() -> u32 {
-        if CLASSED { CLASS | 3 } else { 3 }
+    pub const fn below<R: Reads>() -> u32 {
+        if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
     /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
     /// open.
     #[inline(always)]
-    pub fn pick<const CLASSED: bool>(word: u32, draw: u16) -> Option<u32> {
-        let below = Self::below::<CLASSED>();
+    pub fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
+        let below = Self::below::<R>();
         let [first, second] = [word | below, (word | below) >> 16].map(|half| half as u16);
         let [to_first, to_second] = [draw | below as u16, draw | (below >> 16) as u16];
         match (to_first > first, to_second > second) {
@@ -439,7 +467,7 @@ mod tests {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
         let blocked: BitVec = blocked.into_iter().collect();
         let mut out = Vec::new();
-        let last = thresholds(&network, &blocked, 0, &mut out);
+        let last = thresholds(&network, Ways::Unblocked(&blocked), 0, &mut out);
         (out, last)
     }
 

@@ -5,8 +5,9 @@
 
 use std::cell::RefCell;
 
+use super::arches::{self, Jam};
 use super::sizes::cube;
-use super::{Blocking, SizeClasses, SizeCounts, State};
+use super::{SizeClasses, SizeCounts, State};
 use crate::network::Network;
 
 thread_local! {
@@ -28,8 +29,9 @@ pub(super) struct Events {
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
-    /// Particles among those stopped that are in arches, arches, and the mass in them.
-    pub arched: (u64, u64, f64),
+    /// Particles that jammed, in particle order; none of them is among those stopped or those that still
+    /// move.
+    pub jams: Vec<Jam>,
     /// Void and diameter of the particles without open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,
     /// Particles that wait for the flow to find another way.
@@ -52,7 +54,6 @@ impl Events {
         self.waiting = 0;
         self.eroded_count = 0;
         self.stopped.clear();
-        self.arched = (0, 0, 0.0);
         self.stranded.clear();
     }
 
@@ -106,10 +107,9 @@ pub(super) fn merge(
     upstream: &[u32],
     state: &mut State,
 ) -> Vec<u32> {
-    let narrowed_before = state.changes();
-    let tally = &mut state.tally;
-    let mut closed = Vec::new();
+    let (narrowed_before, blocked_before) = (state.changes(), state.history.len());
     for events in events.iter_mut() {
+        let tally = &mut state.tally;
         tally.inserted += u64::from(events.inserted);
         tally.moving += u64::from(events.inserted);
         tally.inserted_mass += events.inserted_mass;
@@ -120,10 +120,6 @@ pub(super) fn merge(
             tally.eroded += gone[0];
             tally.retained_in_constrictions += gone[1];
             tally.retained_in_voids += gone[2];
-            let (particles, arches, mass) = events.arched;
-            tally.retained_in_arches += particles;
-            tally.arches += arches;
-            tally.arched_mass += mass;
             tally.moving -= gone.iter().sum::<u64>();
             tally.passive_eroded += events.passive_eroded;
             tally.eroded_mass += events.eroded_mass;
@@ -137,18 +133,7 @@ pub(super) fn merge(
                 }
             }
             for &(constriction, diameter) in &events.stopped {
-                let void = upstream[constriction as usize] as usize;
-                state.retained_in_constrictions[void] += 1;
-                if let Some(cubes) = state.retained_cubes.get_mut(void) {
-                    *cubes += cube(diameter);
-                }
-                if !state.blocked[constriction as usize] {
-                    closed.push(constriction);
-                    network.set_blocked(&mut state.blocked, constriction as usize, true);
-                }
-                if let Some(openings) = &mut state.openings {
-                    openings.stop(network, constriction as usize, diameter);
-                }
+                state.stop(network, upstream, constriction as usize, diameter);
             }
             for &(void, diameter) in &events.stranded {
                 state.retained_in_voids[void as usize] += 1;
@@ -159,12 +144,12 @@ pub(super) fn merge(
         }
         events.clear();
     }
-    closed.sort_unstable();
-    tally.blocked += closed.len() as u64;
-    let increment = state.increment;
-    state.history.extend(closed.iter().map(|&constriction| Blocking { increment, constriction }));
+    arches::settle(network, events.iter_mut().map(|events| &mut events.jams), upstream, state);
+    let closed = &mut state.history[blocked_before..];
+    closed.sort_unstable_by_key(|blocking| blocking.constriction);
+    state.tally.blocked += closed.len() as u64;
     match &mut state.openings {
-        Some(openings) => openings.end_increment(increment, narrowed_before),
-        None => closed,
+        Some(openings) => openings.end_increment(state.increment, narrowed_before),
+        None => closed.iter().map(|blocking| blocking.constriction).collect(),
     }
 }

@@ -31,8 +31,9 @@
 //! no width.
 //!
 //! # Arches
-//! A particle that fits may jam with others (module `arching`) where a law of that is asked for. How densely
-//! they lie is stated, or counted in each void (module `crowding`).
+//! A particle that fits may jam (module `arching`) where a law of that is asked for. How densely particles
+//! lie is stated, or counted in each void (module `crowding`). Those that jam in one constriction in one
+//! increment are one arch: step 3 keeps as many as it has (module `arches`), and lets the others pass.
 //!
 //! # Residual openings
 //! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
@@ -53,6 +54,7 @@
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
 //! would not fit; the kernels see slices either way, and the bits are the same.
 
+mod arches;
 mod arching;
 mod bits;
 mod chunks;
@@ -68,6 +70,7 @@ mod isa;
 mod kernel;
 mod merge;
 mod openings;
+mod reads;
 pub mod reference;
 mod saved;
 mod saved_checks;
@@ -195,12 +198,14 @@ impl<'a> Walk<'a> {
             }
         }
         let weighed = weighed(directions.as_ref());
+        let ways = state.ways(weighed);
         let table = match (supply.arching(), &state.openings) {
             (None, None) => {
                 let known = open.map(|open| open.table.clone());
                 known.unwrap_or_else(|| ExitTable::new(&network, &state.blocked))
             }
-            _ => ExitTable::general(&network, state.ways(weighed)),
+            (Some(arching), _) if arching.of_void().is_some() => ExitTable::general(&network, ways),
+            _ => ExitTable::by_widths(&network, ways),
         };
         let trap = trapped::Search::new(&network, supply.arching());
         let passive = counts::PassiveWalk::new(&network, supply, state, open.map(|open| &open.shares));

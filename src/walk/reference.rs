@@ -128,9 +128,9 @@ impl<'a> Reference<'a> {
                 self.stopped.push((particle, exit));
                 continue;
             }
-            let chunk = particle.rank / CHUNK as u64;
+            let place = (particle.rank / CHUNK as u64, *place - 1);
             let beside = crowd.get(&particle.void).copied().unwrap_or_default();
-            if self.arches((chunk, *place - 1), exit, particle.diameter, beside, &mut begun) {
+            if self.arches(place, exit, particle.diameter, beside, &mut begun) {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
                 self.arched += 1;
@@ -231,28 +231,22 @@ impl<'a> Reference<'a> {
         crowd
     }
 
-    /// Whether the particle at `place` of its chunk stays in an arch: the first by the law, and those that
-    /// follow it as far as the arch has room. `crowd`: what its void holds. `begun`: by chunk and exit, the
-    /// room that is left.
+    /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
+    /// that the first of an increment began there has room. `crowd`: what its void holds. `begun`: by
+    /// constriction, the room that is left.
     fn arches(
         &self,
         (chunk, place): (u64, u64),
         exit: usize,
         diameter: f32,
         crowd: (u32, f64),
-        begun: &mut HashMap<(u64, usize), u32>,
+        begun: &mut HashMap<usize, u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
         let mut ratio = f64::from(self.width(exit)) / f64::from(diameter);
         if ratio >= arching.widest() {
             return false;
         }
-        if let Some(room) = begun.get_mut(&(chunk, exit)) {
-            let joins = *room > 0;
-            *room = room.saturating_sub(1);
-            return joins;
-        }
-        let word = self.key(Purpose::Arching, chunk).words().at(place);
         let probability = match arching.of_void() {
             None => arching.by_table(ratio),
             Some(by_void) => {
@@ -264,11 +258,15 @@ impl<'a> Reference<'a> {
                 arching.law().probability(ratio, if crowd.0 == 1 { 0.0 } else { others.min(0.64) })
             }
         };
-        let starts = ((word >> 16) as f64) < probability * 2f64.powi(48);
-        if starts {
-            begun.insert((chunk, exit), (ratio * ratio + 1.0).round().max(2.0) as u32 - 1);
+        if ((self.jam_draw(chunk, place) >> 16) as f64) >= probability * 2f64.powi(48) {
+            return false;
         }
-        starts
+        let has = (ratio * ratio + 1.0).round().max(2.0) as u32;
+        let constriction = self.network.twin(exit).map_or(exit, |twin| twin.min(exit));
+        let room = begun.entry(constriction).or_insert(has);
+        let joins = *room > 0;
+        *room = room.saturating_sub(1);
+        joins
     }
 
     /// Whether water left a void when the flow was solved, so that its particles wait for another way.
@@ -311,9 +309,18 @@ impl<'a> Reference<'a> {
         block[w as usize % LANES]
     }
 
-    /// The 64-bit draw of the particle at `place` in its chunk.
+    /// The 64-bit draw by which the particle at `place` in its chunk chooses.
     fn draw(&self, chunk: u64, place: u64) -> u64 {
-        let mut lanes = self.key(Purpose::Step, chunk).lanes();
+        self.draw_of(self.key(Purpose::Step, chunk), place)
+    }
+
+    /// The same by which it jams.
+    fn jam_draw(&self, chunk: u64, place: u64) -> u64 {
+        self.draw_of(self.key(Purpose::Arching, chunk), place)
+    }
+
+    fn draw_of(&self, key: Key, place: u64) -> u64 {
+        let mut lanes = key.lanes();
         let mut block = lanes.next_block();
         for _ in 0..place / DRAWS_PER_BLOCK as u64 {
             block = lanes.next_block();

@@ -5,6 +5,7 @@ use std::io;
 use bitvec::vec::BitVec;
 
 use super::openings::{Ways, Weighed};
+use super::sizes::cube;
 use super::{Clogged, Openings, Passive, SizeClasses, SizeCounts, Supply, Tally};
 use crate::network::Network;
 use crate::store::{Column, Placement};
@@ -34,12 +35,42 @@ pub struct Particles {
     pub live: Vec<u32>,
 }
 
+/// A particle that moves on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moving {
+    /// Moving particles of its chunk that it comes after.
+    pub rank: usize,
+    /// The void that it is in.
+    pub void: u32,
+    /// Its size.
+    pub diameter: f32,
+}
+
 impl Particles {
     /// Void and diameter of the moving particles of one chunk.
     pub fn chunk(&self, chunk: usize) -> (&[u32], &[f32]) {
         let live = self.live[chunk] as usize;
         let sizes = if self.has_one_size() { 0 } else { chunk * CHUNK };
         (&self.void[chunk * CHUNK..][..live], &self.diameter[sizes..][..live])
+    }
+
+    /// Puts particles back among those of a chunk, before each of which so many of these move, ascending.
+    pub(super) fn put_back(&mut self, chunk: usize, back: &[Moving]) {
+        let first = chunk * CHUNK;
+        let mut end = first + self.live[chunk] as usize;
+        self.live[chunk] += back.len() as u32;
+        let one_size = self.has_one_size();
+        // From the last on: what stands behind it moves up by as many as are put back before that.
+        for (before, particle) in back.iter().enumerate().rev() {
+            let at = first + particle.rank;
+            self.void.copy_within(at..end, at + before + 1);
+            self.void[at + before] = particle.void;
+            if !one_size {
+                self.diameter.copy_within(at..end, at + before + 1);
+                self.diameter[at + before] = particle.diameter;
+            }
+            end = at;
+        }
     }
 
     /// Whether the column of diameters stands for chunks that it does not hold.
@@ -183,6 +214,23 @@ impl State {
     /// What has been blocked or narrowed in this run, as a number that only grows.
     pub(super) fn changes(&self) -> usize {
         self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
+    }
+
+    /// A particle of this size is stopped in an exit, whose constriction it blocks or narrows; `upstream`
+    /// says of which void the exit is.
+    pub(super) fn stop(&mut self, network: &Network, upstream: &[u32], exit: usize, diameter: f32) {
+        let void = upstream[exit] as usize;
+        self.retained_in_constrictions[void] += 1;
+        if let Some(cubes) = self.retained_cubes.get_mut(void) {
+            *cubes += cube(diameter);
+        }
+        if !self.blocked[exit] {
+            self.history.push(Blocking { increment: self.increment, constriction: exit as u32 });
+            network.set_blocked(&mut self.blocked, exit, true);
+        }
+        if let Some(openings) = &mut self.openings {
+            openings.stop(network, exit, diameter);
+        }
     }
 
     /// What this run leaves to the next.

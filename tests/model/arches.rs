@@ -8,7 +8,7 @@ use std::sync::Arc;
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{ArchSize, Arching, ByVoid, Law, SizeClasses, State, Supply, Tally, Walk};
+use voidwalk::walk::{ArchSize, Arching, ByVoid, CHUNK, Law, SizeClasses, State, Supply, Tally, Walk};
 
 /// Walks `n` particles of size 1, in so many increments, by a law at a concentration of 0.2.
 fn walk(network: &str, law: &str, n: u64, increments: u64, seed: u64) -> Tally {
@@ -112,56 +112,86 @@ fn at_a_fork_the_other_way_takes_all_once_one_is_closed() {
     is_near(&found, (1.0 - any) / any + then);
 }
 
-/// Where many come at once, an arch keeps as many as it has: R^2 + 1. The others have passed.
+/// Where many jam at once, an arch keeps as many as it has: R^2 + 1. The others pass.
 #[test]
 fn an_arch_keeps_its_particles() {
     for (ratio, particles) in [(1.0, 2), (1.5, 3), (2.0, 5), (2.9, 9)] {
         let network = format!("from,to,diameter_mm\nstart,0,\n0,end,{ratio}\n");
         let tally = walk(&network, "critical-3", 50, 1, 7);
         assert_eq!((tally.retained_in_arches, tally.eroded, tally.arches), (particles, 50 - particles, 1));
-        // Fewer than it needs all stay.
-        assert_eq!(walk(&network, "critical-3", 2, 1, 7).retained_in_arches, 2);
+        // Fewer than it has all stay, and the constriction is blocked all the same.
+        let few = walk(&network, "critical-3", 2, 1, 7);
+        assert_eq!((few.retained_in_arches, few.arches, few.blocked), (2, 1, 1));
     }
     let wide = walk("from,to,diameter_mm\nstart,0,\n0,end,3\n", "critical-3", 50, 1, 7);
     assert_eq!((wide.eroded, wide.arches), (50, 0));
 }
 
-/// Each chunk of 16,384 particles begins an arch of its own, in one increment and through one constriction: of
-/// more chunks more is retained. This is what is done, not what grains do.
+/// However many come in one increment, in however many chunks, they begin one arch in a constriction, and
+/// those beyond it pass: out of the filter, or into the next void.
 #[test]
-fn each_chunk_begins_an_arch_of_its_own() {
-    let one = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
-    for (n, arches) in [(16_384, 1), (16_385, 2), (65_000, 4), (200_000, 13)] {
-        let tally = walk(one, "critical-3", n, 1, 7);
-        // The last chunk has one particle in the second case.
-        let retained = if n == 16_385 { 6 } else { 5 * arches };
-        assert_eq!((tally.arches, tally.retained_in_arches), (arches, retained), "{n}");
-        assert_eq!(tally.eroded, n - retained);
+fn one_arch_begins_in_a_constriction_and_an_increment() {
+    for n in [16_384, 16_385, 65_000, 200_000] {
+        let tally = walk("from,to,diameter_mm\nstart,0,\n0,end,2\n", "critical-3", n, 1, 7);
+        assert_eq!((tally.arches, tally.retained_in_arches), (1, 5), "{n}");
+        assert_eq!((tally.eroded, tally.particle_moves), (n - 5, n - 5));
+        // What passes the first meets the second in the next increment. R = 2.5 has 7.
+        let tally = walk("from,to,diameter_mm\nstart,0,\n0,1,2\n1,end,2.5\n", "critical-3", n, 1, 7);
+        assert_eq!((tally.arches, tally.retained_in_arches, tally.eroded), (2, 12, n - 12), "{n}");
+        assert_eq!(tally.particle_moves, n - 5 + n - 12);
+    }
+}
+
+/// Sixteen particles on average in front of each of many constrictions in one increment, in one chunk or
+/// spread over five: how many jam in one is binomial, five of them stay, and as many constrictions close.
+#[test]
+fn how_many_are_in_arches_does_not_hang_on_the_chunk() {
+    let p = probability("zuriguel-2005", 2.0);
+    for chunks in [1, 5] {
+        let n = chunks * CHUNK as u64;
+        let ways = n / 16;
+        let way = |void| format!("start,{void},\n{void},end,2\n");
+        let network = format!("from,to,diameter_mm\n{}", (0..ways).map(way).collect::<String>());
+        let each = p / ways as f64;
+        let (mut jam, mut retained) = ((n as f64 * (-each).ln_1p()).exp(), 0.0);
+        let none = jam;
+        for k in 0..60u64 {
+            retained += jam * k.min(5) as f64;
+            jam *= (n - k) as f64 / (k + 1) as f64 * each / (1.0 - each);
+        }
+        let found: Vec<Tally> = (1..=20).map(|seed| walk(&network, "zuriguel-2005", n, 1, seed)).collect();
+        let arches: Vec<f64> = found.iter().map(|tally| tally.arches as f64).collect();
+        let inside: Vec<f64> = found.iter().map(|tally| tally.retained_in_arches as f64).collect();
+        is_near(&arches, ways as f64 * (1.0 - none));
+        is_near(&inside, ways as f64 * retained);
+        // Three in a hundred off would be seen.
+        assert!(variance(&inside).sqrt() * 5.0 / 20f64.sqrt() < 0.03 * ways as f64 * retained);
     }
 }
 
 /// One constriction, in front of which so many particles lie at once in a void of known volume. Each asks the
-/// law for the concentration of the others; the first that starts an arch keeps four of those after it.
+/// law for the concentration of the others; of those that jam five stay.
 #[test]
 fn by_void_the_concentration_is_that_of_the_others() {
     const NETWORK: &str = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
     let law = Law::named("marin-2018").unwrap();
     for size in ArchSize::ALL {
-        let by_void = || Arching::by_void(law, ByVoid { void_cube: 40.0, size });
-        for n in [2u64, 6, 13] {
+        for (n, void_cube) in [(2u64, 15.0), (6, 40.0), (13, 40.0)] {
+            let by_void = || Arching::by_void(law, ByVoid { void_cube, size });
             let found: Vec<f64> =
                 (1..=SEEDS).map(|seed| walk_by(NETWORK, by_void(), n, 1, seed).eroded as f64).collect();
-            let p = law.probability(2.0, (n - 1) as f64 / 40.0);
-            let before = |k: u64| (1.0 - p).powi(k as i32);
-            let stays = |k: u64| (n - k).min(5) as f64;
-            is_near(&found, n as f64 - (0..n).map(|k| before(k) * p * stays(k)).sum::<f64>());
+            let p = law.probability(2.0, (n - 1) as f64 / void_cube);
+            let ways = |k: u64| (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
+            let jam = |k: u64| ways(k) * p.powi(k as i32) * (1.0 - p).powi((n - k) as i32);
+            is_near(&found, n as f64 - (0..=n).map(|k| jam(k) * k.min(5) as f64).sum::<f64>());
             let all = mean(found.iter().map(|&eroded| f64::from(eroded == n as f64)));
-            let wanted = before(n);
+            let wanted = jam(0);
             let error = (wanted * (1.0 - wanted) / SEEDS as f64).sqrt();
             assert!((all - wanted).abs() < 5.0 * error, "{n}: {all} and not {wanted}");
         }
         // One by one none has another beside it.
-        assert_eq!(walk_by(NETWORK, by_void(), 120, 120, 3).eroded, 120);
+        let by_void = Arching::by_void(law, ByVoid { void_cube: 15.0, size });
+        assert_eq!(walk_by(NETWORK, by_void, 120, 120, 3).eroded, 120);
     }
 }
 

@@ -7,40 +7,54 @@ use std::arch::x86_64::*;
 use super::lattice::{BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
 use crate::stream::{LANES, Lanes};
 use crate::walk::Isa;
+use crate::walk::arching::{CLASS_OF_ONE, Reach};
 use crate::walk::exits::{CLASS, Lattice};
+use crate::walk::reads::Reads;
 
 const WIDTH: usize = 8;
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step<const CLASSED: bool>(chunk: LatticeChunk) -> usize {
+pub(super) fn step<R: Reads>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
-    unsafe { step_vectors::<CLASSED>(chunk) }
+    unsafe { step_vectors::<R>(chunk) }
 }
 
 #[target_feature(enable = "avx2,popcnt")]
-fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
+fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
     let mut state = load_state(&chunk.lanes);
+    let mut jam_state = load_state(&chunk.jam_lanes::<R>());
     let mut kept = 0;
     for begin in (0..count - count % BLOCK).step_by(BLOCK) {
         chunk.fetch_ahead(begin, BLOCK);
         let draws = bytemuck::cast([next_block(&mut state), next_block(&mut state)]);
-        let rare = predict::<CLASSED>(&mut chunk, begin, &draws, kept);
-        let gone = if rare == 0 { 0 } else { chunk.settle::<CLASSED>(begin, &draws, rare, kept) };
+        let jam_draws = match R::JAMS {
+            true => bytemuck::cast([next_block(&mut jam_state), next_block(&mut jam_state)]),
+            false => [0; 2 * LANES],
+        };
+        let draws = [&draws, &jam_draws];
+        let rare = predict::<R>(&mut chunk, begin, draws, kept);
+        let gone = if rare == 0 { 0 } else { chunk.settle::<R>(begin, draws, rare, kept) };
         kept = if gone == 0 { kept + BLOCK } else { close_up(&mut chunk, kept, gone) };
     }
-    chunk.step_rest::<CLASSED>(|| next_block(&mut state), kept)
+    let mut next_of_jams = || if R::JAMS { next_block(&mut jam_state) } else { [0; LANES] };
+    chunk.step_rest::<R>(|| [next_block(&mut state), next_of_jams()], kept)
 }
 
 /// As [`super::lattice`]'s.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
-fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &Draws, kept: usize) -> u64 {
+fn predict<R: Reads>(
+    chunk: &mut LatticeChunk,
+    begin: usize,
+    [draws, jam_draws]: [&Draws; 2],
+    kept: usize,
+) -> u64 {
     assert!(kept <= begin && begin + BLOCK <= chunk.void.len() && begin + BLOCK <= chunk.diameter.len());
-    let (table, words) = (chunk.table, chunk.table.words::<CLASSED>());
+    let (table, words) = (chunk.table, chunk.table.words::<R>());
     let last = _mm256_set1_epi32(words.len() as i32 - 1);
-    let below = _mm256_set1_epi32(Lattice::below::<CLASSED>() as i32);
+    let below = _mm256_set1_epi32(Lattice::below::<R>() as i32);
     let finest = _mm256_set1_epi32(table.finest as i32);
     let downstream = _mm256_castsi256_ps(_mm256_set1_epi32(table.moves[15] as i32));
     // The first eight entries of `moves`: those of the first two exits.
@@ -50,6 +64,9 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
     let (low, high) = (_mm_set_epi64x(0x0706_0706_0504_0504, 0x0302_0302_0100_0100), 0x0808_0808_0808_0808);
     let twice = _mm256_set_m128i(_mm_add_epi8(low, _mm_set1_epi64x(high)), low);
     let zero = _mm256_setzero_si256();
+    let widths = chunk.exits.widths;
+    assert_eq!(widths.len(), 3 * words.len());
+    let reach = R::JAMS.then(|| load_reach(chunk.reach()));
     let (void, diameter) = (chunk.void.as_mut_ptr(), chunk.diameter.as_mut_ptr());
     let mut greatest = zero;
     for group in 0..BLOCK / WIDTH {
@@ -60,7 +77,8 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
     let inside = _mm256_cmpeq_epi32(_mm256_min_epu32(greatest, last), greatest);
     assert!(_mm256_movemask_epi8(inside) == -1, "a void that the network does not have");
     let mut rare = 0;
-    for (group, draw) in draws.as_chunks::<2>().0.iter().enumerate() {
+    let draws = draws.as_chunks::<2>().0.iter().zip(jam_draws.as_chunks::<2>().0);
+    for (group, (draw, jam_draw)) in draws.enumerate() {
         let (at, place) = (begin + WIDTH * group, kept + WIDTH * group);
         // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids within the
         // table: what was written since they were checked lies before `at`.
@@ -92,11 +110,30 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
         let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
         let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));
         let mut passes = finest;
-        if CLASSED {
+        if R::CLASSED {
             let class = _mm256_and_si256(word, _mm256_set1_epi32(CLASS as i32));
             passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
         }
-        let coarse = _mm256_cmpgt_epi32(d, passes);
+        let coarse = if R::WIDTHS {
+            // The exit by its place: the second where past the first threshold alone, the third past the
+            // second.
+            let past_second = _mm256_srli_epi32::<31>(past);
+            let past_either = _mm256_or_si256(_mm256_and_si256(past, _mm256_set1_epi32(1)), past_second);
+            let first = _mm256_add_epi32(from, _mm256_slli_epi32::<1>(from));
+            let exit = _mm256_add_epi32(first, _mm256_add_epi32(past_second, past_either));
+            // SAFETY: voids are within the table, and exits less than 3, so that constrictions are less than
+            // 3 times its length, the number of widths.
+            let width = unsafe { _mm256_i32gather_ps::<4>(widths.as_ptr(), exit) };
+            let mut size = _mm256_castsi256_ps(d);
+            if let Some(reach) = reach {
+                // SAFETY: two words are sixteen bytes.
+                let draw = unsafe { _mm_loadu_si128(jam_draw.as_ptr().cast()) };
+                size = _mm256_mul_ps(size, reach_of(reach, draw));
+            }
+            _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(size, width))
+        } else {
+            _mm256_cmpgt_epi32(d, passes)
+        };
         let long_way = _mm256_or_si256(_mm256_or_si256(out, closed), _mm256_or_si256(tie, coarse));
         let long_way = _mm256_castsi256_ps(long_way);
         rare = (rare | u64::from(_mm256_movemask_ps(long_way) as u32)).rotate_right(WIDTH as u32);
@@ -109,6 +146,31 @@ fn predict<const CLASSED: bool>(chunk: &mut LatticeChunk, begin: usize, draws: &
         }
     }
     rare
+}
+
+/// How far draws reach, in registers.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn load_reach(reach: &Reach) -> [__m256; 4] {
+    let parts = reach.as_chunks::<WIDTH>().0;
+    // SAFETY: a part has eight entries.
+    [0, 1, 2, 3].map(|part| unsafe { _mm256_loadu_ps(parts[part].as_ptr()) })
+}
+
+/// How far eight draws reach: by [`Arching::class_of`](crate::walk::arching::Arching::class_of), whose lower
+/// three bits are a place in a register and whose upper two say in which.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn reach_of(reach: [__m256; 4], draws: __m128i) -> __m256 {
+    let draws = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(draws));
+    let class = _mm256_srli_epi32::<22>(_mm256_castps_si256(draws));
+    let class = _mm256_sub_epi32(class, _mm256_set1_epi32(CLASS_OF_ONE as i32));
+    let class = _mm256_max_epi32(class, _mm256_setzero_si256());
+    let [a, b, c, d] = reach.map(|part| _mm256_permutevar8x32_ps(part, class));
+    let (fourth, half) = (_mm256_slli_epi32::<28>(class), _mm256_slli_epi32::<27>(class));
+    let lower = _mm256_blendv_ps(a, b, _mm256_castsi256_ps(fourth));
+    let upper = _mm256_blendv_ps(c, d, _mm256_castsi256_ps(fourth));
+    _mm256_blendv_ps(lower, upper, _mm256_castsi256_ps(half))
 }
 
 /// Words of the table for eight voids: eight loads, which take less time than a gather.

@@ -11,37 +11,42 @@ use super::avx2;
 use super::lattice::{BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::Isa;
+use crate::walk::arching::{CLASS_OF_ONE, Reach};
 use crate::walk::exits::{CLASS, Lattice};
+use crate::walk::reads::Reads;
 
 const WIDTH: usize = 16;
 
 /// Moves the particles of one chunk; returns how many still move.
-pub(super) fn step<const CLASSED: bool>(chunk: LatticeChunk) -> usize {
+pub(super) fn step<R: Reads>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx512.is_available() && fits_gathers(chunk.table));
     // SAFETY: the machine has the instructions.
-    unsafe { step_vectors::<CLASSED>(chunk) }
+    unsafe { step_vectors::<R>(chunk) }
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
+fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     let count = chunk.void.len();
-    let diameters = chunk.exits.network.diameters();
-    let words = chunk.table.words::<CLASSED>();
+    let widths = chunk.exits.widths;
+    let words = chunk.table.words::<R>();
     assert_eq!(count, chunk.diameter.len());
-    assert_eq!(diameters.len(), 3 * words.len());
+    assert_eq!(widths.len(), 3 * words.len());
     let voids = _mm512_set1_epi32(words.len() as i32);
-    let below = _mm512_set1_epi32(Lattice::below::<CLASSED>() as i32);
+    let below = _mm512_set1_epi32(Lattice::below::<R>() as i32);
     let finest = _mm512_set1_epi32(chunk.table.finest as i32);
     // SAFETY: `moves` has sixteen entries.
     let moves = unsafe { _mm512_loadu_si512(chunk.table.moves.as_ptr().cast()) };
     let zero = _mm512_setzero_si512();
     let halves = [twice(0), twice(WIDTH as i32)];
 
+    let reach = R::JAMS.then(|| load_reach(chunk.reach()));
     let mut state = load_state(&chunk.lanes);
+    let mut jam_state = load_state(&chunk.jam_lanes::<R>());
     let mut kept = 0;
     for block in (0..count - count % BLOCK).step_by(DRAWS_PER_BLOCK) {
         chunk.fetch_ahead(block, DRAWS_PER_BLOCK);
         let draws = next_block(&mut state);
+        let jam_draws = if R::JAMS { next_block(&mut jam_state) } else { zero };
         for (half, twice) in halves.into_iter().enumerate() {
             let begin = block + WIDTH * half;
             // SAFETY: sixteen entries from `begin` on are within both columns, which are `count` long.
@@ -72,11 +77,16 @@ fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
             // Those without an open exit, too.
             let out = _mm512_cmpge_epu32_mask(to, voids);
             let mut passes = finest;
-            if CLASSED {
+            if R::CLASSED {
                 let class = _mm512_and_si512(word, _mm512_set1_epi32(CLASS as i32));
                 passes = _mm512_add_epi32(finest, _mm512_slli_epi32::<CLASS_UP>(class));
             }
-            let coarse = _mm512_cmpgt_epi32_mask(d, passes);
+            let mut size = d;
+            if let Some(reach) = reach {
+                let reach = reach_of(reach, half_of(jam_draws, half));
+                size = _mm512_castps_si512(_mm512_mul_ps(_mm512_castsi512_ps(d), reach));
+            }
+            let coarse = if R::WIDTHS { !0 } else { _mm512_cmpgt_epi32_mask(d, passes) };
             let (mut stopped, mut stranded) = (0, 0);
             if out | coarse != 0 {
                 let past = _mm512_and_si512(index, _mm512_set1_epi32((PAST_FIRST | PAST_SECOND) as i32));
@@ -87,10 +97,17 @@ fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
                     // SAFETY: voids are less than the table's length (no lane is outside here) and exits less
                     // than 3, so that constrictions are less than 3 times it, the number of diameters.
                     let width = unsafe {
-                        _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, diameters.as_ptr().cast())
+                        _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, widths.as_ptr().cast())
                     };
                     stopped = _mm512_mask_cmpgt_epi32_mask(able, d, width);
                     note(&mut chunk.events.stopped, constriction, d, stopped);
+                    if R::JAMS {
+                        let may = _mm512_mask_cmpgt_epi32_mask(able & !stopped, size, width);
+                        if may != 0 {
+                            let of_lanes = [constriction, d, jam_draws];
+                            stopped |= jammed(&mut chunk, begin, of_lanes, may, out | stopped, kept);
+                        }
+                    }
                 }
                 note(&mut chunk.events.stranded, from, d, stranded);
             }
@@ -110,7 +127,8 @@ fn step_vectors<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
             kept += WIDTH - gone.count_ones() as usize;
         }
     }
-    chunk.step_rest::<CLASSED>(|| block_of(next_block(&mut state)), kept)
+    let mut next_of_jams = || if R::JAMS { block_of(next_block(&mut jam_state)) } else { [0; LANES] };
+    chunk.step_rest::<R>(|| [block_of(next_block(&mut state)), next_of_jams()], kept)
 }
 
 /// Words of the table for sixteen voids, as [`avx2::look_up`]'s.
@@ -159,6 +177,64 @@ fn decide(
     }
     // SAFETY: sixteen entries.
     unsafe { _mm512_loadu_si512(indices.as_ptr().cast()) }
+}
+
+/// How far draws reach, in registers.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn load_reach(reach: &Reach) -> [__m512; 2] {
+    let parts = reach.as_chunks::<WIDTH>().0;
+    // SAFETY: a part has sixteen entries.
+    [0, 1].map(|part| unsafe { _mm512_loadu_ps(parts[part].as_ptr()) })
+}
+
+/// Sixteen draws of a block: its first or its second half.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn half_of(draws: __m512i, half: usize) -> __m256i {
+    if half == 0 { _mm512_castsi512_si256(draws) } else { _mm512_extracti64x4_epi64::<1>(draws) }
+}
+
+/// How far sixteen draws reach: by [`Arching::class_of`](crate::walk::arching::Arching::class_of).
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
+    let draws = _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(draws));
+    let class = _mm512_srli_epi32::<22>(_mm512_castps_si512(draws));
+    let class = _mm512_sub_epi32(class, _mm512_set1_epi32(CLASS_OF_ONE as i32));
+    let class = _mm512_max_epi32(class, _mm512_setzero_si512());
+    _mm512_permutex2var_ps(reach[0], class, reach[1])
+}
+
+/// Which of the lanes that may jam do: asked one by one, in order, with the constriction that each has
+/// chosen, its size and the block of the draws by which they jam. Those that leave or are stopped for another
+/// reason have a bit in `gone`; `kept` before this vector still move.
+#[inline(never)]
+#[target_feature(enable = "avx512f,popcnt")]
+fn jammed(
+    chunk: &mut LatticeChunk,
+    begin: usize,
+    [constriction, d, draws]: [__m512i; 3],
+    mut may: __mmask16,
+    gone: __mmask16,
+    kept: usize,
+) -> __mmask16 {
+    let (mut exits, mut diameters, draws) = ([0u32; WIDTH], [0f32; WIDTH], block_of(draws));
+    // SAFETY: both arrays have sixteen entries.
+    unsafe {
+        _mm512_storeu_si512(exits.as_mut_ptr().cast(), constriction);
+        _mm512_storeu_si512(diameters.as_mut_ptr().cast(), d);
+    }
+    let mut jammed = 0;
+    while may != 0 {
+        let j = may.trailing_zeros() as usize;
+        may &= may - 1;
+        let before = (gone | jammed) & ((1 << j) - 1);
+        let places = [begin + j, kept + j - before.count_ones() as usize];
+        let draw = draw16(&draws, (begin + j) % DRAWS_PER_BLOCK);
+        jammed |= u16::from(chunk.jams(exits[j], diameters[j], places, draw)) << j;
+    }
+    jammed
 }
 
 /// Constriction that each lane's draw picks, by the index of its move.

@@ -1,90 +1,62 @@
 //! The step on any network: exits and targets by look-up.
 
-use std::collections::HashMap;
-
 use crate::network::{END, Network};
-use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, Purpose, Words, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
 use crate::walk::Arching;
+use crate::walk::arches::Jam;
 use crate::walk::crowding::Crowd;
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
-use crate::walk::sizes::cube;
 
 /// Moves the particles of one chunk, which may arch; returns how many still move.
 pub(super) fn step(
     network: &Network,
     table: &General,
-    arching: Option<(&Arching, Option<&Crowd>)>,
+    jams: Option<Jams>,
     key: Key,
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
 ) -> usize {
-    match arching {
-        None => step_all(network, table, key, void, diameter, events, |_, _, _, _| false),
-        Some((arching, crowd)) => {
-            let mut arches = Arches::new(arching, crowd, key);
-            step_all(network, table, key, void, diameter, events, |at, width, d, events| {
-                arches.stop(at, width, d, events)
-            })
-        }
+    // Two loops, of which one has no question of arches.
+    match jams {
+        None => step_all(network, table, key, void, diameter, events, None),
+        jams => step_all(network, table, key, void, diameter, events, jams),
     }
 }
 
-/// The arches of one chunk in one increment.
-struct Arches<'a> {
+/// How the particles of a chunk jam, and the stream of that.
+pub(super) struct Jams<'a> {
     arching: &'a Arching,
     /// The particles in each void, where the law depends on them.
     crowd: Option<&'a Crowd>,
-    words: Words,
-    /// Constrictions in which an arch has begun, and how many more particles it takes.
-    begun: HashMap<u32, u32>,
+    lanes: Lanes,
+    extension: Extension,
+    block: [u64; LANES],
 }
 
-impl<'a> Arches<'a> {
-    fn new(arching: &'a Arching, crowd: Option<&'a Crowd>, key: Key) -> Self {
-        let words = Key { purpose: Purpose::Arching, ..key }.words();
-        Self { arching, crowd, words, begun: HashMap::new() }
+impl<'a> Jams<'a> {
+    /// Before the first particle.
+    pub fn new(arching: &'a Arching, crowd: Option<&'a Crowd>, lanes: Lanes) -> Self {
+        Self { arching, crowd, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
 
-    /// Whether a particle, which fits through this exit, stays in an arch there; it is then counted.
+    /// The jam of the particle at place `j`, in void `from`, in this exit, which it fits; so many before it
+    /// still move. `None` where it passes.
     #[inline]
-    fn stop(&mut self, at: At, width: f32, d: f32, events: &mut Events) -> bool {
-        self.arching.may(width, d) && self.joins(at, width, d, events)
-    }
-
-    fn joins(&mut self, at: At, width: f32, d: f32, events: &mut Events) -> bool {
-        match self.begun.get_mut(&at.exit) {
-            Some(0) => return false,
-            Some(left) => *left -= 1,
-            None => match self.arching.begun(width, d, self.words.at(at.place as u64), self.crowd(at)) {
-                None => return false,
-                Some(particles) => {
-                    self.begun.insert(at.exit, particles - 1);
-                    events.arched.1 += 1;
-                }
-            },
+    fn of(&self, j: usize, from: u32, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
+        let draw = draw16(&self.block, j % DRAWS_PER_BLOCK);
+        if d * self.arching.reach()[Arching::class_of(draw)] <= width {
+            return None;
         }
-        events.arched.0 += 1;
-        events.arched.2 += cube(d);
-        true
-    }
-
-    /// The particles in the void of one: how many, and the sum of their diameters cubed.
-    fn crowd(&self, at: At) -> (u32, f64) {
-        self.crowd.map_or((0, 0.0), |crowd| crowd.of_void(at.from))
+        let crowd = self.crowd.map_or((0, 0.0), |crowd| crowd.of_void(from));
+        let word = self.extension.complete(draw, j as u64);
+        let particles = self.arching.jams(width, d, word, crowd)?;
+        Some(Jam { rank: rank as u32, exit, diameter: d, particles })
     }
 }
 
-/// Where a particle is: its place in the chunk, its void, and the exit that it chose.
-#[derive(Clone, Copy)]
-struct At {
-    place: usize,
-    from: u32,
-    exit: u32,
-}
-
-/// The step, with what may stop a particle that fits: by where it is, the width of its exit, and its size.
+/// The step, with how particles that fit may jam.
 #[inline(always)]
 fn step_all(
     network: &Network,
@@ -93,7 +65,7 @@ fn step_all(
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
-    mut is_stopped: impl FnMut(At, f32, f32, &mut Events) -> bool,
+    mut jams: Option<Jams>,
 ) -> usize {
     let mut lanes = key.lanes();
     let extension = lanes.extension();
@@ -101,6 +73,9 @@ fn step_all(
     let mut chosen = [Chosen::None; DRAWS_PER_BLOCK];
     for begin in (0..void.len()).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
+        if let Some(jams) = &mut jams {
+            jams.block = jams.lanes.next_block();
+        }
         let particles = begin..void.len().min(begin + DRAWS_PER_BLOCK);
         // All of a block choose before any moves: what one reads far away does not wait for another's move.
         for (chosen, j) in chosen.iter_mut().zip(particles.clone()) {
@@ -129,8 +104,13 @@ fn step_all(
                 }
             };
             let (target, width) = table.beyond[exit as usize];
-            if d > width || is_stopped(At { place: j, from, exit }, width, d, events) {
+            if d > width {
                 events.stopped.push((exit, d));
+                continue;
+            }
+            let jam = jams.as_ref().and_then(|jams| jams.of(j, from, (exit, width), d, kept));
+            if let Some(jam) = jam {
+                events.jams.push(jam);
                 continue;
             }
             match target {

@@ -10,12 +10,19 @@
 //! with ones in place of those bits, a half is no greater exactly where the draw is no less than the
 //! threshold, unless the two are equal in the bits that the word has. Every kernel reads the words with
 //! classes or those without, whichever suit the chunk ([`reads_classes`]): both lead to the same bits.
+//!
+//! Where particles arch, or blocked constrictions leave openings, a particle is held against the width of the
+//! exit that it chose. One that may jam is taken as larger than it is, as far as its draw reaches
+//! ([`Arching::reach`]): what is then no finer than that width goes the long way, where the law decides.
 
 use std::ops::Range;
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
+use crate::walk::arches::Jam;
+use crate::walk::arching::{Arching, Reach};
 use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
+use crate::walk::reads::{Plain, Reads};
 
 /// Particles of a block.
 pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
@@ -87,6 +94,8 @@ pub(super) struct LatticeChunk<'a> {
     pub table: &'a Lattice,
     /// The stream of this chunk and increment.
     pub lanes: Lanes,
+    /// How its particles arch, and the stream of that; only where they do.
+    pub jams: Option<(&'a Arching, Lanes)>,
     pub void: &'a mut [u32],
     pub diameter: &'a mut [f32],
     pub events: &'a mut Events,
@@ -94,22 +103,29 @@ pub(super) struct LatticeChunk<'a> {
 
 /// Moves the particles of one chunk; returns how many still move.
 #[inline(never)]
-pub(super) fn step<const CLASSED: bool>(mut chunk: LatticeChunk) -> usize {
+pub(super) fn step<R: Reads>(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
+    let mut jam_lanes = chunk.jam_lanes::<R>();
     let count = chunk.void.len();
     let mut kept = 0;
     for begin in (0..count - count % BLOCK).step_by(BLOCK) {
         chunk.fetch_ahead(begin, BLOCK);
         let draws: Draws = bytemuck::cast(lanes.next_blocks::<2>());
+        let jam_draws: Draws =
+            if R::JAMS { bytemuck::cast(jam_lanes.next_blocks::<2>()) } else { [0; 2 * LANES] };
         let mut rare = 0;
-        for (part, draws) in draws.as_chunks().0.iter().enumerate() {
+        let parts = draws.as_chunks().0.iter().zip(jam_draws.as_chunks().0);
+        for (part, (draws, jam_draws)) in parts.enumerate() {
             let done = part * PART;
-            rare |= predict::<CLASSED>(&mut chunk, begin + done, draws, kept + done) << done;
+            rare |= predict::<R>(&mut chunk, begin + done, [draws, jam_draws], kept + done) << done;
         }
-        let gone = chunk.settle::<CLASSED>(begin, &draws, rare, kept);
+        let gone = chunk.settle::<R>(begin, [&draws, &jam_draws], rare, kept);
         kept = chunk.close_up(kept, gone);
     }
-    chunk.step_rest::<CLASSED>(|| lanes.next_block(), kept)
+    chunk.step_rest::<R>(
+        || [lanes.next_block(), if R::JAMS { jam_lanes.next_block() } else { [0; LANES] }],
+        kept,
+    )
 }
 
 /// Particles whose ways are predicted at once: with 8 the compiler makes no vector code of it, and of 32 the
@@ -132,13 +148,13 @@ static BITS: [u32; PART] = {
 ///
 /// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
 #[inline]
-fn predict<const CLASSED: bool>(
+fn predict<R: Reads>(
     chunk: &mut LatticeChunk,
     begin: usize,
-    draws: &[u64; PART / 4],
+    [draws, jam_draws]: [&[u64; PART / 4]; 2],
     kept: usize,
 ) -> u64 {
-    let (table, words) = (chunk.table, chunk.table.words::<CLASSED>());
+    let (table, words) = (chunk.table, chunk.table.words::<R>());
     let (from, d): (&[u32; PART], &[f32; PART]) =
         (chunk.void[begin..].first_chunk().unwrap(), chunk.diameter[begin..].first_chunk().unwrap());
     // As a map it takes a third longer.
@@ -147,9 +163,26 @@ fn predict<const CLASSED: bool>(
         *word = words[from as usize];
     }
     let draws: [u16; PART] = bytemuck::cast(draws.map(u64::to_le));
+    // The size that counts, and the width of the exit that it chose.
+    let (mut size, mut width) = (*d, [f32::INFINITY; PART]);
+    if R::JAMS {
+        let jam_draws: [u16; PART] = bytemuck::cast(jam_draws.map(u64::to_le));
+        let reach = chunk.reach();
+        for (size, draw) in size.iter_mut().zip(jam_draws) {
+            *size *= reach[Arching::class_of(u16::from_le(draw)) % reach.len()];
+        }
+    }
+    if R::WIDTHS {
+        for j in 0..PART {
+            let draw = u16::from_le(draws[j]);
+            let past_first = u32::from(draw >> 2 >= (word[j] >> 2 & 0x3fff) as u16);
+            let past_second = u32::from(draw >= (word[j] >> 16) as u16);
+            width[j] = chunk.exits.widths[(3 * from[j] + past_second + (past_first | past_second)) as usize];
+        }
+    }
     let (nx, plane) = (table.moves[4], table.moves[15]);
     let last_layer = (words.len() as u32 - plane) as i32;
-    let less = if CLASSED { 5 } else { 0 };
+    let less = if R::CLASSED { 5 } else { 0 };
     let (mut rare, mut to) = (0, [0; PART]);
     for j in 0..PART {
         let draw = u32::from(u16::from_le(draws[j]));
@@ -161,11 +194,15 @@ fn predict<const CLASSED: bool>(
         let across = nx.wrapping_sub(wraps_y & plane);
         let by = before_first & sideways | !before_first & across;
         let by = before_second & by | !before_second & plane;
-        let class = if CLASSED { (word[j] & CLASS) << CLASS_UP } else { 0 };
+        let class = if R::CLASSED { (word[j] & CLASS) << CLASS_UP } else { 0 };
         let wrong = ones(top_first == first)
             | ones(top_second == second)
             | before_first & !before_second
-            | ones(d[j].to_bits() as i32 > (table.finest + class) as i32)
+            | if R::WIDTHS {
+                ones(size[j] > width[j])
+            } else {
+                ones(d[j].to_bits() as i32 > (table.finest + class) as i32)
+            }
             | !before_second & ones(from[j] as i32 >= last_layer);
         rare |= wrong & BITS[j];
         to[j] = from[j].wrapping_add(by & !wrong);
@@ -183,29 +220,24 @@ fn ones(yes: bool) -> u32 {
     0u32.wrapping_sub(u32::from(yes))
 }
 
-impl LatticeChunk<'_> {
+impl<'a> LatticeChunk<'a> {
     /// Asks for the columns some way behind the `count` particles from `begin` on.
     #[inline(always)]
     pub fn fetch_ahead(&self, begin: usize, count: usize) {
         fetch(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
-    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way; all were
-    /// written from `kept` on. Returns a bit for each that is gone from there.
+    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way, by the draws
+    /// of both streams; all were written from `kept` on. Returns a bit for each that is gone from there.
     #[inline]
-    pub fn settle<const CLASSED: bool>(
-        &mut self,
-        begin: usize,
-        draws: &Draws,
-        mut rare: u64,
-        kept: usize,
-    ) -> u64 {
-        let mut gone = 0;
+    pub fn settle<R: Reads>(&mut self, begin: usize, draws: [&Draws; 2], mut rare: u64, kept: usize) -> u64 {
+        let mut gone = 0u64;
         while rare != 0 {
             let j = rare.trailing_zeros() as usize;
             rare &= rare - 1;
-            let draw = (draws[j / 4] >> (16 * (j % 4))) as u16;
-            match self.attempt::<CLASSED>(kept + j, begin + j, draw) {
+            let draws = draws.map(|draws| (draws[j / 4] >> (16 * (j % 4))) as u16);
+            let rank = kept + j - gone.count_ones() as usize;
+            match self.attempt::<R>(kept + j, begin + j, draws, rank) {
                 Some(to) => self.void[kept + j] = to,
                 None => gone |= 1 << j,
             }
@@ -230,20 +262,21 @@ impl LatticeChunk<'_> {
         end
     }
 
-    /// Moves what particles are left after whole blocks, by the blocks of the stream that come next; `kept`
+    /// Moves what particles are left after whole blocks, by the blocks of both streams that come next; `kept`
     /// before them still move.
-    pub fn step_rest<const CLASSED: bool>(
+    pub fn step_rest<R: Reads>(
         &mut self,
-        mut next_block: impl FnMut() -> [u64; LANES],
+        mut next_blocks: impl FnMut() -> [[u64; LANES]; 2],
         mut kept: usize,
     ) -> usize {
         let count = self.void.len();
         let mut begin = count - count % BLOCK;
         while begin < count {
-            let block = next_block();
+            let blocks = next_blocks();
             let end = count.min(begin + DRAWS_PER_BLOCK);
             for j in begin..end {
-                if let Some(to) = self.attempt::<CLASSED>(j, j, draw16(&block, j - begin)) {
+                let draws = blocks.each_ref().map(|block| draw16(block, j - begin));
+                if let Some(to) = self.attempt::<R>(j, j, draws, kept) {
                     self.void[kept] = to;
                     self.diameter[kept] = self.diameter[j];
                     kept += 1;
@@ -254,18 +287,29 @@ impl LatticeChunk<'_> {
         kept
     }
 
-    /// The attempt of the particle at `place` by draw `index` in full: where it is then, if it still moves.
+    /// The attempt of the particle at `place` by draw `index` of both streams in full: where it is then, if
+    /// it still moves. So many before it do.
     #[inline]
-    fn attempt<const CLASSED: bool>(&mut self, place: usize, index: usize, draw: u16) -> Option<u32> {
+    fn attempt<R: Reads>(
+        &mut self,
+        place: usize,
+        index: usize,
+        [draw, jam_draw]: [u16; 2],
+        rank: usize,
+    ) -> Option<u32> {
         let (from, d) = (self.void[place], self.diameter[place]);
-        let word = self.table.words::<CLASSED>()[from as usize];
-        let exit = Lattice::pick::<CLASSED>(word, draw).or_else(|| self.undecided(from, index, draw));
+        let word = self.table.words::<R>()[from as usize];
+        let exit = Lattice::pick::<R>(word, draw).or_else(|| self.undecided(from, index, draw));
         let Some(exit) = exit else {
             self.events.stranded.push((from, d));
             return None;
         };
-        if d > self.exits.passive_limit && d > self.exits.network.diameters()[(3 * from + exit) as usize] {
-            self.events.stopped.push((3 * from + exit, d));
+        let constriction = 3 * from + exit;
+        if d > self.exits.passive_limit && d > self.exits.widths[constriction as usize] {
+            self.events.stopped.push((constriction, d));
+            return None;
+        }
+        if R::JAMS && self.jams(constriction, d, [index, rank], jam_draw) {
             return None;
         }
         let to = self.table.target(from, exit, word);
@@ -276,15 +320,38 @@ impl LatticeChunk<'_> {
         Some(to)
     }
 
+    /// Whether a particle that fits jams in a constriction by draw `index`; it is then noted, with the number
+    /// of those before it that still move.
+    pub fn jams(&mut self, exit: u32, diameter: f32, [index, rank]: [usize; 2], draw: u16) -> bool {
+        let Some((arching, lanes)) = &self.jams else { return false };
+        let word = lanes.extension().complete(draw, index as u64);
+        let width = self.exits.widths[exit as usize];
+        let particles = arching.jams(width, diameter, word, (0, 0.0));
+        let jam = particles.map(|particles| Jam { rank: rank as u32, exit, diameter, particles });
+        self.events.jams.extend(jam);
+        jam.is_some()
+    }
+
+    /// The stream by which particles jam, where they do; else that of the step, unused.
+    pub fn jam_lanes<R: Reads>(&self) -> Lanes {
+        let jams = self.jams.as_ref().filter(|_| R::JAMS);
+        jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
+    }
+
+    /// How far draws reach, where particles jam.
+    pub fn reach(&self) -> &'a Reach {
+        self.jams.as_ref().expect("particles jam").0.reach()
+    }
+
     /// Exit picked by a draw for which a word with classes may have too few bits; `None` where no exit is
     /// open.
     #[cold]
     pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
-        if let Some(exit) = Lattice::pick::<false>(self.table.plain[void as usize], draw) {
+        if let Some(exit) = Lattice::pick::<Plain>(self.table.plain[void as usize], draw) {
             return Some(exit);
         }
         let mut thresholds = Vec::with_capacity(3);
-        let last_open = exits::thresholds(self.exits.network, self.exits.blocked, void, &mut thresholds)?;
+        let last_open = exits::thresholds(self.exits.network, self.exits.ways, void, &mut thresholds)?;
         let draw = self.lanes.extension().complete(draw, index as u64);
         Some(thresholds.iter().position(|&t| draw < t).unwrap_or(last_open) as u32)
     }

@@ -18,9 +18,12 @@ use super::crowding::Crowd;
 use super::exits::{Form, OpenExits};
 use super::insert::Insertion;
 use super::merge::Events;
+use super::openings::{Ways, Weighed};
+use super::reads::{Classed, Jamming, Plain, Reads, Widths};
 use super::{Arching, ExitTable, State, Supply};
 use crate::network::Network;
-use crate::stream::{Key, Purpose};
+use crate::stream::{Key, Lanes, Purpose};
+use general::Jams;
 use lattice::LatticeChunk;
 
 /// Inserts this increment's particles and moves those of all chunks, in parallel where that pays; what
@@ -54,7 +57,12 @@ pub(super) fn step(
     let exits = OpenExits {
         network,
         table,
-        blocked: &state.blocked,
+        ways: match &state.openings {
+            None => Ways::Unblocked(&state.blocked),
+            // What water weighs has no lattice, which alone asks for it.
+            Some(openings) => Ways::Openings(&openings.widths, Weighed::Whole),
+        },
+        widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
         passive_limit: state.passive_limit,
         arching: supply.arching(),
         crowd: crowd.as_ref(),
@@ -72,7 +80,8 @@ pub(super) fn step(
         let key = Key { chunk, ..key };
         events.lend_buffer(moving + 16);
         let kept = step_chunk(&exits, key, &mut void[..moving], &mut diameter[..moving], events);
-        events.moves = (moving - events.stopped.len() - events.stranded.len()) as u64 - events.waiting;
+        let stayed = events.stopped.len() + events.stranded.len() + events.jams.len();
+        events.moves = (moving - stayed) as u64 - events.waiting;
         events.sum(classes, exits.passive_limit);
         *live = kept as u32;
     });
@@ -97,24 +106,36 @@ fn step_chunk(
         Form::Lattice(table) => {
             lattice::fetch_first(void, diameter);
             let isa = exits.table.isa();
-            let classed = lattice::reads_classes(diameter, exits.passive_limit);
-            let chunk = LatticeChunk { exits, table, lanes: key.lanes(), void, diameter, events };
-            if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) }
+            let reads = (table.by_widths(), lattice::reads_classes(diameter, exits.passive_limit));
+            let jams = exits.arching.map(|arching| (arching, jam_lanes(key)));
+            let jams_any = jams.is_some();
+            let chunk = LatticeChunk { exits, table, lanes: key.lanes(), jams, void, diameter, events };
+            match reads {
+                (true, _) if jams_any => step_lattice::<Jamming>(chunk, isa),
+                (true, _) => step_lattice::<Widths>(chunk, isa),
+                (false, true) => step_lattice::<Classed>(chunk, isa),
+                (false, false) => step_lattice::<Plain>(chunk, isa),
+            }
         }
         Form::General(table) => {
-            let arching = exits.arching.map(|arching| (arching, exits.crowd));
-            general::step(exits.network, table, arching, key, void, diameter, events)
+            let jams = exits.arching.map(|arching| Jams::new(arching, exits.crowd, jam_lanes(key)));
+            general::step(exits.network, table, jams, key, void, diameter, events)
         }
     }
 }
 
-/// The step on a lattice, by words with classes or without.
-fn step_lattice<const CLASSED: bool>(chunk: LatticeChunk, isa: Isa) -> usize {
+/// The stream by which the particles of a chunk jam.
+fn jam_lanes(key: Key) -> Lanes {
+    Key { purpose: Purpose::Arching, ..key }.lanes()
+}
+
+/// The step on a lattice, by what it reads of each void.
+fn step_lattice<R: Reads>(chunk: LatticeChunk, isa: Isa) -> usize {
     match isa {
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 if lattice::fits_gathers(chunk.table) => avx512::step::<CLASSED>(chunk),
+        Isa::Avx512 if lattice::fits_gathers(chunk.table) => avx512::step::<R>(chunk),
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 if lattice::fits_gathers(chunk.table) => avx2::step::<CLASSED>(chunk),
-        _ => lattice::step::<CLASSED>(chunk),
+        Isa::Avx2 if lattice::fits_gathers(chunk.table) => avx2::step::<R>(chunk),
+        _ => lattice::step::<R>(chunk),
     }
 }

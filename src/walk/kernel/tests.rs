@@ -6,8 +6,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
+use crate::walk::arches::Jam;
 use crate::walk::fill::fill_diameters;
-use crate::walk::{Isa, SizeClasses, exits};
+use crate::walk::{Isa, LAWS, SizeClasses, exits};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -25,26 +26,43 @@ struct After {
     eroded: Vec<f32>,
     stopped: Vec<(u32, f32)>,
     stranded: Vec<(u32, f32)>,
+    jams: Vec<Jam>,
 }
 
-/// A kernel: its instructions, and whether it reads words with classes.
-type Kernel = (Isa, bool);
+/// What a kernel reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Reading {
+    Plain,
+    Classed,
+    Widths,
+    /// A law by its place.
+    Jamming(usize),
+}
+
+/// A kernel: its instructions, and what it reads.
+type Kernel = (Isa, Reading);
 
 /// One step of the particles in `void` and `diameter`.
-fn after(scene: &Scene, key: Key, (isa, classed): Kernel, void: &[u32], diameter: &[f32]) -> After {
+fn after(scene: &Scene, key: Key, (isa, reading): Kernel, void: &[u32], diameter: &[f32]) -> After {
     let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
     let blocked: BitVec = scene.blocked.iter().copied().collect();
     let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
     let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
     let state = State::new(&network, &supply, classes, blocked, 1, 1);
-    let mut table = ExitTable::new(&network, &state.blocked);
+    let ways = Ways::Unblocked(&state.blocked);
+    let mut table = match reading {
+        Reading::Plain | Reading::Classed => ExitTable::new(&network, &state.blocked),
+        Reading::Widths | Reading::Jamming(_) => ExitTable::by_widths(&network, ways),
+    };
     table.set_isa(isa);
+    let arching = arching(reading);
     let exits = OpenExits {
         network: &network,
         table: &table,
-        blocked: &state.blocked,
-        passive_limit: state.passive_limit,
-        arching: None,
+        ways,
+        widths: network.diameters(),
+        passive_limit: arching.as_ref().map_or(state.passive_limit, |_| 0.0),
+        arching: arching.as_ref(),
         crowd: None,
     };
     let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
@@ -54,15 +72,27 @@ fn after(scene: &Scene, key: Key, (isa, classed): Kernel, void: &[u32], diameter
         exits: &exits,
         table: form,
         lanes: key.lanes(),
+        jams: arching.as_ref().map(|arching| (arching, jam_lanes(key))),
         void: &mut void,
         diameter: &mut diameter,
         events: &mut events,
     };
-    let kept = if classed { step_lattice::<true>(chunk, isa) } else { step_lattice::<false>(chunk, isa) };
+    let kept = match reading {
+        Reading::Plain => step_lattice::<Plain>(chunk, isa),
+        Reading::Classed => step_lattice::<Classed>(chunk, isa),
+        Reading::Widths => step_lattice::<Widths>(chunk, isa),
+        Reading::Jamming(_) => step_lattice::<Jamming>(chunk, isa),
+    };
     void.truncate(kept);
     diameter.truncate(kept);
-    let Events { eroded, stopped, stranded, .. } = events;
-    After { void, diameter, eroded, stopped, stranded }
+    let Events { eroded, stopped, stranded, jams, .. } = events;
+    After { void, diameter, eroded, stopped, stranded, jams }
+}
+
+/// Its law.
+fn arching(reading: Reading) -> Option<Arching> {
+    let Reading::Jamming(law) = reading else { return None };
+    Some(Arching::new(&LAWS[law], 0.25))
 }
 
 fn key(seed: u64) -> Key {
@@ -74,10 +104,11 @@ fn available() -> impl Iterator<Item = Isa> {
 }
 
 fn kernels() -> impl Iterator<Item = Kernel> {
-    available().flat_map(|isa| [(isa, false), (isa, true)])
+    let readings = [Reading::Plain, Reading::Classed, Reading::Widths];
+    available().flat_map(move |isa| readings.map(|reading| (isa, reading)))
 }
 
-const PORTABLE: Kernel = (Isa::Portable, false);
+const PORTABLE: Kernel = (Isa::Portable, Reading::Plain);
 
 /// `count` values picked from `palette` by a plain congruence.
 fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
@@ -120,37 +151,60 @@ proptest! {
         };
         let (void, diameter) = (picked(count, &voids, seed ^ 1), picked(count, &sizes, seed ^ 2));
         let expected = after(&scene, key(seed), PORTABLE, &void, &diameter);
-        prop_assert_eq!(&by_definition(&scene, key(seed), &void, &diameter), &expected);
+        prop_assert_eq!(&by_definition(&scene, key(seed), Reading::Plain, &void, &diameter), &expected);
         let gone = expected.eroded.len() + expected.stopped.len() + expected.stranded.len();
         prop_assert_eq!(expected.void.len() + gone, count);
         for kernel in kernels() {
             prop_assert_eq!(&after(&scene, key(seed), kernel, &void, &diameter), &expected, "{:?}", kernel);
         }
+        for law in 0..LAWS.len() {
+            let reading = Reading::Jamming(law);
+            let expected = by_definition(&scene, key(seed), reading, &void, &diameter);
+            for isa in available() {
+                let found = after(&scene, key(seed), (isa, reading), &void, &diameter);
+                prop_assert_eq!(&found, &expected, "{:?} {}", isa, law);
+            }
+        }
     }
 }
 
 /// The step by the definition: all 64 bits of every draw, every diameter looked at.
-fn by_definition(scene: &Scene, key: Key, void: &[u32], diameter: &[f32]) -> After {
+fn by_definition(scene: &Scene, key: Key, reading: Reading, void: &[u32], diameter: &[f32]) -> After {
     let network = Network::cubic_from_diameters(scene.shape, scene.diameters.clone(), 1.0).unwrap();
     let blocked: BitVec = scene.blocked.iter().copied().collect();
     let (mut lanes, mut block) = (key.lanes(), [0; LANES]);
-    let mut after =
-        After { void: vec![], diameter: vec![], eroded: vec![], stopped: vec![], stranded: vec![] };
+    let mut after = After {
+        void: vec![],
+        diameter: vec![],
+        eroded: vec![],
+        stopped: vec![],
+        stranded: vec![],
+        jams: vec![],
+    };
+    let (arching, mut jam_lanes, mut jam_block) = (arching(reading), jam_lanes(key), [0; LANES]);
     for (j, (&from, &d)) in void.iter().zip(diameter).enumerate() {
         if j % DRAWS_PER_BLOCK == 0 {
-            block = lanes.next_block();
+            (block, jam_block) = (lanes.next_block(), jam_lanes.next_block());
         }
+        let jam_draw = jam_lanes.extension().complete(draw16(&jam_block, j % DRAWS_PER_BLOCK), j as u64);
         let draw = lanes.extension().complete(draw16(&block, j % DRAWS_PER_BLOCK), j as u64);
         let mut thresholds = Vec::new();
-        let last_open = exits::thresholds(&network, &blocked, from, &mut thresholds);
+        let last_open = exits::thresholds(&network, Ways::Unblocked(&blocked), from, &mut thresholds);
         let Some(last_open) = last_open else {
             after.stranded.push((from, d));
             continue;
         };
         let exit = thresholds.iter().position(|&t| draw < t).unwrap_or(last_open);
         let constriction = network.exits(from).start + exit;
+        let width = network.diameters()[constriction];
+        let jams = arching.as_ref().filter(|_| d <= width);
+        if let Some(particles) = jams.and_then(|law| law.jams(width, d, jam_draw, (0, 0.0))) {
+            let (rank, exit) = (after.void.len() as u32, constriction as u32);
+            after.jams.push(Jam { rank, exit, diameter: d, particles });
+            continue;
+        }
         match network.targets()[constriction] {
-            _ if d > network.diameters()[constriction] => after.stopped.push((constriction as u32, d)),
+            _ if d > width => after.stopped.push((constriction as u32, d)),
             crate::network::END => after.eroded.push(d),
             to => {
                 after.void.push(to);
