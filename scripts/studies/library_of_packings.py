@@ -23,6 +23,7 @@ FRICTIONS = {"dense": 0.0, "medium": 0.1, "loose": 0.3}
 # Fewer grains scatter, more cost hours; the widest shapes end where the cell is this many largest grains wide.
 GRAINS = (2000, 5000)
 # Of the shapes that are drawn, few are above Cu 10; these come after them, with more grains.
+DRAWN = 126
 BROAD = {"cu": (20, 31), "shapes": 12, "grains": 12000}
 # A part that leaves out more of the grains' surface, or holds less of the mass, says too little of its shape.
 SURFACE_LEFT_OUT = 0.1
@@ -215,7 +216,7 @@ def main():
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--shapes", type=int, default=126, help="shapes besides the broad ones")
+    parser.add_argument("--shapes", type=int, default=DRAWN, help="shapes besides the broad ones")
     parser.add_argument("--from-shape", type=int, default=0, help="leave out the shapes before this one")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
@@ -227,7 +228,7 @@ def main():
     def one(job):
         key, family, points, density, seed = job
         whole = cu_of(points)
-        part, grains = that_fits(points, BROAD["grains"] if int(key[:3]) >= options.shapes else GRAINS[1])
+        part, grains = that_fits(points, BROAD["grains"] if int(key[:3]) >= DRAWN else GRAINS[1])
         about = {"key": key, "family": family, "density": density, "seed": seed, "cu": whole, "grains": grains}
         line = about | {"percent": 100 * points_share(points, part), "points": part}
         line |= pack(options.binary, options.out, key, part, density, grains, seed)
@@ -235,8 +236,8 @@ def main():
             file.write(json.dumps(line) + "\n")
 
     jobs = []
-    drawn = itertools.chain(shapes(options.shapes), broad_shapes())
-    for k, (family, points) in enumerate(drawn):
+    drawn = enumerate(shapes(min(options.shapes, DRAWN)))
+    for k, (family, points) in itertools.chain(drawn, enumerate(broad_shapes(), DRAWN)):
         for density in FRICTIONS:
             seeds = [1 + k, 1001 + k] if k % 12 == 0 else [1 + k]
             jobs += [(f"{k:03}-{density}-{seed}", family, points, density, seed) for seed in seeds]

@@ -14,7 +14,7 @@ const WATER_PROTOCOL: u32 = 5;
 
 /// What is added where several curves or readings are walked: their walks have other names, and the verdict
 /// follows from them in another way than before.
-const RANGE_PROTOCOL: u32 = 400;
+const RANGE_PROTOCOL: u32 = 500;
 
 /// What is added where particles arch: raised whenever the program gives other results for these alone.
 const ARCHING_PROTOCOL: u32 = 10_000;

@@ -346,6 +346,27 @@ mod tests {
         }
     }
 
+    /// Broad filters are packed in their finer part, which narrower ones resemble.
+    #[test]
+    fn the_shapes_before_them_say_the_broad_ones() {
+        const BEFORE: usize = 126;
+        let rows = TABLE.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+        let shapes = rows.map(|line| line.split(',').next().unwrap().parse::<usize>().unwrap());
+        let (before, broad): (Vec<_>, Vec<_>) =
+            shapes.zip(packings(TABLE)).partition(|(shape, _)| *shape < BEFORE);
+        let library = Library::of(before.into_iter().map(|(_, packing)| packing).collect());
+        let inner = percentages().into_iter().enumerate().filter(|(_, of)| (5.0..=95.0).contains(of));
+        let inner: Vec<usize> = inner.map(|(k, _)| k).collect();
+        let mut most = 0.0;
+        for (_, packing) in &broad {
+            let found = library.at(&packing.place);
+            let errors = inner.iter().map(|&k| (found[k] / exp(packing.measured[k]) - 1.0).abs());
+            most = errors.fold(most, f64::max);
+        }
+        println!("{} broad packings by the others: Dc5 to Dc95 within {:.2} %", broad.len(), 100.0 * most);
+        assert!(broad.len() == 39 && most < 0.02, "{most}");
+    }
+
     #[test]
     fn the_library_holds_enough_and_scales() {
         assert!(packings(TABLE).len() >= 400);

@@ -16,7 +16,7 @@ impl CurveRange {
         runs: &[Statistic],
         ends: Vec<CurveEnd>,
         worst_counts: bool,
-        decide_percent: Option<f64>,
+        could_be: Option<Verdict>,
     ) -> Option<Self> {
         if ends.is_empty() {
             return None;
@@ -29,7 +29,7 @@ impl CurveRange {
             })
         };
         let eroded_mass_fraction = (0..runs.len()).map(of_run).collect();
-        Some(Self { verdict, ends, worst_counts, decide_percent, eroded_mass_fraction })
+        Some(Self { verdict, ends, worst_counts, could_be, eroded_mass_fraction })
     }
 
     /// The class that the whole range supports.
@@ -49,18 +49,16 @@ impl CurveRange {
         let is_open = all().any(|of| of == Verdict::Undecided);
         match worst {
             Some(Verdict::Continuing) => Verdict::Continuing,
-            Some(worst) if !is_open || (self.is_usual() && worst == self.could_be()) => worst,
+            Some(worst) if !is_open || worst == self.could_be() => worst,
             _ => Verdict::Undecided,
         }
     }
 
-    /// Whether its classes are those of the 95 % intervals that it holds.
-    fn is_usual(&self) -> bool {
-        self.decide_percent.is_none()
-    }
-
     /// The worst class that the intervals of the whole range allow.
     fn could_be(&self) -> Verdict {
+        if let Some(worst) = self.could_be {
+            return worst;
+        }
         let above =
             |run: usize| self.eroded_mass_fraction.get(run).is_none_or(|[_, high]| *high >= THRESHOLD);
         match (above(0), above(1)) {
@@ -127,10 +125,11 @@ mod tests {
         assert_eq!(whole(None, None, Undecided), Undecided);
         assert_eq!(whole(None, Undecided, None), Undecided);
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
-        // At another level these intervals say nothing of what is open.
+        // At another level other intervals say what is open.
         let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
-        assert_eq!(range.whole(), Some);
-        range.decide_percent = std::option::Option::Some(99.9);
-        assert_eq!(range.whole(), Undecided);
+        for (worst, found) in [(Some, Some), (Continuing, Undecided)] {
+            range.could_be = std::option::Option::Some(worst);
+            assert_eq!(range.whole(), found);
+        }
     }
 }

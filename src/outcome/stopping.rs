@@ -11,9 +11,9 @@
 //! than the error probability asked for, however often one looks (Bonferroni), at the price of intervals that
 //! are somewhat wide. The intervals are Student's, for means of independent replicates.
 //!
-//! Where the constriction curve is known within a range only, the curve itself and the ends of its range share
-//! the error: each is classed at `1 / curves` of it, by one look, so that the worst class of the range is wrong
-//! with no more than the error asked for either.
+//! Where the constriction curve is known within a range only, the curve itself and the ends of its range
+//! share the error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as
+//! the curve has, with half of its share each. At a level below the usual one it is classed at that one.
 //!
 //! # Target error
 //! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
@@ -23,6 +23,9 @@ use super::record::{ShortOf, Statistic, Stopping, Verdict};
 use super::student;
 use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
 use crate::schema::{only, section, whole, within};
+
+/// Error probability of the intervals that decide where no level is asked for.
+const USUAL_ERROR: f64 = 0.05;
 
 /// Least number of replicates: fewer say too little of their own scatter.
 const FEWEST: u64 = 8;
@@ -89,7 +92,8 @@ impl StopRule {
         self.look_at_one_of(1, first, runs)
     }
 
-    /// As [`look`](Self::look), at the replicates of one of so many constriction curves, which share the error.
+    /// As [`look`](Self::look), at the replicates of one of so many constriction curves, which share the
+    /// error.
     pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
@@ -188,10 +192,17 @@ impl Stopping {
     }
 }
 
-/// The class of runs that are looked at once, with this error probability.
-pub fn class_at(error: f64, runs: &[ReplicateValues]) -> Verdict {
-    let of_run = |run: usize| lies(runs.get(run)?, error / runs.len() as f64);
-    classify(of_run(0), of_run(1))
+/// The class of runs that are looked at once, with this error probability or the usual one of each run where
+/// that is less, and the worst class that their intervals allow.
+pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
+    let each = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
+    let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, each)));
+    let worst = match (first, second) {
+        (Some(true), _) => Verdict::None,
+        (_, Some(true)) => Verdict::Some,
+        _ => Verdict::Continuing,
+    };
+    [classify(first, second), worst]
 }
 
 /// Where the mean of a run lies, by an interval with this error probability.
@@ -313,7 +324,9 @@ mod tests {
             else {
                 panic!("no more than eight are allowed")
             };
-            let at_end = class_at(rule.error_of_curve(curves).unwrap(), &[run(half_widths)]);
+            let [at_end, worst] = class_at(rule.error_of_curve(curves).unwrap(), &[run(half_widths)]);
+            let at_most = if at_end == Verdict::None { Verdict::None } else { Verdict::Continuing };
+            assert_eq!(worst, at_most);
             (stopping.verdict.unwrap(), at_end)
         };
         let (none, open) = (Verdict::None, Verdict::Undecided);
@@ -325,6 +338,12 @@ mod tests {
         assert_eq!(decided(2, 4.6), (open, none));
         assert_eq!(decided(4, 4.6), (open, none));
         assert_eq!(decided(4, 4.5), (open, open));
+        // At 50 % an end is classed by the usual intervals: Student's t at an error of 5 % is 2.36.
+        let loose = decide(50.0, 8).error_of_curve(1).unwrap();
+        assert_eq!(class_at(loose, &[run(2.3)])[0], open);
+        assert_eq!(class_at(loose, &[run(2.4)])[0], none);
+        assert_eq!(class_at(loose, &[run(-3.0), run(2.4)]), [Verdict::Some; 2]);
+        assert_eq!(class_at(loose, &[run(0.0), run(2.4)]), [open, Verdict::Some]);
     }
 
     #[test]

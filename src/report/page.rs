@@ -24,7 +24,7 @@ use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, Stopping};
+use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, Stopping, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::{OF_AMOUNTS, OF_THICKNESS};
@@ -207,7 +207,11 @@ fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
     let short = ["level_missed", "target_missed", "second_run_missing"];
     let short =
         short.into_iter().find_map(|id| outcome.sentence_of(id)).or_else(|| stopping.sentence.clone());
+    let is_open = outcome.curve_range.as_ref().is_some_and(|range| range.whole() == Verdict::Undecided);
     text += match (&short, stopping.met) {
+        (_, true) if is_open && stopping.decide_percent.is_some() => {
+            "That was reached for the curve itself; the range of the constrictions leaves the class open."
+        }
         (_, true) => "That was reached.",
         (Some(sentence), _) => sentence,
         (None, false) => "That was not reached.",

@@ -27,12 +27,19 @@ pub fn curve_range(
     let (verdict, summaries, _) = concluded(case, walked);
     let one = |(part, end): (u64, &OtherCurve)| of_end(case, end, part, walked, verdict, context);
     let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
-    let ends = each((before..).zip(&case.curve_ends).collect(), fit, one)?;
+    let ends: Vec<(CurveEnd, Verdict)> = each((before..).zip(&case.curve_ends).collect(), fit, one)?;
+    let (ends, mut allowed): (Vec<CurveEnd>, Vec<Verdict>) = ends.into_iter().unzip();
+    allowed.push(match (verdict, case.scene.stop.error_of_curve(case.curves())) {
+        (Verdict::Undecided, Some(error)) => class_at(error, &values_by_run(walked))[1],
+        _ => verdict,
+    });
+    let worst = [Verdict::Continuing, Verdict::Some].into_iter().find(|class| allowed.contains(class));
+    let could_be = case.scene.stop.decide_percent.map(|_| worst.unwrap_or(Verdict::None));
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some(), case.scene.stop.decide_percent))
+    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some(), could_be))
 }
 
-/// Walks one end.
+/// Walks one end; beside it the worst class that its walks allow where a confidence level was asked for.
 fn of_end(
     case: &Case,
     end: &OtherCurve,
@@ -40,7 +47,7 @@ fn of_end(
     walked: &[ReplicateResult],
     class: Verdict,
     context: &ReplicateContext,
-) -> Result<CurveEnd, RunError> {
+) -> Result<(CurveEnd, Verdict), RunError> {
     let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.curve.dc(50.0).unwrap_or(f64::NAN);
     let other = case.with_curve(end.curve.clone());
     // What a user or a cap says of the amount of base holds for every curve.
@@ -49,9 +56,11 @@ fn of_end(
     let n_base = case.times_base(times);
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
     let mut of_end = some_replicates(&other, part, 1..=first, n_base, context)?;
-    let level = case.scene.stop.error_of_curve(case.curves());
-    let clear =
-        clear_end(&values_by_run(walked), class, &values_by_run(&of_end), level.unwrap_or(ERROR_OF_END));
+    // Of either look.
+    let error = case.scene.stop.error_of_curve(case.curves()).map(|error| 0.5 * error);
+    let of_first = error.unwrap_or(ERROR_OF_END).min(ERROR_OF_END);
+    let clear = clear_end(&values_by_run(walked), class, &values_by_run(&of_end), of_first);
+    let mut could_be = class;
     let walked = match clear {
         Some(runs) if first < all => {
             Classed { stopped_when_clear: true, verdict: class, runs, ..classed(&of_end) }
@@ -62,9 +71,11 @@ fn of_end(
             }
             of_end.extend(some_replicates(&other, part, first + 1..=all, n_base, context)?);
             let usual = classed(&of_end);
-            let verdict = level.map_or(usual.verdict, |error| class_at(error, &values_by_run(&of_end)));
+            let by_level = error.map(|error| class_at(error, &values_by_run(&of_end)));
+            let [verdict, worst] = by_level.unwrap_or([usual.verdict; 2]);
+            could_be = worst;
             Classed { verdict, ..usual }
         }
     };
-    Ok(CurveEnd { curve: end.name.clone(), dc50_factor, walked })
+    Ok((CurveEnd { curve: end.name.clone(), dc50_factor, walked }, could_be))
 }

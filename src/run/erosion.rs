@@ -12,8 +12,8 @@ use crate::walk::{Clogged, SizeClasses, State, UnblockedExits, Walk, WalkControl
 const SIZE_CLASSES: usize = 2;
 
 /// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions
-/// that are `clogged` at its start: the same bits as [`super::walk_case`] gives. `open` are the network's exits
-/// where they are known. Returns what eroded and what the constrictions are at the end.
+/// that are `clogged` at its start: the same bits as [`super::walk_case`] gives. `open` are the network's
+/// exits where they are known. Returns what eroded and what the constrictions are at the end.
 ///
 /// # Errors
 /// A walk that goes wrong, or that was stopped; particles that do not fit.

@@ -157,8 +157,8 @@ pub struct Walk<'a> {
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
-/// Which exit a draw picks on a network of which nothing is blocked: worked out once for the first runs of many
-/// walks.
+/// Which exit a draw picks on a network of which nothing is blocked: worked out once for the first runs of
+/// many walks.
 pub struct UnblockedExits {
     table: ExitTable,
     shares: counts::Shares,
@@ -179,8 +179,8 @@ impl<'a> Walk<'a> {
         Self::with_exits(network, supply, state, None)
     }
 
-    /// As [`Walk::new`], with the exits of this network, known already, where nothing is blocked in `state` and
-    /// nothing else hangs on who goes where.
+    /// As [`Walk::new`], with the exits of this network, known already, where nothing is blocked in `state`
+    /// and nothing else hangs on who goes where.
     pub fn with_exits(
         network: &'a Network,
         supply: &'a Supply,

@@ -51,7 +51,8 @@ fn openings_are_walked_and_said() {
     let [sealed, flowing] =
         [&flux[2..], &flux[..]].map(|more| run(&walked(at, "flux", more), 1, "k_over_k0"));
     assert!(flowing > sealed, "{flowing} {sealed}");
-    let arches = walked(at, "arches", &["--set", "walk.blocked=open", "--set", "walk.arching=marin-2018"]);
+    let law = ["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.1"];
+    let arches = walked(at, "arches", &[&flux[..2], &law].concat());
     assert!(run(&arches, 0, "arches") > 0.0);
 }
 

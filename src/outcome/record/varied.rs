@@ -120,10 +120,10 @@ pub struct CurveRange {
     /// walked; elsewhere ends that differ leave it undecided.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub worst_counts: bool,
-    /// Confidence level (%) at which every class of the range is decided, where one was asked for; 95 % of each
-    /// curve else.
+    /// The worst class that the walks of the range allow, at the confidence level of the verdict, where one
+    /// was asked for; without one it follows from the 95 % intervals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub decide_percent: Option<f64>,
+    pub could_be: Option<Verdict>,
     /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
     /// means of a single replicate (fraction of the mass).
     pub eroded_mass_fraction: Vec<[f64; 2]>,

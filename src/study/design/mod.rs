@@ -253,9 +253,11 @@ fn searched(
     }
     let text = format!("searching up to {} networks", total - done.len() as u64);
     (callbacks.on_event)(Event::Studying(&text));
-    let searching = Searching { rows, bracket, done: Mutex::new(done), kept, callbacks };
     let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
     let (ends, others): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&row| !less[row].is_empty());
+    let searched = others.iter().filter(|&&row| rows[row].networks() > 0).count().max(1);
+    let begun_at_once = rayon::current_num_threads().div_ceil(searched);
+    let searching = Searching { rows, bracket, done: Mutex::new(done), kept, callbacks, begun_at_once };
     let ended = others.into_par_iter().try_for_each(|row| searching.row(row)).and_then(|()| {
         // Those that hold more by the look of them are searched where they may set the answer all the same.
         let row_or_less = |row: usize| match searching.holds_clearly_more(row, &less[row])? {
@@ -282,11 +284,13 @@ struct Searching<'a> {
     done: Mutex<Vec<Done>>,
     kept: &'a Kept<'a>,
     callbacks: &'a Callbacks<'a>,
+    /// Networks of a row that begin before its first has ended, and are in memory until they end.
+    begun_at_once: usize,
 }
 
 impl Searching<'_> {
-    /// Searches every network of a row that is not done. The first says where to look on the others; while its
-    /// second run is searched, some of them begin.
+    /// Searches every network of a row that is not done. The first says where to look on the others; while
+    /// its second run is searched, some of them begin.
     fn row(&self, row: usize) -> Result<(), RunError> {
         let of = &self.rows[row];
         let found = |network: u64| {
@@ -299,7 +303,7 @@ impl Searching<'_> {
             Some((1, others)) => {
                 let first = of.begun(1, with(Hint::default()), self.callbacks)?;
                 let hint = first.hint();
-                let (soon, others) = others.split_at(others.len().min(rayon::current_num_threads()));
+                let (soon, others) = others.split_at(others.len().min(self.begun_at_once));
                 let begin = |&network: &u64| Ok((network, of.begun(network, with(hint), self.callbacks)?));
                 let (first, soon) = rayon::join(
                     || self.keep(row, 1, first.ended(None)?),
@@ -326,7 +330,8 @@ impl Searching<'_> {
         begun.and(whole)
     }
 
-    /// Whether the first network of an end holds clearly more than these rows, so that it cannot set the answer.
+    /// Whether the first network of an end holds clearly more than these rows, so that it cannot set the
+    /// answer.
     fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
         let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();
         let first = |done: &Vec<Done>| done.iter().find(|done| done.row == row).map(|of| of.found.spared_at);

@@ -33,8 +33,8 @@ pub(super) fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     if least.contains(&at) { Vec::new() } else { least }
 }
 
-/// The ratio that the first network of an end has to hold, so that it cannot set the answer beside rows that hold
-/// less, of which all networks are done; `None` where it is searched whatever it holds.
+/// The ratio that the first network of an end has to hold, so that it cannot set the answer beside rows that
+/// hold less, of which all networks are done; `None` where it is searched whatever it holds.
 pub(super) fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
     let ratio = |&(row, networks): &(usize, u64)| {
         let of_row = done.iter().filter(|done| done.row == row);

@@ -214,8 +214,8 @@ fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<String> {
     let said = |(_, end): (&Row, &FoundRow)| {
         let ratio = end.spared_at?;
         Some(format!(
-            "The end {} holds clearly more: D15F/D85B {ratio:.2} on the first of {} networks. It cannot set the \
-             answer, and its boundary was not searched.",
+            "The end {} holds clearly more: D15F/D85B {ratio:.2} on the first of {} networks. It is taken \
+             that it does not set the answer, and its boundary was not searched.",
             end.of.density, row.case.scene.walk.replicates
         ))
     };

@@ -524,6 +524,35 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
     assert!(!dense.is_empty() && dense.iter().all(|line| line.contains(",6 layers,1,")), "{dense:?}");
 }
 
+/// Stopped when one of two such ends is kept, and continued on three threads.
+#[test]
+fn a_design_goes_on_from_an_end_that_was_not_searched() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |name: &str, threads: usize| DesignOptions {
+        filter: Some("1.5".into()),
+        thicknesses: vec!["4layers".parse().unwrap(), "6layers".parse().unwrap()],
+        prepare: PrepareOptions { threads: Some(threads), ..PrepareOptions::default() },
+        ..tiny(&folder.path().join(name), &["replicates=3", "base.cu=1.5"])
+    };
+    let whole = found(&of("whole", 2));
+    let spared = |row: &DesignRow| row.no_erosion_note.as_ref().is_some_and(|of| of.contains("clearly more"));
+    assert_eq!(whole.boundaries.iter().filter(|row| spared(row)).count(), 2, "{:?}", whole.boundaries);
+    let stop = AtomicBool::new(false);
+    let callbacks = Callbacks {
+        on_event: &|event| {
+            if matches!(event, Event::Studying(text) if text.contains(" holds (")) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        },
+        stop: &stop,
+        ..Callbacks::default()
+    };
+    let error = run(&of("stopped", 1), &callbacks).unwrap_err();
+    // Three networks of either thickness, and one end.
+    assert!(error.to_string().starts_with("after 7 of 12 networks"), "{error}");
+    assert_eq!(timeless(&run(&of("stopped", 3), &Callbacks::default()).unwrap()), timeless(&whole));
+}
+
 /// An end that another row has, too, stays a row of its own, and is searched once.
 #[test]
 fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {

@@ -64,8 +64,8 @@ struct Trap {
 }
 
 impl<'a> PassiveWalk<'a> {
-    /// Prepares to move the passive particles of `state`, by the shares of its open exits where they are known;
-    /// `None` where there are none but one by one.
+    /// Prepares to move the passive particles of `state`, by the shares of its open exits where they are
+    /// known; `None` where there are none but one by one.
     pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<&Shares>) -> Option<Self> {
         let shares =
             || known.cloned().unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));

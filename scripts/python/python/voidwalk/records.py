@@ -894,16 +894,16 @@ class CurveRange(_CurveRange, total=False):
     worst_counts
         Whether the worst class of the range is the verdict, as for a filter of which loose and dense are
         walked; elsewhere ends that differ leave it undecided.
-    decide_percent
-        Confidence level (%) at which every class of the range is decided, where one was asked for; 95 % of each
-        curve else.
+    could_be
+        The worst class that the walks of the range allow, at the confidence level of the verdict, where one was
+        asked for; without one it follows from the 95 % intervals.
     eroded_mass_fraction
         Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
         means of a single replicate (fraction of the mass).
     """
 
     worst_counts: bool
-    decide_percent: Optional[float]
+    could_be: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
 
 
 class MarginWalk(TypedDict):

@@ -23,8 +23,8 @@
 //! that erodes; two stops below are tried all the same. Where that finds nothing, it goes by stops.
 //!
 //! The boundary of the second run is searched when that of the first is known, so that other networks can
-//! begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near where it begins to erode
-//! itself: what holds in the first holds in the second.
+//! begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near where it
+//! begins to erode itself: what holds in the first holds in the second.
 
 mod first;
 mod second;

@@ -246,3 +246,25 @@ fn a_fall_is_steady_only_where_it_is_clear_of_the_threshold_by_what_scatters() {
     assert_eq!(after(&|at| if at % 2 == 0 { 0.01 } else { 0.07 }), None);
     assert_eq!(after(&|_| 0.05), None);
 }
+
+#[test]
+fn a_ratio_that_holds_is_known_by_few_walks() {
+    let line = || formula(|s| 0.075 + 0.1 * (s - 4.4), |_| panic!("the first run is enough"));
+    let holds = |formula: &mut dyn Walker, ratio: f64| {
+        holding(formula, [0.5, 100.0], (ratio, USUAL_ACROSS)).unwrap().map(|found| found.spared_at.unwrap())
+    };
+    let mut steady = line();
+    let at = holds(&mut steady, 4.0).unwrap();
+    assert!((4.0..4.0 * 1.0051).contains(&at), "{at}");
+    // It falls steadily, which five walks below it show.
+    assert!((2..=7).contains(&steady.walks), "{}", steady.walks);
+    assert_eq!(holds(&mut line(), 4.5), None);
+    // Beyond the search, or where the base cannot be walked.
+    assert_eq!(holds(&mut line(), 101.0), None);
+    assert_eq!(holds(&mut line(), 0.3), None);
+    assert_eq!(holds(&mut Formula { possible: [5.0, 10.0], ..line() }, 4.0), None);
+    // A dip a few percent below is seen.
+    let dips = |s: f64| if (3.8..3.85).contains(&s) { 0.08 } else { 0.074 };
+    assert_eq!(holds(&mut formula(dips, |_| 1.0), 4.0), None);
+    assert!(holds(&mut formula(|_| 0.074, |_| 1.0), 4.0).is_some());
+}

@@ -86,7 +86,7 @@ impl ExpectedFlow {
         self.rests = resting(&self.holding, expected);
         if matches!(self.by_network, ByNetwork::Lattice(_)) {
             // All that was inserted and had neither left nor come to rest.
-            expected.sums.moves += expected.sums.inserted as f64 - eroded - self.rests;
+            expected.sums.moves += (expected.sums.inserted as f64 - eroded - self.rests).max(0.0);
         }
         std::mem::swap(&mut expected.moving, &mut self.next);
     }

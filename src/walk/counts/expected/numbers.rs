@@ -73,8 +73,8 @@ impl Expected {
     }
 
     /// Renews the whole numbers that the state counts, and gives those before and after. `holding` are the
-    /// voids that retain something, ascending, and what they retain together. With `trapped`, what moves beside so many trapped particles is
-    /// less than half a particle, and is counted as come to rest.
+    /// voids that retain something, ascending, and what they retain together. With `trapped`, what moves
+    /// beside so many trapped particles is less than half a particle, and is counted as come to rest.
     pub(in crate::walk::counts) fn count(
         &mut self,
         (holding, stranded): (&[u32], f64),
