@@ -65,7 +65,7 @@ pub enum Purpose {
     Resampling = 11,
     /// Permutations of strata (stratified sampling).
     Strata = 12,
-    /// Which particles start an arch.
+    /// Which particles jam.
     Arching = 13,
 }
 

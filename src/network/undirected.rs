@@ -203,6 +203,12 @@ impl Network {
         (twin != NO_TWIN).then_some(twin as usize)
     }
 
+    /// The number of a constriction, whichever way it is passed: the lesser of its exits.
+    #[inline]
+    pub(crate) fn either_way(&self, exit: usize) -> usize {
+        self.twin(exit).map_or(exit, |twin| twin.min(exit))
+    }
+
     /// Marks a constriction as blocked, or as open again, both ways.
     pub fn set_blocked(&self, blocked: &mut bitvec::slice::BitSlice, exit: usize, is: bool) {
         blocked.set(exit, is);

@@ -48,7 +48,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
             };
             let [dx_mm, dy_mm, dz_mm] = places.way(from, to);
             rows.push(ConstrictionRow {
-                constriction: number(network, exit),
+                constriction: network.either_way(exit) as u64,
                 from,
                 to,
                 dx_mm,
@@ -67,7 +67,7 @@ pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     let row = |blocking: &crate::walk::Blocking| BlockedRow {
         run: state.run,
         increment: blocking.increment,
-        constriction: number(network, blocking.constriction as usize),
+        constriction: network.either_way(blocking.constriction as usize) as u64,
     };
     state.history.iter().map(row).collect()
 }
@@ -93,9 +93,4 @@ pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
     let filter = network.filter_voids() as i64;
     let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };
     rows.iter().map(|row| RetainedRow { void: void(row), ..row.clone() }).collect()
-}
-
-/// The number of the constriction that an exit is, whichever way it is passed.
-fn number(network: &Network, exit: usize) -> u64 {
-    network.twin(exit).map_or(exit, |twin| twin.min(exit)) as u64
 }

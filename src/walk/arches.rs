@@ -37,8 +37,7 @@ pub(super) fn settle<'a>(
     for (chunk, jams) in jams.enumerate().filter(|(_, jams)| !jams.is_empty()) {
         for jam in jams.drain(..) {
             let exit = jam.exit as usize;
-            let constriction = network.twin(exit).map_or(exit, |twin| twin.min(exit));
-            let room = room.entry(constriction).or_insert_with(|| {
+            let room = room.entry(network.either_way(exit)).or_insert_with(|| {
                 state.tally.arches += 1;
                 jam.particles
             });

@@ -11,7 +11,7 @@
 //! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
 //! fewer than an arch has.
 //!
-//! Whether a particle jams hangs on itself, the constriction and what lies in its void alone, and who stays
+//! Whether a particle jams depends on itself, the constriction and what lies in its void alone, and who stays
 //! on the order of insertion alone. So the cutting of the particles into chunks plays no part, but in which
 //! draw a particle takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run,
 //! increment, `c`), completed to 64 bits where sixteen do not decide.
@@ -104,8 +104,9 @@ pub static LAWS: [Law; 3] = [
     Law {
         name: "critical-3",
         source: "after Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102",
-        basis: "Every particle below R = 3 starts an arch. It retains as sieving with particles three times \
-                as large, by which a walk is checked. It held bases that eroded in tests.",
+        basis: "Every particle below R = 3 jams. One that jams alone is retained as by sieving with \
+                particles three times as large, by which a walk is checked; of those that jam in one \
+                constriction at once no more stay than an arch has. It held bases that eroded in tests.",
         widest: 3.0,
         of_concentration: false,
         probability: |_, _| 1.0,
@@ -118,7 +119,7 @@ impl Law {
         LAWS.iter().find(|law| law.name == name)
     }
 
-    /// Probability that a particle starts an arch in a constriction `ratio` times its size, where the base
+    /// Probability that a particle jams in a constriction `ratio` times its size, where the base
     /// arrives with this concentration (volume of particles by volume of voids); 0 from the widest on.
     ///
     /// ```

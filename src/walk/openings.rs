@@ -156,7 +156,7 @@ impl Openings {
     pub(super) fn stop(&mut self, network: &Network, exit: usize, diameter: f32) {
         let left = residual_opening(f64::from(network.diameters()[exit]), f64::from(diameter)) as f32;
         if left < self.widths[exit] {
-            let first = network.twin(exit).map_or(exit, |twin| twin.min(exit));
+            let first = network.either_way(exit);
             let (constriction, before) = (first as u32, self.widths[exit]);
             self.history.push(Narrowing { increment: 0, constriction, before, after: left });
             self.set(network, exit, left);

@@ -43,6 +43,10 @@ pub struct Reference<'a> {
     pub stopped: Vec<(Particle, usize)>,
     /// How many of them stay in arches.
     pub arched: u64,
+    /// Their diameters cubed, summed.
+    pub arched_mass: f64,
+    /// Arches.
+    pub arches: u64,
     /// Particles in voids without open exits.
     pub stranded: Vec<Particle>,
     /// Particles trapped in closed loops.
@@ -78,6 +82,8 @@ impl<'a> Reference<'a> {
             eroded: vec![],
             stopped: vec![],
             arched: 0,
+            arched_mass: 0.0,
+            arches: 0,
             stranded: vec![],
             trapped: vec![],
             widths: supply.leaves_openings().then(|| network.diameters().to_vec()),
@@ -134,6 +140,7 @@ impl<'a> Reference<'a> {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
                 self.arched += 1;
+                self.arched_mass += f64::from(particle.diameter).powi(3);
                 continue;
             }
             self.particle_moves += 1;
@@ -142,6 +149,7 @@ impl<'a> Reference<'a> {
                 void => still_moving.push(Particle { void, ..particle }),
             }
         }
+        self.arches += begun.len() as u64;
         self.moving = still_moving;
         self.narrow(stopped_before);
         for exit in newly_blocked {

@@ -60,7 +60,8 @@ fn compare(network: &Network, supply: &Supply, clogged: Clogged, seed: u64, run:
         assert_eq!(tally.moving, reference.moving.len() as u64);
         assert_eq!(tally.eroded, reference.eroded.len() as u64);
         assert_eq!(tally.retained_in_constrictions, reference.stopped.len() as u64);
-        assert_eq!(tally.retained_in_arches, reference.arched);
+        assert_eq!((tally.retained_in_arches, tally.arches), (reference.arched, reference.arches));
+        assert!((tally.arched_mass - reference.arched_mass).abs() <= 1e-9 * reference.arched_mass);
         assert_eq!(tally.retained_in_voids, reference.stranded.len() as u64);
         assert_eq!(tally.trapped, reference.trapped.len() as u64);
         assert_eq!(tally.particle_moves, reference.particle_moves);
@@ -233,4 +234,18 @@ fn chunks_are_filled_and_drained_as_the_reference_says() {
     let base = Gradation::linear_from_d0(0.7, 1.3).unwrap();
     let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), 2 * CHUNK as u64 + 77, 3);
     compare(&network, &supply, Clogged::none(&network), 11, 1);
+}
+
+/// Arches of mixed sizes whose particles lie in three chunks: the first of all says how many stay.
+#[test]
+fn arches_over_several_chunks_are_as_the_reference_says() {
+    let count = 3 * 2 * 2 * 3;
+    let network = Network::cubic_from_diameters([2, 2, 3], diameters(count, &[2.0, 3.0], 5), 1.0).unwrap();
+    let base = Gradation::linear_from_d0(0.7, 2.5).unwrap();
+    let law = Arching::new(LAWS.iter().find(|law| law.name == "critical-3").unwrap(), 0.0);
+    let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), 2 * CHUNK as u64 + 7_232, 1)
+        .arching_by(Some(Arc::new(law)));
+    let clogged = compare(&network, &supply, Clogged::none(&network), 11, 1);
+    // All of the first layer.
+    assert!(clogged.blocked.count_ones() >= 12);
 }

@@ -236,7 +236,7 @@ pub struct Run {
     /// Particles stopped by a constriction.
     pub retained_in_constrictions: u64,
     /// Those of them that are in arches; `None` where there are no arches. No physical number: it depends on
-    /// the order of insertion and on the width of the network (arches.md).
+    /// what an increment brings to one constriction (arches.md).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retained_in_arches: Option<u64>,
     /// Arches, likewise.

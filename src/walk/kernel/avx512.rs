@@ -95,7 +95,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
                 if able != 0 {
                     let constriction = constriction(from, index);
                     // SAFETY: voids are less than the table's length (no lane is outside here) and exits less
-                    // than 3, so that constrictions are less than 3 times it, the number of diameters.
+                    // than 3, so that constrictions are less than 3 times it, the number of widths.
                     let width = unsafe {
                         _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, widths.as_ptr().cast())
                     };

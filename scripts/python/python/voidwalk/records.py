@@ -268,7 +268,7 @@ class Run(_Run, total=False):
         Particles stopped by a constriction.
     retained_in_arches
         Those of them that are in arches; `None` where there are no arches. No physical number: it depends on
-        the order of insertion and on the width of the network (arches.md).
+        what an increment brings to one constriction (arches.md).
     arches
         Arches, likewise.
     arched_mass_fraction
