@@ -95,7 +95,7 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     assert_eq!(String::from_utf8(designed(at, &words("samples.csv", "d")).stdout).unwrap(), said);
     assert_eq!(tables(&at.join("d")), before);
     refused(&call(at, &words("other.csv", "d")), "holds the designs of other samples");
-    let others = [["--seed", "7"], ["--sieves", "iso"], ["--units", "us"], ["--set", "about.title=\"Dam\""]];
+    let others = [["--seed", "7"], ["--sieves", "iso"], ["--units", "us"], ["--set", "about.client=\"Dam\""]];
     for more in others {
         let other = [&words("samples.csv", "d")[..], &more].concat();
         refused(&call(at, &other), "holds the designs of other samples");
