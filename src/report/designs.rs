@@ -117,8 +117,8 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
             @if !all.filter.is_empty() {
                 "No erosion by walk up to: the D15F that nearly all networks hold. "
             }
-            "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for the \
-             sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \
+            "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for \
+             the sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \
              practice where none of these is known."
             @if !all.filter.is_empty() {
                 " Confidence: how far the D15F can be relied on, with the weightiest reason."
