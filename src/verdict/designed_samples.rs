@@ -263,8 +263,8 @@ impl DesignedSample {
             .digits("no_erosion_d15f_over_d85b", 3, move |row| design(row)?.no_erosion_d15f_over_d85b)
             .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
             .number("D15F up to, mm", |row| {
-                let mm = row.d15f_max_mm.map(rounded_down).unwrap_or_default();
-                mm.shown().below((!row.no_band.is_empty()).then(|| "no band".to_owned()))
+                let is_unserved = row.d15f_max_mm.is_some() && !row.no_band.is_empty();
+                row.d15f_max_mm.map(rounded_down).shown().below(is_unserved.then(|| "no band".to_owned()))
             })
             .column("set_by", |row: &Self| row.set_by().map(str::to_owned))
             .headed("Set by")
