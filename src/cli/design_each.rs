@@ -5,8 +5,9 @@ use std::path::Path;
 
 use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
-use super::print::{json, plain, shown, to_stdout};
+use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::DesignOptions;
@@ -37,11 +38,16 @@ pub(super) fn design_each(args: &DesignArgs, samples: &Path, design: DesignOptio
 fn words(all: &DesignedSamples, out: &Path) -> String {
     let mut text = aligned(DesignedSample::columns(), &all.rows) + &in_notes(&all.notes) + "\n";
     for said in all.in_words() {
+        let said = if all.inches { with_inches(&said) } else { said };
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", plain(&said));
     }
     if !all.model_leaves_out.is_empty() {
         let _ = writeln!(text, "{}", left_out_in_brief(&all.model_leaves_out));
+    }
+    if let Some(walks) = &all.walks {
+        let networks = counted(walks.networks, "network", "networks");
+        let _ = writeln!(text, "{networks} each, seed {}", walks.seed);
     }
     let _ = writeln!(text, "table: {}", shown(&out.join("designs.csv")));
     let _ = writeln!(text, "report: {}", shown(&out.join("designs.html")));

@@ -8,11 +8,12 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
 use super::names::soil_name;
+use super::numbers::whole;
 use super::section::Sections;
-use super::shell::{Drawn, citation, clean, leaves_out};
+use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::{DesignedSample, DesignedSamples};
+use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks};
 
 const RECORD: &str = "designs.json";
 
@@ -51,7 +52,8 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
             }))
         }
     } };
-    let made = html! { p {
+    let walks = all.walks.as_ref().map(walked).unwrap_or_default();
+    let made = html! { (walks) p {
         "voidwalk " (clean(&all.version)) ". "
         @if !all.filter.is_empty() { "The design of each sample has a page of its own. " }
         code { "designs.json" } " holds this page’s numbers, " code { "designs.csv" }
@@ -63,6 +65,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         citation()
     };
     Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
+        .inches(all.inches)
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
@@ -75,6 +78,18 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
 
 fn name(name: &str) -> String {
     clean(&shorten(name, 60))
+}
+
+/// What was walked for every sample alike.
+fn walked(of: &DesignedWalks) -> Markup {
+    let asked: Vec<String> = of.settings.iter().map(|setting| format!("--set {setting}")).collect();
+    html! { table.facts { tbody {
+        (fact("Filter", &of.filter))
+        (fact("Density", of.densities.join(", ")))
+        (fact("Thickness", of.thicknesses.join(", ")))
+        (fact("Networks, seed", format!("{}, {}", whole(of.networks), of.seed)))
+        @if !asked.is_empty() { (fact("Settings", asked.join(" "))) }
+    } } }
 }
 
 fn notes(all: &DesignedSamples) -> Markup {
@@ -102,7 +117,12 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
             @if !all.filter.is_empty() {
                 "No erosion by walk up to: the D15F that nearly all networks hold. "
             }
-            "D15F up to: the greatest that both allow. Governs: 1 for the sample with the least of these."
+            "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for \
+             the sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \
+             practice where none of these is known."
+            @if !all.filter.is_empty() {
+                " Confidence: how far the D15F can be relied on, with the weightiest reason."
+            }
         }
     }
 }
@@ -121,7 +141,7 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
     let what = "Greatest D15F by practice and by the walk against D85B of each sample";
     let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
-    let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
+    let governs = all.governing().first().and_then(|row| row.bound());
     if let Some(mm) = governs {
         figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
     }
@@ -136,7 +156,7 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
         if walked.is_empty() { "" } else { " Hollow: the D15F up to which the walk shows no erosion." };
     let caption = format!(
         "The strictest limit of practice of each sample.{hollow} Square: the sample that governs. The dashed \
-         line is the greatest D15F that serves all samples that have one."
+         line is the D15F beyond which that sample is not served."
     );
     Some(Drawn::new("designs", figure, caption))
 }

@@ -7,19 +7,22 @@ use super::file_names::numbered;
 use super::kept;
 use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
-use crate::outcome::design::{Design, Specification};
+use crate::outcome::design::{Design, Specification, asks_for_inches};
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::machine::on_threads;
 use crate::store::Folder;
-use crate::verdict::{DesignedSample, DesignedSamples, SpecificationOptions};
+use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks, SpecificationOptions};
 
 /// Folder of the designs, inside that of all.
 const SAMPLES: &str = "samples";
 
 /// One row a sample.
 const TABLE: &str = "designs.csv";
+
+/// Their page.
+const PAGE: &str = "designs.html";
 
 /// A refusal of all samples names no more of them.
 const NAMED: usize = 3;
@@ -61,7 +64,8 @@ pub fn each(options: &SampleDesignOptions, callbacks: &Callbacks) -> Result<Desi
     if !overwrite && let Some(found) = planned.found(options)? {
         return Ok(found);
     }
-    let folder = claim(out, kind, overwrite)?;
+    // What is there is this very work, or unfinished, of which the study says whether it is.
+    let folder = claim(out, kind, true)?;
     let work = planned.work.clone();
     let all = kept::study((&folder, kind, overwrite), work, callbacks, |_, _: Option<()>| {
         let all = planned.designed(options, &folder, callbacks)?;
@@ -88,13 +92,14 @@ impl Planned {
         };
         let mut rows: Vec<DesignedSample> = samples.iter().map(row).collect();
         let names = numbered(rows.iter().map(|row| row.sample.clone()).collect());
+        let stated = options.stated();
         let (mut folders, mut filter) = (Vec::new(), String::new());
         for (row, name) in rows.iter_mut().zip(names).filter(|_| !options.by_practice_alone) {
             let of_sample = options.of_sample(row, PathBuf::new());
             let work_of = match identity(&of_sample) {
                 Ok(of) => {
                     filter = of.filter;
-                    of.work
+                    hash(&format!("{} {stated}", of.work))
                 }
                 Err(problem) => {
                     row.not_walked = problem.to_string();
@@ -111,8 +116,8 @@ impl Planned {
             return Err(RunError::Refused(format!("no sample can be walked\n{}", reasons.join("\n"))));
         }
         let curves: Vec<_> = samples.iter().map(|of| of.curve.points()).collect();
-        let text = format!("{} {dispersive} {folders:?} {rows:?} {curves:?}", shown(&options.samples));
-        let work = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()));
+        let samples_at = shown(&options.samples);
+        let work = hash(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));
         Ok(Self { rows, folders, filter, dispersive, notes: notes(&samples)?, work })
     }
 
@@ -128,7 +133,10 @@ impl Planned {
         }
         let there: DesignedSamples = kept::record(folder.path(), kind)?;
         if there.work == self.work {
-            return Ok(Some(there));
+            // A table or a page that somebody took away is written again.
+            let is_whole = |name: &&str| out.join(name).is_file();
+            let page = cfg!(feature = "report").then_some(PAGE);
+            return Ok([TABLE].iter().chain(&page).all(|name| is_whole(&name)).then_some(there));
         }
         let problem =
             "holds the designs of other samples or settings; name another folder or add --overwrite";
@@ -142,7 +150,8 @@ impl Planned {
         folder: &Folder,
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
-        let (mut rows, mut leaves_out) = (Vec::new(), Vec::new());
+        let (mut rows, mut leaves_out, mut walks) = (Vec::new(), Vec::new(), None);
+        let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
                 rows.push(row.clone());
@@ -158,6 +167,7 @@ impl Planned {
                 false => run(&of_sample, callbacks)?,
             };
             leaves_out.clone_from(&design.model_leaves_out);
+            walks = Some(DesignedWalks::of(&design, settings));
             rows.push(row.clone().designed(&design, place));
         }
         let all = DesignedSamples::new(shown(&options.samples), rows);
@@ -165,6 +175,8 @@ impl Planned {
             work: self.work.clone(),
             filter: self.filter.clone(),
             dispersive: self.dispersive,
+            inches: asks_for_inches(settings.iter().map(String::as_str)),
+            walks,
             notes: self.notes.clone(),
             model_leaves_out: leaves_out,
             ..all
@@ -173,9 +185,20 @@ impl Planned {
 }
 
 impl SampleDesignOptions {
+    /// What of the options stands in table, page or designs beside what is walked.
+    fn stated(&self) -> String {
+        let of = &self.design;
+        let authority = of.authority.word();
+        format!("{} {authority} {:?} {} {}", of.sieves, of.settings, of.as_sampled, of.as_given)
+    }
+
     fn of_sample(&self, row: &DesignedSample, out: PathBuf) -> DesignOptions {
         DesignOptions { base: Some(row.path.clone()), out, overwrite: false, ..self.design.clone() }
     }
+}
+
+fn hash(text: &str) -> String {
+    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
 }
 
 /// What was assumed of the files, once each.

@@ -4,14 +4,17 @@ use super::entry::Finding;
 use super::finding;
 use super::practice::cited;
 use super::words::within;
-use crate::outcome::design::band::{Band, SetBy, limits, retention};
+use crate::outcome::design::band::{Band, SetBy, limits, open_retention, retention};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{PERMEABILITY, RULES};
 
 impl Band {
     /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
-    /// `None` where the least is not known.
+    /// `None` where the least is not known, or of the limit of practice only the most.
     pub fn new(rules: &[AppliedRule], d15f: f64, held: f64, unit: &str) -> Option<Self> {
+        if open_retention(rules).is_some() {
+            return None;
+        }
         let limits = limits(rules, d15f);
         let (drainage, least) = *limits.iter().find(|(rule, _)| rule.id == PERMEABILITY)?;
         let strictest = retention(rules, d15f);

@@ -6,7 +6,7 @@
 
 use super::practice::cited_rule;
 use super::words::capital;
-use crate::outcome::design::band::{SetBy, limits, retention};
+use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
 use crate::outcome::design::{Design, DesignAnswer, DesignRow};
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -34,6 +34,8 @@ struct Limit<'a> {
 enum Case<'a> {
     /// Practice allows no base that was searched.
     Forbidden(&'a AppliedRule),
+    /// Of the limit of practice only the most is known, for want of this; the walk may hold a ratio.
+    Open(Limit<'a>, &'a AppliedRule, Option<f64>),
     /// Neither walk nor practice knows a ratio.
     Unknown,
     /// The walk has no answer: the finest tail of the base, this share of its mass, may be anything.
@@ -101,6 +103,10 @@ impl<'a> Case<'a> {
             false if !sizes.has_unit => None,
             false => design.strictest(sizes).map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
         };
+        let open = open_retention(&design.rules).filter(|_| sizes.has_unit && !design.inverse);
+        if let Some((limit, rule)) = limit.zip(open) {
+            return Self::Open(limit, rule, design.least_held().map(|(_, held)| held));
+        }
         let (tail, least) = (design.base.tail_mass_fraction, design.bracket[0]);
         let nothing_holds = design.boundaries.iter().all(|row| row.held().is_none());
         match (design.least_held(), limit) {
@@ -120,7 +126,11 @@ impl<'a> Case<'a> {
         match self {
             Self::TailOpen(limit, _) | Self::Practice(limit) => Some(limit.ratio),
             Self::Walk(_, held, _) | Self::ModelAlone(_, held) => Some(*held),
-            Self::Forbidden(_) | Self::Unknown | Self::BelowSearch(..) | Self::NotHeld(_) => None,
+            Self::Forbidden(_)
+            | Self::Open(..)
+            | Self::Unknown
+            | Self::BelowSearch(..)
+            | Self::NotHeld(_) => None,
         }
     }
 
@@ -139,6 +149,16 @@ impl<'a> Case<'a> {
             Self::Forbidden(rule) => format!(
                 "No base is known that both the walk and practice allow with this filter ({})",
                 cited_rule(rule)
+            ),
+            Self::Open(limit, rule, held) => format!(
+                "The greatest D15F is not known: the limit of practice is at most {} ({}; {}){}",
+                sizes.size(limit.ratio),
+                cited_rule(limit.rule),
+                if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() },
+                match held {
+                    Some(held) => format!("; the walk alone holds {}", sizes.words(*held)),
+                    None => "; the walk has no answer either".into(),
+                }
             ),
             Self::Unknown => "No ratio is known that nearly all networks hold".into(),
             Self::TailOpen(limit, tail) => format!(
@@ -267,6 +287,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::design::Boundary;
+    use crate::outcome::design::band::Band;
     use crate::verdict::PairRules;
 
     /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
@@ -365,6 +386,32 @@ mod tests {
         let mut unknown = design(&sand(), Some(5.2));
         unknown.rules.clear();
         assert!(unknown.answer().said.ends_with("the limit of practice is not known for this base"));
+    }
+
+    /// 30 % pass the finest sieve: with as many fines the limit would be less than half of four D85B.
+    #[test]
+    fn a_limit_that_is_at_most_some_size_is_no_known_limit() {
+        let base = Gradation::from_points(
+            &[(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)],
+            None,
+        );
+        let base = base.unwrap();
+        for held in [Some(3.0), None] {
+            let mut open = design(&base, held);
+            open.base.tail_mass_fraction = 0.3;
+            let answer = open.answer();
+            assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b, &answer.rule), (None, None, &None));
+            assert!(
+                answer.said.starts_with("The greatest D15F is not known: the limit of practice is at most 7")
+            );
+            assert_eq!(
+                answer.said.contains("the walk alone holds D15F up to"),
+                held.is_some(),
+                "{}",
+                answer.said
+            );
+            assert!(Band::new(&open.rules, 4.0, 4.0, "mm").is_none());
+        }
     }
 
     /// A loose filter that erodes at all that was searched is not held by what a dense one holds.

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
+use super::practice::cited_rule;
+use super::words::capital;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
@@ -13,7 +15,7 @@ use crate::outcome::record::{Confidence, ModelLimit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 10] = [
+const SHOWN: [&str; 11] = [
     "sample",
     "group",
     "d85b_mm",
@@ -24,6 +26,7 @@ const SHOWN: [&str; 10] = [
     "d15f_max_mm",
     "set_by",
     "governs",
+    "confidence",
 ];
 
 /// The whole of `designs.json`.
@@ -40,12 +43,53 @@ pub struct DesignedSamples {
     pub filter: String,
     /// Whether the samples were said to be dispersive.
     pub dispersive: bool,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
+    /// What was walked for every sample; `None` where nothing was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walks: Option<DesignedWalks>,
     /// A row for each sample.
     pub rows: Vec<DesignedSample>,
     /// What was assumed of the files, a sentence each.
     pub notes: Vec<String>,
     /// What no walk contains; empty where nothing was walked.
     pub model_leaves_out: Vec<ModelLimit>,
+}
+
+/// What was walked for every sample alike.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct DesignedWalks {
+    /// The filter's shape and its constrictions, in words.
+    pub filter: String,
+    /// How densely the filter is packed, in the order in which it was asked for.
+    pub densities: Vec<String>,
+    /// The thicknesses that were asked for, in words.
+    pub thicknesses: Vec<String>,
+    /// Networks of each boundary.
+    pub networks: u64,
+    /// The user's seed.
+    pub seed: u64,
+    /// Settings that were given, as on the command line.
+    pub settings: Vec<String>,
+}
+
+impl DesignedWalks {
+    /// Of the design of one of the samples, with the settings that all have.
+    pub fn of(design: &Design, settings: &[String]) -> Self {
+        let asked = || design.boundaries.iter().filter(|row| row.end_of.is_none());
+        let mut densities: Vec<String> = asked().map(|row| row.density.clone()).collect();
+        let mut thicknesses: Vec<String> = Vec::new();
+        densities.dedup();
+        for row in asked() {
+            if !thicknesses.contains(&row.thickness) {
+                thicknesses.push(row.thickness.clone());
+            }
+        }
+        let (filter, networks, seed) = (design.filter.clone(), design.replicates, design.seed);
+        Self { filter, densities, thicknesses, networks, seed, settings: settings.to_vec() }
+    }
 }
 
 /// How coarse a filter may be for one sample. Sizes are in mm.
@@ -77,7 +121,11 @@ pub struct DesignedSample {
     pub d15f_min_at_most: bool,
     /// Greatest D15F that both practice and walk allow; `None` where none is known.
     pub d15f_max_mm: Option<f64>,
-    /// 1 for the sample that governs, which has the least of these, 2 and 3 for those next to it.
+    /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub no_band: String,
+    /// 1 for the sample that governs, 2 and 3 for those next to it: by `d15f_max_mm`, and where that is not
+    /// known by `limit_mm`.
     pub governs: Option<u64>,
     /// What its design says; `None` where it was not walked.
     pub design: Option<SampleDesign>,
@@ -98,6 +146,9 @@ pub struct SampleDesign {
     pub no_erosion_d15f_over_d85b: Option<f64>,
     /// What set the answer.
     pub set_by: SetBy,
+    /// Whose rule set it; empty where the walk did.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub rule: String,
     /// How far the answer can be relied on.
     pub confidence: Confidence,
     /// The weightiest reason why no further.
@@ -123,6 +174,7 @@ impl DesignedSample {
             d15f_min_mm: practice.d15f_min_mm,
             d15f_min_at_most: practice.d15f_min_at_most,
             d15f_max_mm: practice.d15f_max_mm,
+            no_band: practice.no_band.clone().unwrap_or_default(),
             governs: None,
             design: None,
             not_walked: String::new(),
@@ -133,35 +185,49 @@ impl DesignedSample {
     pub fn designed(self, design: &Design, folder: String) -> Self {
         let (answer, held) = (design.answer(), design.least_held());
         let ratio = held.map(|(_, ratio)| ratio);
+        let rule = design.rules.iter().find(|rule| answer.rule.as_ref() == Some(&rule.id));
+        // What walk and practice leave together may be no band where practice alone has one.
+        let no_band = match &design.specification {
+            Some(of) => of.no_band.clone().unwrap_or_default(),
+            None => self.no_band.clone(),
+        };
         let of = SampleDesign {
             folder,
             no_erosion_d15f_mm: ratio.zip(design.base.d85_mm).map(|(ratio, d85)| ratio * d85),
             no_erosion_d15f_over_d85b: ratio,
             set_by: answer.set_by,
+            rule: rule.map_or_else(String::new, cited_rule),
             confidence: design.confidence,
             reason: design.reasons.first().cloned(),
             said: answer.said,
         };
-        Self { d15f_max_mm: answer.d15f_max_mm, design: Some(of), ..self }
+        Self { d15f_max_mm: answer.d15f_max_mm, no_band, design: Some(of), ..self }
+    }
+
+    /// The D15F (mm) that no filter for this sample may exceed, as far as is known.
+    pub fn bound(&self) -> Option<f64> {
+        self.d15f_max_mm.into_iter().chain(self.limit_mm).min_by(f64::total_cmp)
+    }
+
+    /// Whether its greatest D15F is known, by the walk where others were walked, and it has a band.
+    pub fn is_settled(&self) -> bool {
+        self.d15f_max_mm.is_some() && self.not_walked.is_empty() && self.no_band.is_empty()
     }
 
     /// What set the greatest D15F; `None` without one.
     pub fn set_by(&self) -> Option<&'static str> {
         self.d15f_max_mm?;
-        Some(match self.design.as_ref().map(|of| of.set_by) {
-            Some(SetBy::Walk) => "the walk",
-            Some(SetBy::Practice) | None => "practice",
+        Some(match &self.design {
+            Some(of) if of.set_by == SetBy::Walk => "the walk",
+            Some(of) if of.no_erosion_d15f_mm.is_none() => "practice alone, the walk has no answer",
+            _ => "practice",
         })
     }
 
-    /// The greatest D15F, and what set it, in words.
-    fn greatest_in_words(&self) -> String {
-        let Some(greatest) = self.d15f_max_mm else { return "no greatest D15F is known".into() };
-        let whose = match self.set_by() {
-            Some("practice") => format!("practice: {}", self.rule),
-            _ => "the walk".into(),
-        };
-        format!("D15F up to {} mm ({whose})", rounded_down(greatest))
+    /// The rule that set the greatest D15F, or that limits it.
+    pub(super) fn rule_of_answer(&self) -> &str {
+        let of_design = self.design.as_ref().map(|of| of.rule.as_str()).filter(|rule| !rule.is_empty());
+        of_design.unwrap_or(&self.rule)
     }
 
     /// The columns of `designs.csv`, and under their headings what a terminal and a page show.
@@ -196,24 +262,34 @@ impl DesignedSample {
             })
             .digits("no_erosion_d15f_over_d85b", 3, move |row| design(row)?.no_erosion_d15f_over_d85b)
             .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
-            .number("D15F up to, mm", |row| row.d15f_max_mm.map(rounded_down))
+            .number("D15F up to, mm", |row| {
+                let is_unserved = row.d15f_max_mm.is_some() && !row.no_band.is_empty();
+                row.d15f_max_mm.map(rounded_down).shown().below(is_unserved.then(|| "no band".to_owned()))
+            })
             .column("set_by", |row: &Self| row.set_by().map(str::to_owned))
             .headed("Set by")
             .column("governs", |row: &Self| row.governs)
             .headed("Governs")
             .column("confidence", move |row| design(row).map(|of| of.confidence.words().to_owned()))
+            .words("Confidence", move |row| {
+                let words = design(row).map(|of| capital(of.confidence.words())).unwrap_or_default();
+                words.shown().below(design(row).and_then(|of| of.reason))
+            })
             .column("reason", move |row| design(row)?.reason)
             .column("not_walked", |row: &Self| row.not_walked.clone())
+            .column("no_band", |row: &Self| row.no_band.clone())
+            .column("said", move |row| design(row).map(|of| of.said))
             .column("folder", move |row| design(row).map(|of| of.folder))
             .only(&SHOWN)
     }
 }
 
 impl DesignedSamples {
-    /// Of these rows, with those that govern: the least D15F first, and of equal ones the finer base.
+    /// Of these rows, with those that govern: the least D15F first that is known to be too coarse beyond, and
+    /// of equal ones the finer base.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
-        let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
-        let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
+        let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].bound().is_some()).collect();
+        let key = |row: &DesignedSample| [row.bound(), row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
         let less = |a: [f64; 2], b: [f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
         order.sort_by(|&a, &b| less(key(&rows[a]), key(&rows[b])));
         for (rank, &at) in (1..).zip(order.iter().take(NAMED)) {
@@ -225,6 +301,8 @@ impl DesignedSamples {
             samples,
             filter: String::new(),
             dispersive: false,
+            inches: false,
+            walks: None,
             rows,
             notes: Vec::new(),
             model_leaves_out: Vec::new(),
@@ -236,149 +314,5 @@ impl DesignedSamples {
         let mut rows: Vec<&DesignedSample> = self.rows.iter().filter(|row| row.governs.is_some()).collect();
         rows.sort_by_key(|row| row.governs);
         rows
-    }
-
-    /// The sample that asks for the greatest D15F to drain; `None` where none asks for any.
-    fn drainage(&self) -> Option<(&DesignedSample, f64)> {
-        let limits = self.rows.iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
-        limits.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// The D15F of a filter for all samples, in a sentence without its end.
-    pub fn for_all_in_words(&self) -> String {
-        let open = self.rows.iter().filter(|row| row.d15f_max_mm.is_none() || !row.not_walked.is_empty());
-        let open = open.count();
-        let Some(first) = self.governing().first().copied() else {
-            return "For no sample a greatest D15F is known".into();
-        };
-        let of = match open {
-            0 => format!("all {} samples", self.rows.len()),
-            1 => format!("the {} samples that are settled (1 is not)", self.rows.len() - 1),
-            _ => format!("the {} samples that are settled ({open} are not)", self.rows.len() - open),
-        };
-        let greatest = first.d15f_max_mm.unwrap_or_default();
-        match self.drainage() {
-            Some((row, least)) if least > greatest => {
-                let fines = if row.d15f_min_at_most { ", or less, as its fines are not known," } else { "" };
-                let [least, greatest] = [rounded_up(least), rounded_down(greatest)];
-                let and =
-                    if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
-                format!(
-                    "No one filter serves {of}: {} needs D15F {least} mm or more{fines} to drain{and} allows \
-                     {greatest} mm at most",
-                    row.sample
-                )
-            }
-            Some((_, least)) => {
-                format!("A filter for {of}: D15F from {} to {} mm", rounded_up(least), rounded_down(greatest))
-            }
-            None => format!("A filter for {of}: D15F up to {} mm", rounded_down(greatest)),
-        }
-    }
-
-    /// Which samples govern, what sets their limits and which are open, sentences without their ends.
-    pub fn in_words(&self) -> Vec<String> {
-        let mut said = vec![self.for_all_in_words()];
-        for (at, row) in self.governing().into_iter().enumerate() {
-            let what = if at == 0 { "Governing sample" } else { "Then" };
-            said.push(format!("{what} {}: {}", row.sample, row.greatest_in_words()));
-        }
-        if let Some((row, least)) = self.drainage() {
-            let at_most = if row.d15f_min_at_most { "at most " } else { "" };
-            let limit = rounded_up(least);
-            said.push(format!("Drainage is governed by {}: least D15F {at_most}{limit} mm", row.sample));
-        }
-        let count = |what: &str| self.rows.iter().filter(|row| row.set_by() == Some(what)).count();
-        let [practice, walk] = ["practice", "the walk"].map(count);
-        if self.rows.iter().any(|row| row.design.is_some()) {
-            said.push(format!("Practice sets the greatest D15F of {practice}, the walk that of {walk}"));
-        }
-        let names = |of: &dyn Fn(&DesignedSample) -> bool| {
-            let names: Vec<&str> =
-                self.rows.iter().filter(|row| of(row)).map(|row| row.sample.as_str()).collect();
-            (!names.is_empty()).then(|| names.join(", "))
-        };
-        let open = names(&|row| row.d15f_max_mm.is_none());
-        said.extend(open.map(|names| format!("May govern, as no greatest D15F is known: {names}")));
-        let by_practice = names(&|row| row.d15f_max_mm.is_some() && !row.not_walked.is_empty());
-        said.extend(by_practice.map(|names| format!("Not walked, by practice alone: {names}")));
-        said
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gradation::Gradation;
-    use crate::verdict::SpecificationOptions;
-
-    fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
-        let curve = Gradation::from_points(points, None).unwrap();
-        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
-        let of = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
-        DesignedSample::of(&sample, &of)
-    }
-
-    fn walked(row: DesignedSample, greatest: Option<f64>) -> DesignedSample {
-        let design = SampleDesign {
-            folder: "samples/x".into(),
-            no_erosion_d15f_mm: greatest,
-            no_erosion_d15f_over_d85b: None,
-            set_by: SetBy::Walk,
-            confidence: Confidence::Outside,
-            reason: None,
-            said: String::new(),
-        };
-        DesignedSample { d15f_max_mm: greatest, design: Some(design), ..row }
-    }
-
-    #[test]
-    fn the_least_d15f_governs_and_a_sample_without_one_may() {
-        // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
-        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
-        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
-        assert_eq!(
-            (core.limit_mm, core.d15f_max_mm, core.set_by()),
-            (Some(0.7), Some(0.7), Some("practice"))
-        );
-        let limit = sand.limit_mm.unwrap();
-        assert!((limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9, "{sand:?}");
-        let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
-        let said = by_practice.in_words();
-        assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
-        assert!(
-            said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
-        );
-        // The walk allows less of one, and nothing is known of another.
-        let rows = vec![
-            walked(sand.clone(), Some(0.65)),
-            core,
-            walked(row("silt", &[(0.005, 0.0), (0.075, 90.0), (0.2, 100.0)]), None),
-        ];
-        let all = DesignedSamples::new("s".into(), rows);
-        assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(1), Some(2), None]);
-        let said = all.in_words().join("\n");
-        for words in [
-            "the 2 samples that are settled (1 is not): D15F from ",
-            "Governing sample sand: D15F up to 0.650 mm (the walk)",
-            "Practice sets the greatest D15F of 1, the walk that of 1",
-            "May govern, as no greatest D15F is known: silt",
-        ] {
-            assert!(said.contains(words), "{words}: {said}");
-        }
-        let csv = String::from_utf8(DesignedSample::columns().csv(&all.rows)).unwrap();
-        assert!(csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,limit_mm,rule,"));
-        assert_eq!(csv.lines().count(), 4);
-    }
-
-    #[test]
-    fn samples_that_no_one_filter_serves_are_said() {
-        let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
-        let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
-        let all = DesignedSamples::new("s".into(), vec![fine, coarse]);
-        let said = all.for_all_in_words();
-        assert!(said.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{said}");
-        let none = DesignedSamples::new("s".into(), Vec::new());
-        assert_eq!(none.for_all_in_words(), "For no sample a greatest D15F is known");
     }
 }

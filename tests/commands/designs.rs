@@ -1,7 +1,7 @@
 //! `design --each`: how coarse a filter may be for each of many samples; inches in designs.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 use std::time::Duration;
 
@@ -70,23 +70,46 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     assert_eq!(least["governs"], 1);
     let governing = format!("Governing sample {}: D15F up to ", least["sample"].as_str().unwrap());
     let page = fs::read_to_string(at.join("d/designs.html")).unwrap();
-    for words in [
-        governing.as_str(),
-        "No one filter serves all 3 samples: Till needs D15F ",
-        "Practice sets the greatest D15F of ",
-    ] {
+    for words in
+        [governing.as_str(), "The greatest D15F is set for ", "Outside checked range: 3 of 3 samples"]
+    {
         assert!(said.contains(words) && page.contains(words), "{words}: {said}");
     }
     assert!(page.contains("/design.html\"") && page.contains("No erosion by walk up to"));
+    // How far it can be relied on, and what was walked, as in the design of one.
+    for row in rows {
+        let reason = row["design"]["reason"].as_str().unwrap();
+        assert!(said.contains(reason) && row["design"]["confidence"] == "outside checked range", "{said}");
+    }
+    assert!(page.contains("Outside checked range</td>") || page.contains("Outside checked range<br"));
+    let walks = &all["walks"];
+    assert_eq!((&walks["networks"], &walks["seed"]), (&1.into(), &1.into()));
+    for name in ["filter", "densities", "thicknesses"] {
+        let value = walks[name].as_str().or(walks[name][0].as_str()).unwrap();
+        assert!(page.contains(value), "{name}: {value}");
+    }
+    assert!(page.contains("Networks, seed"));
     figures_are_listed(FolderKind::Designs, &at.join("d"));
     // Again: the same words, and nothing is walked; other samples and settings are refused.
     let before = tables(&at.join("d"));
     assert_eq!(String::from_utf8(designed(at, &words("samples.csv", "d")).stdout).unwrap(), said);
     assert_eq!(tables(&at.join("d")), before);
     refused(&call(at, &words("other.csv", "d")), "holds the designs of other samples");
-    let seed = [&words("samples.csv", "d")[..], &["--seed", "7"]].concat();
-    refused(&call(at, &seed), "holds the designs of other samples");
+    let others = [["--seed", "7"], ["--sieves", "iso"], ["--units", "us"], ["--set", "about.client=\"Dam\""]];
+    for more in others {
+        let other = [&words("samples.csv", "d")[..], &more].concat();
+        refused(&call(at, &other), "holds the designs of other samples");
+    }
     assert_eq!(tables(&at.join("d")), before);
+    // What somebody took away is written again, and nothing is walked.
+    let place = at.join("d").join(rows[0]["design"]["folder"].as_str().unwrap()).join("design.json");
+    let of_first = fs::read(&place).unwrap();
+    for name in ["designs.csv", "designs.html"] {
+        fs::remove_file(at.join("d").join(name)).unwrap();
+        designed(at, &words("samples.csv", "d"));
+        assert_eq!(tables(&at.join("d")), before, "{name}");
+    }
+    assert_eq!(fs::read(&place).unwrap(), of_first);
     // The page is made again from the record alone.
     fs::remove_file(at.join("d/designs.html")).unwrap();
     designed(at, &["report", "d"]);
@@ -103,7 +126,14 @@ fn killed_at_any_time_and_continued_the_table_is_the_same() {
     let at = root.path();
     designed(at, &words("samples.csv", "whole"));
     let again = words("samples.csv", "killed");
-    for wait in [40, 150, 400] {
+    // The records of the samples that are done, with their seconds.
+    let done = || -> Vec<(PathBuf, Vec<u8>)> {
+        let folders = fs::read_dir(at.join("killed/samples")).into_iter().flatten();
+        let records = folders.map(|folder| folder.unwrap().path().join("design.json"));
+        records.filter_map(|path| Some((path.clone(), fs::read(path).ok()?))).collect()
+    };
+    // The second kill falls as soon as the first sample is done, the third with the next.
+    for wanted in [0, 1, 2] {
         let mut running = std::process::Command::new(env!("CARGO_BIN_EXE_voidwalk"))
             .args(&again)
             .current_dir(at)
@@ -111,11 +141,19 @@ fn killed_at_any_time_and_continued_the_table_is_the_same() {
             .stderr(std::process::Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(wait));
+        std::thread::sleep(Duration::from_millis(40));
+        while done().len() < wanted && running.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(2));
+        }
         let _ = running.kill();
-        running.wait().unwrap();
+        assert!(!running.wait().unwrap().success(), "it ended before it was killed");
+        assert!(!at.join("killed/designs.json").exists());
     }
+    let before = done();
+    assert!(before.len() >= 2);
     designed(at, &again);
+    let after = done();
+    assert!(before.iter().all(|of| after.contains(of)), "a sample that was done was walked again");
     let text = |name: &str| tables(&at.join(name)).map(|bytes| String::from_utf8(bytes).unwrap());
     assert_eq!(text("killed"), text("whole"));
 }
@@ -164,10 +202,12 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     let steps = ["design", "samples.csv#Core", "--steps", "--units", "us", "--out", "s"];
     let said = String::from_utf8(designed(at, &steps).stdout).unwrap();
     let page = fs::read_to_string(at.join("s/specification.html")).unwrap();
-    assert!(said.contains("\u{202f}in)") || said.contains(" in)"), "{said}");
-    assert!(page.contains("in), by practice.") && !page.contains("<title>Specification of a filter ("));
+    assert!(said.contains("\u{202f}in)"), "{said}");
+    assert!(
+        page.contains("\u{202f}in), by practice.") && !page.contains("<title>Specification of a filter (")
+    );
     let csv = fs::read_to_string(at.join("s/specification.csv")).unwrap();
-    assert!(csv.contains("No. 200") && !csv.contains(" in)"), "{csv}");
+    assert!(csv.contains("No. 200") && !csv.contains("in)"), "{csv}");
     let walk = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--units", "us", "--out", "w"];
     let walk = [&walk[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12"]].concat();
     let said = String::from_utf8(designed(at, &walk).stdout).unwrap();
@@ -181,4 +221,34 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     assert!(!String::from_utf8(designed(at, &metric).stdout).unwrap().contains("in)"));
     let twice = ["design", "samples.csv#Core", "--units", "us", "--set", "about.units=us"];
     refused(&call(at, &twice), "say the same thing twice");
+}
+
+/// Two gravels whose filters would have to be coarser than 75 mm.
+const GRAVELS: &str = "mm,T1,T2\n37.5,100,100\n19,80,95\n9.5,60,75\n4.75,40,50\n2,10,20\n1,0,0\n";
+
+#[test]
+fn samples_without_a_band_of_their_own_are_named_and_not_served() {
+    let root = site();
+    let at = root.path();
+    fs::write(at.join("gr.csv"), GRAVELS).unwrap();
+    let said = designed(at, &["design", "gr.csv", "--each", "--steps", "--units", "us", "--out", "g"]).stdout;
+    let said = String::from_utf8(said).unwrap();
+    let page = fs::read_to_string(at.join("g/designs.html")).unwrap();
+    let all = record(&at.join("g"));
+    for row in all["rows"].as_array().unwrap() {
+        let name = row["sample"].as_str().unwrap();
+        designed(at, &["design", &format!("gr.csv#{name}"), "--steps", "--out", name]);
+        let own = fs::read(at.join(name).join("specification.json")).unwrap();
+        let own: Value = serde_json::from_slice(&own).unwrap();
+        assert!(own["no_band"].is_string() && row["no_band"] == own["no_band"], "{row}");
+        assert!(page.contains(&format!("No band for {name}: ")));
+    }
+    assert!(said.contains("No filter is known that serves all 2 samples") && !said.contains("A filter for"));
+    assert!(all["inches"] == true && said.contains("\u{202f}in)") && page.contains("\u{202f}in)"), "{said}");
+    // Of one whose greatest D15F is not known practice says no more than the most.
+    fs::write(at.join("mix.csv"), "mm,Coarse,Cut\n4,100,100\n2,90,90\n1,60,60\n0.5,20,45\n0.25,0,30\n")
+        .unwrap();
+    designed(at, &["design", "mix.csv", "--each", "--steps", "--out", "m"]);
+    let page = fs::read_to_string(at.join("m/designs.html")).unwrap();
+    assert!(page.contains("May govern, as no greatest D15F is known: Cut (limit of practice not known): "));
 }

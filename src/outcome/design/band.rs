@@ -67,7 +67,14 @@ pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
     rules.iter().filter_map(one).collect()
 }
 
-/// The strictest rule by which a filter retains a base, with its limit of D15F.
+/// A rule of retention that was made for a base, and of whose limit only the most is known: with it the
+/// strictest limit of the base is not known.
+pub fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+    rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.applies && rule.limit_at_most)
+}
+
+/// The strictest rule by which a filter retains a base, with its limit of D15F: no more than the most of it
+/// where [`open_retention`] finds a rule.
 pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
     let of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && !rule.at_least;
     let all = limits(rules, d15f).into_iter().filter(|(rule, _)| of_role(rule));

@@ -302,15 +302,19 @@ impl BaseStated {
     }
 }
 
+/// Whether settings (`about.units=us` is one) ask for inches beside mm.
+pub fn asks_for_inches<'a>(settings: impl IntoIterator<Item = &'a str>) -> bool {
+    let is_us = |setting: &str| {
+        let said = setting.split_once('=');
+        said.map(|(key, value)| (key.trim(), value.trim().trim_matches('"'))) == Some(("about.units", "us"))
+    };
+    settings.into_iter().any(is_us)
+}
+
 impl Design {
     /// Whether inches stand beside mm on its page: a setting of the user's.
     pub fn shows_inches(&self) -> bool {
-        let is_us = |setting: &String| {
-            let said = setting.strip_prefix("--set ").and_then(|set| set.split_once('='));
-            let said = said.map(|(key, value)| (key.trim(), value.trim().trim_matches('"')));
-            said == Some(("about.units", "us"))
-        };
-        self.settings.iter().any(is_us)
+        asks_for_inches(self.settings.iter().filter_map(|setting| setting.strip_prefix("--set ")))
     }
 
     /// Whether the base particles that can block nothing moved as their expectation.

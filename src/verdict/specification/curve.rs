@@ -1,9 +1,9 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
 use crate::gradation::{GRAVEL_MM, Gradation};
-use crate::outcome::design::band::retention;
+use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply};
 use crate::verdict::practice::cited_rule;
 
@@ -27,10 +27,8 @@ impl ReadCurve {
         let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
         let soil = BaseSoil::of(base, false);
-        let is_open =
-            |rule: &&AppliedRule| rule.role == RuleRole::Retention && rule.applies && rule.limit_at_most;
         // A limit that can only be less may be the strictest.
-        let unknown = rules.iter().find(is_open).map(|rule| rule.needs.to_string());
+        let unknown = open_retention(&rules).map(|rule| rule.needs.to_string());
         let unknown =
             unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
         let strictest = retention(&rules, ANY_D15F);

@@ -45,10 +45,7 @@ impl Specification {
         let d15f_max = by_practice.map(|limit| options.walked_mm.map_or(limit, |walked| limit.min(walked)));
         let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
         let d15f_min = coarsest.and_then(|curve| curve.of.d15f_min_mm);
-        let control = d15f_min.zip(d15f_max).filter(|(min, max)| min <= max).map(|(min, max)| {
-            let d60_max = MOST_CU * max / D15_OVER_D10;
-            Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] }
-        });
+        let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max));
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
@@ -79,6 +76,19 @@ impl Specification {
             band,
         }
     }
+}
+
+/// The control points of a band between a least and a greatest D15F (mm); `None` where the least is above.
+fn control(min: f64, max: f64) -> Option<Control> {
+    let d60_max = MOST_CU * max / D15_OVER_D10;
+    let of = Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] };
+    (min <= max).then_some(of)
+}
+
+/// Why no filter between a least and a greatest D15F (mm) has a band; `None` where one has.
+pub(super) fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<String> {
+    let band = control(min, max).and_then(|of| SizeBand::of(of.d15, of.d60));
+    no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 
 impl Specification {

@@ -1,0 +1,316 @@
+//! How coarse a filter for many samples may be, in sentences.
+
+use super::designed_samples::{DesignedSample, DesignedSamples};
+use super::specification::no_band_between;
+use super::words::capital;
+use crate::outcome::numbers::{rounded_down, rounded_up};
+use crate::outcome::record::Confidence;
+
+/// So many samples.
+fn counted(samples: usize) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
+}
+
+/// The sample with the greatest least D15F to drain, and that D15F (mm); `None` where none has any.
+fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+    let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
+    limits.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The sample with the least bound of D15F, and that bound (mm); `None` where none has any.
+fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+    let limits = rows.into_iter().filter_map(|row| Some((row, row.bound()?)));
+    limits.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+impl DesignedSample {
+    /// The greatest D15F, and what set it, in words.
+    fn greatest_in_words(&self) -> String {
+        let rule = self.rule_of_answer();
+        match (self.d15f_max_mm, self.limit_mm, self.set_by()) {
+            (None, None, _) => "no greatest D15F is known".into(),
+            (None, Some(limit), _) => format!(
+                "no greatest D15F is known; practice allows {} mm at most ({})",
+                rounded_down(limit),
+                self.rule
+            ),
+            (Some(mm), _, Some("the walk")) => format!("D15F up to {} mm (the walk)", rounded_down(mm)),
+            (Some(mm), _, by) => {
+                format!("D15F up to {} mm ({}: {rule})", rounded_down(mm), by.unwrap_or("practice"))
+            }
+        }
+    }
+
+    /// Why its greatest D15F is not known.
+    fn open_in_words(&self) -> String {
+        let why = self.design.as_ref().map_or(&self.no_band, |of| &of.said);
+        let why = if why.is_empty() { &self.not_walked } else { why };
+        let limit = match self.limit_mm {
+            Some(limit) => format!("limit of practice {} mm", rounded_down(limit)),
+            None => "limit of practice not known".into(),
+        };
+        format!("May govern, as no greatest D15F is known: {} ({limit}): {}", self.sample, within_line(why))
+    }
+}
+
+/// Sentences without the last full stop.
+fn within_line(said: &str) -> &str {
+    said.trim_end_matches('.')
+}
+
+impl DesignedSamples {
+    /// The D15F of a filter for all samples, in a sentence without its end.
+    ///
+    /// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
+    pub fn for_all_in_words(&self) -> String {
+        let (settled, others): (Vec<_>, Vec<_>) = self.rows.iter().partition(|row| row.is_settled());
+        let cap = strictest(others.iter().copied());
+        let Some((first, own)) = strictest(settled.iter().copied()) else {
+            return match cap {
+                Some((row, mm)) => format!(
+                    "No filter is known that serves {}: none is settled, and {} allows D15F up to {} mm at \
+                     most",
+                    if others.len() == 1 {
+                        "the sample".into()
+                    } else {
+                        format!("all {}", counted(others.len()))
+                    },
+                    row.sample,
+                    rounded_down(mm)
+                ),
+                None => "No greatest D15F is known for any sample".into(),
+            };
+        };
+        let cap = cap.filter(|(_, mm)| *mm < own);
+        let (first, greatest) = cap.unwrap_or((first, own));
+        let of = match (settled.len(), others.len()) {
+            (1, 0) => "the sample".to_owned(),
+            (all, 0) => format!("all {}", counted(all)),
+            (some, open) => {
+                let [are, not] = [some, open].map(|n| if n == 1 { "is" } else { "are" });
+                format!("the {} that {are} settled ({open} {not} not)", counted(some))
+            }
+        };
+        let within = cap.map_or_else(String::new, |(row, _)| format!(" within the limit of {}", row.sample));
+        let mm = rounded_down(greatest);
+        let Some((row, least)) = drainage(settled.iter().copied()) else {
+            return format!("A filter for {of}{within}: D15F up to {mm} mm; no least D15F is known");
+        };
+        let (at_most, from) = (row.d15f_min_at_most, rounded_up(least));
+        let and = if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
+        match no_band_between((least, at_most), greatest) {
+            Some(_) if least > greatest && at_most => format!(
+                "It is not known whether one filter serves {of}{within}: {} drains from D15F {from} mm or \
+                 less, as its fines are not known{and} allows {mm} mm at most",
+                row.sample
+            ),
+            Some(_) if least > greatest => format!(
+                "No one filter serves {of}{within}: {} needs D15F {from} mm or more to drain{and} allows \
+                 {mm} mm at most",
+                row.sample
+            ),
+            Some(why) => format!(
+                "No one filter is specified for {of}{within}, with D15F from {from} to {mm} mm: {}",
+                within_line(&why)
+            ),
+            None => format!("A filter for {of}{within}: D15F from {from} to {mm} mm"),
+        }
+    }
+
+    /// Which samples govern, what sets their limits, how far they can be relied on and which are open:
+    /// sentences without their ends.
+    pub fn in_words(&self) -> Vec<String> {
+        let mut said = vec![self.for_all_in_words()];
+        for (at, row) in self.governing().into_iter().enumerate() {
+            let what = if at == 0 { "Governing sample" } else { "Then" };
+            said.push(format!("{what} {}: {}", row.sample, row.greatest_in_words()));
+        }
+        if let Some((row, least)) = drainage(&self.rows) {
+            let at_most = if row.d15f_min_at_most { "at most " } else { "" };
+            let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
+            let limit = rounded_up(least);
+            said.push(format!(
+                "Drainage is governed by {}: least D15F {at_most}{limit} mm{open}",
+                row.sample
+            ));
+        }
+        let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
+        if walked > 0 {
+            said.extend(self.set_in_words());
+        }
+        for confidence in self.confidences() {
+            let is_so =
+                |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.confidence == confidence);
+            let count = self.rows.iter().filter(is_so).count();
+            said.push(format!("{}: {count} of {}", capital(confidence.words()), counted(walked)));
+        }
+        let (open, known): (Vec<_>, Vec<_>) = self.rows.iter().partition(|row| row.d15f_max_mm.is_none());
+        let unserved = known.iter().filter(|row| !row.no_band.is_empty());
+        said.extend(unserved.map(|row| format!("No band for {}: {}", row.sample, within_line(&row.no_band))));
+        said.extend(open.into_iter().map(DesignedSample::open_in_words));
+        let by_practice = known.iter().filter(|row| !row.not_walked.is_empty());
+        let by_practice: Vec<&str> = by_practice.map(|row| row.sample.as_str()).collect();
+        if !by_practice.is_empty() {
+            said.push(format!("Not walked, by practice alone: {}", by_practice.join(", ")));
+        }
+        said
+    }
+
+    /// For how many samples each of practice and walk sets the greatest D15F.
+    fn set_in_words(&self) -> Option<String> {
+        let mut counts: Vec<(&str, usize)> = Vec::new();
+        for by in self.rows.iter().filter_map(DesignedSample::set_by) {
+            match counts.iter_mut().find(|(what, _)| *what == by) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((by, 1)),
+            }
+        }
+        let each = |(by, count): &(&str, usize)| format!("for {} by {by}", counted(*count));
+        let each: Vec<String> = counts.iter().map(each).collect();
+        (!each.is_empty()).then(|| format!("The greatest D15F is set {}", each.join(", ")))
+    }
+
+    /// The confidences below the best, once each.
+    fn confidences(&self) -> Vec<Confidence> {
+        let mut all: Vec<Confidence> = Vec::new();
+        for of in self.rows.iter().filter_map(|row| row.design.as_ref()) {
+            if of.confidence != Confidence::Within && !all.contains(&of.confidence) {
+                all.push(of.confidence);
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::gradation::SoilSample;
+    use crate::outcome::design::Specification;
+    use crate::outcome::design::band::SetBy;
+    use crate::verdict::SampleDesign;
+    use crate::verdict::SpecificationOptions;
+
+    fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
+        let curve = Gradation::from_points(points, None).unwrap();
+        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
+        let of = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
+        DesignedSample::of(&sample, &of)
+    }
+
+    fn walked(row: DesignedSample, greatest: Option<f64>) -> DesignedSample {
+        let design = SampleDesign {
+            folder: "samples/x".into(),
+            no_erosion_d15f_mm: greatest,
+            no_erosion_d15f_over_d85b: None,
+            set_by: SetBy::Walk,
+            rule: String::new(),
+            confidence: Confidence::Outside,
+            reason: Some("too small".into()),
+            said: "No ratio is known".into(),
+        };
+        DesignedSample { d15f_max_mm: greatest, design: Some(design), ..row }
+    }
+
+    #[test]
+    fn the_least_d15f_governs_and_a_sample_without_one_may() {
+        // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
+        assert_eq!(
+            (core.limit_mm, core.d15f_max_mm, core.set_by()),
+            (Some(0.7), Some(0.7), Some("practice"))
+        );
+        let limit = sand.limit_mm.unwrap();
+        assert!((limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9, "{sand:?}");
+        let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
+        let said = by_practice.in_words();
+        assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
+        assert!(
+            said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
+        );
+        // The walk allows less of one, and nothing is known of another.
+        let rows = vec![
+            walked(sand.clone(), Some(0.65)),
+            core,
+            walked(row("silt", &[(0.005, 0.0), (0.075, 90.0), (0.2, 100.0)]), None),
+        ];
+        let all = DesignedSamples::new("s".into(), rows);
+        // Practice allows the silt less than all others, whatever the walk knows of it.
+        let silt = all.rows[2].limit_mm.unwrap();
+        assert!(silt < 0.65, "{silt}");
+        assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(3), Some(1)]);
+        let said = all.in_words().join("\n");
+        for words in [
+            "the 2 samples that are settled (1 is not) within the limit of silt: ",
+            "Governing sample silt: no greatest D15F is known; practice allows ",
+            "Then sand: D15F up to 0.650 mm (the walk)",
+            "The greatest D15F is set for 1 sample by the walk, for 1 sample by practice",
+            "Outside checked range: 2 of 2 samples",
+            "May govern, as no greatest D15F is known: silt (limit of practice ",
+            "mm): No ratio is known",
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+        let csv = String::from_utf8(DesignedSample::columns().csv(&all.rows)).unwrap();
+        assert!(csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,limit_mm,rule,"));
+        assert_eq!(csv.lines().count(), 4);
+        assert!(
+            csv.contains("outside checked range,too small") && csv.contains("No ratio is known"),
+            "{csv}"
+        );
+    }
+
+    #[test]
+    fn samples_that_no_one_filter_serves_are_said() {
+        let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
+        let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
+        let all = DesignedSamples::new("s".into(), vec![fine, coarse]);
+        let said = all.for_all_in_words();
+        assert!(said.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{said}");
+        let none = DesignedSamples::new("s".into(), Vec::new());
+        assert_eq!(none.for_all_in_words(), "No greatest D15F is known for any sample");
+    }
+
+    /// Each of these gravels has a D60F beyond the greatest size; between their limits there is no band.
+    #[test]
+    fn a_sample_without_a_band_of_its_own_is_not_served() {
+        let t1 =
+            row("T1", &[(37.5, 100.0), (19.0, 80.0), (9.5, 60.0), (4.75, 40.0), (2.0, 10.0), (1.0, 0.0)]);
+        let t2 =
+            row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
+        assert!(!t1.no_band.is_empty() && t1.d15f_max_mm.is_some(), "{t1:?}");
+        let why = t1.no_band.clone();
+        let said = DesignedSamples::new("s".into(), vec![t1, t2]).in_words();
+        assert!(said[0].starts_with("No filter is known that serves all 2 samples"), "{}", said[0]);
+        assert!(said.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))), "{said:?}");
+    }
+
+    #[test]
+    fn both_ends_are_of_the_samples_that_are_settled_and_a_bound_on_drainage_refuses_nothing() {
+        // The open sample drains from far more than the settled one allows.
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let gravel = DesignedSample { limit_mm: None, ..walked(row("g", &[(1.0, 0.0), (9.0, 100.0)]), None) };
+        assert!(gravel.d15f_min_mm.unwrap() > 1.0);
+        let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
+        assert_eq!(
+            said[0],
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.100 to 0.700 mm"
+        );
+        assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
+        let one = DesignedSamples::new("s".into(), vec![core.clone()]);
+        assert_eq!(one.for_all_in_words(), "A filter for the sample: D15F from 0.100 to 0.700 mm");
+        let open = DesignedSample {
+            path: "other".into(),
+            d15f_min_mm: Some(2.0),
+            d15f_min_at_most: true,
+            ..core.clone()
+        };
+        let said = DesignedSamples::new("s".into(), vec![core, open]).for_all_in_words();
+        assert!(
+            said.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
+            "{said}"
+        );
+    }
+}
