@@ -54,7 +54,7 @@ pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
     let one = |(place, limit, at_most): &Boundary| {
         let at_most = if *at_most { " or less" } else { "" };
         // As in the table of rules: no more than the limit.
-        let size = format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside(*limit));
+        let size = format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside_greatest(*limit));
         format!("{} {size}{at_most}", LIMITS[*place].3)
     };
     let all: Vec<String> = boundaries.iter().map(one).collect();

@@ -80,6 +80,9 @@ pub struct Design {
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
+    /// Whether inches stand beside mm on its page.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// Wall time (s).
     pub seconds: f64,
 }
@@ -303,16 +306,6 @@ impl BaseStated {
 }
 
 impl Design {
-    /// Whether inches stand beside mm on its page: a setting of the user's.
-    pub fn shows_inches(&self) -> bool {
-        let is_us = |setting: &String| {
-            let said = setting.strip_prefix("--set ").and_then(|set| set.split_once('='));
-            let said = said.map(|(key, value)| (key.trim(), value.trim().trim_matches('"')));
-            said == Some(("about.units", "us"))
-        };
-        self.settings.iter().any(is_us)
-    }
-
     /// Whether the base particles that can block nothing moved as their expectation.
     pub fn moves_expectation(&self) -> bool {
         self.engine == Engine::Expected.name()
