@@ -450,6 +450,7 @@ mod tests {
     use crate::outcome::design::BaseStated;
     use crate::outcome::design::products::Fit;
     use crate::outcome::record::ModelLimit;
+    use crate::outcome::rules::DESIGN;
     use crate::verdict::PairRules;
 
     fn written(design: &Design, csv: &str) -> String {
@@ -596,6 +597,42 @@ mod tests {
         let terzaghi =
             |d85b: f64| format!("Terzaghi: the filter retains the base {}", rounded_down(4.0 * d85b));
         assert!(page.contains(&terzaghi(part)) && !page.contains(&terzaghi(d85)), "{page}");
+    }
+
+    /// The limit of practice is 0.8069 mm, the walk holds to 0.8068 mm, and 0.7051 mm drain.
+    #[test]
+    fn limits_are_rounded_inward_wherever_the_page_has_them() {
+        let sand = |size| Gradation::linear_from_dx(15.0, size, 1.5).unwrap();
+        let rules = PairRules::of(&sand(0.15), &sand(0.8)).rules.into_iter();
+        let rules = rules.filter(|rule| rule.id == DESIGN);
+        let mut design = design(Boundary::of(&[Ok(4.034), Ok(4.034)], Some(0.2)), Confidence::Within);
+        design.rules = rules.map(|rule| AppliedRule { limit: Some(0.8069), ..rule }).collect();
+        design.base.d85_mm = Some(0.2);
+        let band = Band {
+            least: 0.7051,
+            least_at_most: false,
+            greatest: 0.8068,
+            set_by: Some(SetBy::Walk),
+            practice: Some(0.8069),
+            practice_rule: "r".into(),
+            practice_rule_id: None,
+            unit: "mm".into(),
+            is_empty: false,
+            said: "D15F from 0.706 to 0.806 mm".into(),
+        };
+        design.boundaries[0].band = Some(band);
+        let csv = CSV.replace("4.0,", "3.9,");
+        let page = written(&design, &csv);
+        assert!(page.contains("D15F up to 0.806 mm") && page.contains("Practice allows up to 0.806 mm"));
+        assert!(page.contains(" 0.806 mm.</figcaption>") && page.contains(">0.706 mm<"), "{page}");
+        assert!(!page.contains("0.807") && !page.contains("0.705"), "{page}");
+        design.inches = true;
+        let page = written(&design, &csv);
+        // 0.806 mm are 0.03173 in, and 0.706 mm 0.02780 in.
+        let inches = |mm: &str| page.match_indices(&format!("{mm} mm (")).count();
+        assert!(inches("0.806") > 3 && inches("0.706") > 0);
+        assert_eq!(inches("0.806"), page.matches("0.0317\u{202f}in").count(), "{page}");
+        assert!(page.contains("0.706 mm (0.0278\u{202f}in)"), "{page}");
     }
 
     #[test]
