@@ -7,7 +7,9 @@ use super::progress::followed;
 use super::specification::specification;
 use super::values::{of_soils, with_options};
 use crate::outcome::design::band::SetBy;
+use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError};
@@ -96,9 +98,11 @@ fn words(design: &Design) -> String {
             (false, _) => "of the standard products none is said to fit, as the answer is in doubt".into(),
         });
     }
+    let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
+    lines.extend(to_be_checked(sources));
     lines.push(left_out_in_brief(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
-    let said = |line: String| if design.shows_inches() { with_inches(&line) } else { line };
+    let said = |line: String| if design.inches { with_inches(&line) } else { line };
     lines.into_iter().map(|line| plain(&said(line)) + "\n").collect()
 }
 
@@ -109,8 +113,11 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     };
     let boundaries = [(&row.no_erosion, &row.no_erosion_note), (&row.continuing, &row.continuing_note)];
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
-    for (what, (boundary, note)) in what.into_iter().zip(boundaries) {
-        let said = boundary.as_ref().map(|boundary| ratio(boundary, design));
+    // The boundary of no erosion is stated as a limit.
+    let limit: fn(f64) -> String = if design.inverse { rounded_up } else { rounded_down };
+    let sizes = [limit, |mm| format!("{mm:.3}")];
+    for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
+        let said = boundary.as_ref().map(|boundary| ratio(boundary, design, size));
         lines.push(match (said, note) {
             (Some(said), Some(note)) => format!("  {what} {said}. {}", capital(note)),
             (Some(said), None) => format!("  {what} {said}"),
@@ -124,7 +131,8 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         let over_range = design.boundaries.iter().any(|end| end.end_of.as_ref() == Some(&row.density));
         let what = if over_range { "band over the whole range of this curve" } else { "band" };
         let practice = band.practice.filter(|_| band.set_by == Some(SetBy::Walk) && !band.is_empty);
-        let practice = practice.map(|limit| format!("; practice allows up to {limit:.3} {}", band.unit));
+        let practice =
+            practice.map(|limit| format!("; practice allows up to {} {}", rounded_down(limit), band.unit));
         lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {
@@ -139,26 +147,26 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     lines
 }
 
-fn ratio(boundary: &Boundary, design: &Design) -> String {
-    let between = |low: Option<f64>, high: Option<f64>| {
+fn ratio(boundary: &Boundary, design: &Design, mm: fn(f64) -> String) -> String {
+    let between = |low: Option<f64>, high: Option<f64>, words: fn(f64) -> String| {
         if design.replicates == 1 {
             return "of one network".to_owned();
         }
-        let end = |value: Option<f64>| value.map_or("unknown".into(), |v| format!("{v:.3}"));
+        let end = |value: Option<f64>| value.map_or("unknown".into(), words);
         format!("5 to 95 % of networks: {} to {}", end(low), end(high))
     };
     let Boundary { median, low, high, .. } = boundary;
-    let of_networks = |low: Option<f64>, high: Option<f64>| match low.or(high) {
-        Some(_) => format!(" ({})", between(low, high)),
+    let of_networks = |low: Option<f64>, high: Option<f64>, words| match low.or(high) {
+        Some(_) => format!(" ({})", between(low, high, words)),
         None => String::new(),
     };
     let size = |name: &str, range: &Range| {
-        format!("{name} {:.3} mm{}; ", range.median, of_networks(range.low, range.high))
+        format!("{name} {} mm{}; ", mm(range.median), of_networks(range.low, range.high, mm))
     };
     let size = match (&boundary.d15f_mm, &boundary.d85b_mm) {
         (Some(range), _) => size("D15F", range),
         (None, Some(range)) if design.inverse => size("D85B", range),
         _ => String::new(),
     };
-    format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high))
+    format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high, |ratio| format!("{ratio:.3}")))
 }

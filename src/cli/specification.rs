@@ -6,6 +6,7 @@ use std::path::Path;
 use super::args::DesignArgs;
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
+use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::{ProductMargin, Specification};
 use crate::outcome::numbers::{significant, trimmed};
 use crate::outcome::with_inches;
@@ -100,6 +101,10 @@ fn words(of: &Specification) -> String {
             }
         )));
         line(&format!("    {}", margins(product)));
+    }
+    let sources = of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()));
+    if let Some(said) = to_be_checked(sources) {
+        line(&said);
     }
     if let Some(nearest) = of.nearest_product() {
         line(&format!("no standard product fits; {} comes closest", nearest.product));

@@ -56,6 +56,9 @@ pub struct ComparedCase {
     /// What filter practice says of the pair, in a line; records of earlier versions do not say.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub practice: String,
+    /// Where the filter stands by practice; records of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standing: Option<ComparedStanding>,
     /// Whether the filter holds, in a line; records of earlier versions do not say.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub headline: String,
@@ -99,6 +102,25 @@ pub struct ComparedCase {
     /// curve is no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
+}
+
+/// Where a filter stands by practice, the worst first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ComparedStanding {
+    /// A rule of retention or of coarser filters is not kept, and no test held either.
+    Fails,
+    /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
+    NoMargin,
+    /// It keeps the limits, but may lose its own fines.
+    Unstable,
+    /// The limit of design has no result.
+    Unknown,
+    /// The limit of design is kept.
+    Met,
+    /// No rule of design was applied.
+    NoRules,
 }
 
 /// How much two cases differ in one run.
@@ -202,6 +224,7 @@ impl ComparedCase {
             confidence: outcome.confidence,
             reasons: outcome.reasons.clone(),
             practice: String::new(),
+            standing: None,
             headline: String::new(),
             walk: String::new(),
             next: String::new(),

@@ -8,11 +8,42 @@ const SPACES: [char; 3] = [' ', '\u{202f}', '\u{a0}'];
 /// What stands between the ends of a range that share one unit.
 const BETWEEN: [&str; 2] = [" to ", " and "];
 
+/// What stands before the ends of a band: its first is a least size, its second a greatest.
+const OF_BAND: [&str; 3] = ["from ", "between ", "D15F "];
+
+/// What a limit is called before its number; the last of them in its clause counts.
+const LIMITS: [(&str, Limit); 10] = [
+    ("least", Limit::Least),
+    ("down to", Limit::Least),
+    ("≥", Limit::Least),
+    // The least itself is not known: what it is at most is no less than it.
+    ("not known, and at most", Limit::Least),
+    ("not known; at most", Limit::Least),
+    ("not known. It is at most", Limit::Least),
+    ("greatest", Limit::Greatest),
+    ("at most", Limit::Greatest),
+    ("up to", Limit::Greatest),
+    ("limit of design is", Limit::Greatest),
+];
+
+/// Ends of clauses.
+const ENDS: [&str; 2] = ["; ", ". "];
+
+/// Which limit a length is, so that its inches do not go beyond it.
+#[derive(Clone, Copy)]
+enum Limit {
+    Least,
+    Greatest,
+}
+
 /// A sentence with inches behind every length in mm; of a range that has one unit, of both ends.
+///
+/// Inches of a greatest size are rounded down and those of a least size up, from the mm that stand there.
 ///
 /// ```
 /// use voidwalk::outcome::with_inches;
-/// assert_eq!(with_inches("D15F up to 0.7 mm"), "D15F up to 0.7 mm (0.0276\u{202f}in)");
+/// assert_eq!(with_inches("D15F up to 0.7 mm"), "D15F up to 0.7 mm (0.0275\u{202f}in)");
+/// assert_eq!(with_inches("a grain of 0.7 mm"), "a grain of 0.7 mm (0.0276\u{202f}in)");
 /// assert_eq!(with_inches("0.25 to 1.1 mm"), "0.25 to 1.1 mm (0.00984 to 0.0433\u{202f}in)");
 /// assert_eq!(with_inches("2 mm\u{b2}"), "2 mm\u{b2}");
 /// ```
@@ -25,7 +56,7 @@ pub fn with_inches(sentence: &str) -> String {
         let ends = !after.starts_with(|c: char| c.is_alphanumeric() || "²³_/".contains(c));
         let number = before.strip_suffix(SPACES).filter(|_| ends && !has_inches(after));
         if let Some((number, length)) = number.and_then(|text| Some((text, last_number(text)?))) {
-            out += &behind(number, length);
+            out += &behind(number, length, after);
         }
     }
     out + rest
@@ -38,22 +69,47 @@ fn has_inches(after: &str) -> bool {
 }
 
 /// The inches of the length at the end of a text, and of the other end of its range.
-fn behind(text: &str, (mm, at): (f64, usize)) -> String {
-    let unit = SizeUnit::MmAndInches;
+fn behind(text: &str, (mm, at): (f64, usize), after: &str) -> String {
     let before = BETWEEN.iter().find_map(|between| text[..at].strip_suffix(between).map(|of| (of, between)));
     let other = before.and_then(|(of, between)| {
         let (low, start) = last_number(of)?;
         // "Of 3 and 5 mm" may be anything.
-        (*between == " to " || of[..start].ends_with("between ")).then_some((low, between))
+        let is_range = *between == " to " || of[..start].ends_with("between ");
+        let is_band = OF_BAND.iter().any(|before| of[..start].ends_with(before));
+        is_range.then_some((low, between, is_band))
     });
     match other {
-        Some((low, between)) => {
-            let low = unit.beside(low);
+        Some((low, between, is_band)) => {
+            let low = inches(low, is_band.then_some(Limit::Least));
             let low = low.trim_start_matches(" (").split(SPACES).next().unwrap_or_default().to_owned();
-            unit.beside(mm).replacen(" (", &format!(" ({low}{between}"), 1)
+            let high = inches(mm, is_band.then_some(Limit::Greatest));
+            high.replacen(" (", &format!(" ({low}{between}"), 1)
         }
+        None => inches(mm, limit(&text[..at], after)),
+    }
+}
+
+fn inches(mm: f64, limit: Option<Limit>) -> String {
+    let unit = SizeUnit::MmAndInches;
+    match limit {
+        Some(Limit::Least) => unit.beside_least(mm),
+        Some(Limit::Greatest) => unit.beside_greatest(mm),
         None => unit.beside(mm),
     }
+}
+
+/// Which limit a number is, by the words around it; `None` where it is none.
+fn limit(before: &str, after: &str) -> Option<Limit> {
+    if after.starts_with(" or more") {
+        return Some(Limit::Least);
+    }
+    let clause = ENDS.iter().filter_map(|end| before.rfind(end)).max().unwrap_or(0);
+    let called = |(words, limit): &(&str, Limit)| {
+        let at = before.rfind(words)?;
+        let end = at + words.len();
+        (end > clause).then_some((end, words.len(), *limit))
+    };
+    LIMITS.iter().filter_map(called).max_by_key(|(end, length, _)| (*end, *length)).map(|(.., limit)| limit)
 }
 
 /// The number at the end of a text, and where it begins; thousands may stand apart by a narrow space.
@@ -97,11 +153,11 @@ mod tests {
     #[test]
     fn every_length_has_inches_once_and_nothing_else_has() {
         for (text, said) in [
-            ("D15F up to 0.700 mm (practice)", "D15F up to 0.700 mm (0.0276\u{202f}in) (practice)"),
+            ("D15F up to 0.700 mm (practice)", "D15F up to 0.700 mm (0.0275\u{202f}in) (practice)"),
             ("25.4\u{202f}mm", "25.4\u{202f}mm (1.00\u{202f}in)"),
             (
                 "must lie between 0.14 and 0.7 mm.",
-                "must lie between 0.14 and 0.7 mm (0.00551 and 0.0276\u{202f}in).",
+                "must lie between 0.14 and 0.7 mm (0.00552 and 0.0275\u{202f}in).",
             ),
             ("of No. 4 and 0.5 mm", "of No. 4 and 0.5 mm (0.0197\u{202f}in)"),
             ("1\u{202f}270 mm", "1\u{202f}270 mm (50.0\u{202f}in)"),
@@ -111,6 +167,28 @@ mod tests {
         }
         for text in ["size (mm)", "D15 mm", "0 mm", "5 mm/s", "1e-5 mm", "summary", ""] {
             assert_eq!(with_inches(text), text);
+        }
+    }
+
+    /// 0.14 mm are 0.005512 inches, and 0.7 mm 0.02756.
+    #[test]
+    fn inches_of_limits_are_rounded_inward_and_of_other_lengths_to_the_nearest() {
+        let (up, down, low, nearest) = ["0.00552", "0.0275", "0.00551", "0.0276"].into();
+        for (text, of_range, inches) in [
+            ("D15F from 0.14 to 0.7 mm, the coarse side", up, down),
+            ("take a coarser filter, D15F 0.14 to 0.7 mm", up, down),
+            ("between 0.14 and 0.7 mm", up, down),
+            ("ASTM C33 fine aggregate, D15 0.14 to 0.7 mm: fits", low, nearest),
+            ("D15F must be at least 0.14 mm to drain it and at most 0.7 mm to retain it.", up, down),
+            ("The least is not known. It is at most 0.14 mm, and D15F must be at most 0.7 mm", up, down),
+            ("the least that drains is not known, and at most 0.14 mm: D15F up to 0.7 mm", up, down),
+            ("D15F 0.14 mm or more; limit of design is 0.7 mm", up, down),
+            ("the greatest is not known; D85B 0.14 mm, D95B 0.7 mm", low, nearest),
+            ("      least D15F of the band: 0.14 mm; greatest D60F: 0.7 mm", up, down),
+        ] {
+            let said = with_inches(text);
+            assert!(said.contains(&format!("({of_range}")), "{said}");
+            assert!(said.contains(&format!("{inches}\u{202f}in)")), "{said}");
         }
     }
 

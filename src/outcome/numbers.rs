@@ -187,11 +187,50 @@ impl SizeUnit {
 
     /// What stands behind a size in mm: inches, where those are shown.
     pub fn beside(self, mm: f64) -> String {
-        match self {
-            Self::D0f | Self::Mm => String::new(),
-            Self::MmAndInches => format!(" ({}{THIN}in)", significant(mm / INCH_MM)),
+        self.bracket(significant(mm / INCH_MM))
+    }
+
+    /// What stands behind a greatest size, of which [`rounded_down`] shows the mm: inches of no more than
+    /// those mm.
+    pub fn beside_greatest(self, mm: f64) -> String {
+        self.bracket(rounded_down(shown(rounded_down(mm), mm) / INCH_MM))
+    }
+
+    /// What stands behind a least size, of which [`rounded_up`] shows the mm: inches of no less than those
+    /// mm.
+    pub fn beside_least(self, mm: f64) -> String {
+        self.bracket(rounded_up(shown(rounded_up(mm), mm) / INCH_MM))
+    }
+
+    /// A greatest size without its unit, and its inches.
+    pub fn greatest(self, mm: f64) -> String {
+        rounded_down(mm) + &self.beside_greatest(mm)
+    }
+
+    /// A least size without its unit, and its inches.
+    pub fn least(self, mm: f64) -> String {
+        rounded_up(mm) + &self.beside_least(mm)
+    }
+
+    /// A limit with the name of its unit, a least or a greatest, and its inches.
+    pub fn limit(self, value: f64, name: &str, at_least: bool) -> String {
+        match at_least {
+            true => format!("{} {name}{}", rounded_up(value), self.beside_least(value)),
+            false => format!("{} {name}{}", rounded_down(value), self.beside_greatest(value)),
         }
     }
+
+    fn bracket(self, inches: String) -> String {
+        match self {
+            Self::D0f | Self::Mm => String::new(),
+            Self::MmAndInches => format!(" ({inches}{THIN}in)"),
+        }
+    }
+}
+
+/// A number as its text has it, so that inches follow from the mm beside them, wherever both stand.
+fn shown(text: String, value: f64) -> f64 {
+    text.parse().unwrap_or(value)
 }
 
 /// Millimetres of an inch.
@@ -224,6 +263,29 @@ mod tests {
         let down = [0.7, 0.2859, 12.39, 0.07, 0.0].map(rounded_down);
         assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
         assert_eq!([0.14, 0.2851, 0.9999, 12.31].map(rounded_up), ["0.140", "0.286", "1.00", "12.4"]);
+    }
+
+    #[test]
+    fn inches_of_a_limit_lie_within_it_and_within_the_mm_beside_them() {
+        let unit = SizeUnit::MmAndInches;
+        let mm_of = |beside: &str| {
+            let inches = beside.trim_start_matches(" (").split(THIN).next().unwrap();
+            inches.parse::<f64>().unwrap() * INCH_MM
+        };
+        let limits = (1..4000).map(|step| 0.01 * libm::pow(1.003, f64::from(step)));
+        for limit in limits.chain([0.7, 0.14, 1.6812, 2.9970, 25.4, 0.701]) {
+            let [down, up] = [rounded_down(limit), rounded_up(limit)].map(|mm| mm.parse::<f64>().unwrap());
+            let [most, least] = [unit.beside_greatest(limit), unit.beside_least(limit)];
+            let (hair, [below, above]) = (1.0 + 1e-8, [&most, &least].map(|said| mm_of(said)));
+            assert!(below <= down * hair && below <= limit * hair, "{limit}{most}");
+            assert!(above * hair >= up && above * hair >= limit, "{limit}{least}");
+            // The same again, of the mm as they are shown.
+            assert_eq!([unit.beside_greatest(down), unit.beside_least(up)], [most, least]);
+        }
+        assert_eq!(unit.greatest(0.7), "0.700 (0.0275\u{202f}in)");
+        assert_eq!(unit.least(0.14), "0.140 (0.00552\u{202f}in)");
+        assert_eq!(SizeUnit::Mm.greatest(0.7), "0.700");
+        assert_eq!(unit.limit(0.7, "mm", false), "0.700 mm (0.0275\u{202f}in)");
     }
 
     #[test]

@@ -55,8 +55,8 @@ pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
         let at_most = if *at_most { " or less" } else { "" };
         // As in the table of rules: no more than the limit.
         let size = match unit {
-            SizeUnit::D0f => unit.size(*limit),
-            _ => format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside(*limit)),
+            SizeUnit::D0f => format!("{}\u{202f}D0F", rounded_down(*limit)),
+            _ => format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside_greatest(*limit)),
         };
         format!("{} {size}{at_most}", LIMITS[*place].3)
     };

@@ -16,16 +16,13 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, unbroken};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::comparison::{ComparedCase, ComparedPair, ComparedStanding, Comparison};
 use crate::outcome::record::{Confidence, Verdict};
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
 const RECORD: &str = "compare.json";
-
-/// How the line of practice begins where a rule of retention is broken.
-const NOT_MET: &str = "not met";
 
 /// Writes `compare.html` and `figures/*.svg` into the folder of a comparison.
 ///
@@ -172,7 +169,7 @@ fn lead(comparison: &Comparison) -> String {
 fn answers(comparison: &Comparison) -> Markup {
     html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
         @let headline = if case.headline.is_empty() { case.verdict.words() } else { &case.headline };
-        @let fails = case.practice.starts_with(NOT_MET);
+        @let fails = case.standing == Some(ComparedStanding::Fails);
         section.verdict.(colour(case.verdict, case.confidence, fails)) {
             p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
             ul {
@@ -265,4 +262,49 @@ fn reasons(comparison: &Comparison) -> Markup {
             }
         }
     } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::record::AppliedRule;
+    use crate::verdict::PairRules;
+    use crate::verdict::practice::{Standing, practice_in_words, standing};
+
+    fn rules(base: &[(f64, f64)], filter: &[(f64, f64)]) -> Vec<AppliedRule> {
+        let of = |points| Gradation::from_points(points, None).unwrap();
+        PairRules::of(&of(base), &of(filter)).rules
+    }
+
+    /// The page of a comparison of one case with some erosion, and what the case's own page is coloured.
+    fn colours(rules: &[AppliedRule]) -> (String, &'static str) {
+        let comparison: Comparison = serde_json::from_value(serde_json::json!({
+            "of": "filters", "common": "b", "seed": 1, "version": "1", "pairs": [], "threshold": 0.075,
+            "cases": [{
+                "name": "a", "folder": "a", "verdict": Verdict::Some, "confidence": Confidence::Within,
+                "reasons": [], "rules_not_kept": [], "practice": practice_in_words(rules),
+                "standing": standing(rules).recorded(), "replicates": 1, "n_base": 1,
+                "ratios": {"d15f_over_d85b": 1.0, "d15f_over_d95b": 1.0}, "runs": [],
+            }],
+        }))
+        .unwrap();
+        let own = colour(Verdict::Some, Confidence::Within, standing(rules) == Standing::Fails);
+        (answers(&comparison).into_string(), own)
+    }
+
+    #[test]
+    fn a_case_has_the_colour_of_its_own_page_whatever_its_line_of_practice_begins_with() {
+        let sand = [(0.2, 0.0), (0.6, 100.0)];
+        let fails = rules(&sand, &[(8.0, 0.0), (16.0, 100.0)]);
+        // Between the limit of design and the boundary that tests saw.
+        let no_margin = rules(&sand, &[(2.5, 0.0), (5.0, 100.0)]);
+        assert_eq!([&fails, &no_margin].map(|of| standing(of)), [Standing::Fails, Standing::NoMargin]);
+        for (rules, class) in [(&fails, "continuing"), (&no_margin, "some")] {
+            assert!(practice_in_words(rules).starts_with("not met"));
+            let (page, own) = colours(rules);
+            assert_eq!(own, class);
+            assert!(page.contains(&format!("class=\"verdict {class}\"")), "{page}");
+        }
+    }
 }

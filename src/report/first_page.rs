@@ -8,7 +8,7 @@ use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{SizeUnit, in_digits, whole};
-use super::rules::inches;
+use super::rules::{inches, inches_of_limit};
 use super::shell::{clean, unbroken};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
@@ -198,7 +198,7 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let shown = |limit| {
                 let number = digits_within(limit, 3, rule.at_least);
                 let with_unit = format!("{number}\u{202f}{}", rule.unit);
-                clean(&(with_unit.trim_end().to_owned() + &inches(rule, limit, unit)))
+                clean(&(with_unit.trim_end().to_owned() + &inches_of_limit(rule, limit, unit)))
             };
             match rule.limit {
                 Some(limit) if rule.at_least && rule.limit_at_most => {

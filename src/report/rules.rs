@@ -5,7 +5,8 @@ use maud::{Markup, html};
 use super::numbers::{SizeUnit, significant, trimmed};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole};
+use crate::verdict::practice::digits_within;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
@@ -28,6 +29,15 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
 /// What stands behind a value or a limit of a rule: inches, where it is a length and they are shown.
 pub(super) fn inches(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
     if rule.unit == "mm" { unit.beside(value) } else { String::new() }
+}
+
+/// What stands behind a limit of a rule, so that inches do not go beyond it either.
+pub(super) fn inches_of_limit(rule: &AppliedRule, limit: f64, unit: SizeUnit) -> String {
+    match (rule.unit == "mm", rule.at_least) {
+        (true, true) => unit.beside_least(limit),
+        (true, false) => unit.beside_greatest(limit),
+        (false, _) => String::new(),
+    }
 }
 
 /// Rules as a table.
@@ -60,8 +70,12 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let is_open = rule.at_least && rule.limit_at_most;
             let sign = if is_open { "not known; at most" } else { sign };
             let limit = |limit: f64| {
-                let shown = format!("{sign} {} {}", trimmed((limit * 1e4).round() / 1e4), rule.unit);
-                shown.trim_end().to_owned() + &inches(rule, limit, unit)
+                let number = match rule.quantity {
+                    RuleQuantity::D15F => digits_within(limit, 3, rule.at_least),
+                    _ => trimmed((limit * 1e4).round() / 1e4),
+                };
+                let shown = format!("{sign} {number} {}", rule.unit);
+                shown.trim_end().to_owned() + &inches_of_limit(rule, limit, unit)
             };
             let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
             html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }

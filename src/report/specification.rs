@@ -8,11 +8,12 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
-use super::numbers::{SizeUnit, known, rounded_down, rounded_up, significant, trimmed};
+use super::numbers::{SizeUnit, known, significant, trimmed};
 use super::section::Sections;
 use super::shell::{Drawn, clean};
 use super::table::Table;
 use super::written::Written;
+use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::{ProductMargin, SizeBand};
 use crate::outcome::design::{Specification, SpecificationStep};
 
@@ -76,17 +77,19 @@ impl Stated {
 fn answer(of: &Specification) -> Markup {
     let d15 = of.band.iter().flat_map(|band| &band.sizes).find(|size| size.percent == 15.0);
     let raised = d15.zip(of.d15f_min_mm).filter(|(size, least)| size.min_mm > *least);
+    let least = |mm: f64| SizeUnit::of(false, of.inches).limit(mm, "mm", true);
+    let unit = SizeUnit::Mm;
     html! {
         section.verdict {
             @if let Some(size) = d15 {
                 p.word.long {
-                    "D15F from " (rounded_up(size.min_mm)) " to " (rounded_down(size.max_mm))
+                    "D15F from " (unit.least(size.min_mm)) " to " (unit.greatest(size.max_mm))
                     " mm, by practice."
                 }
             }
-            @if let Some((_, least)) = raised {
+            @if let Some((_, drains)) = raised {
                 p {
-                    "A D15F of " (rounded_up(least)) " mm already drains the base. The least is raised to \
+                    "A D15F of " (least(drains)) " already drains the base. The least is raised to \
                      keep the band narrow."
                 }
             }
@@ -124,6 +127,7 @@ fn products_in_short(of: &Specification) -> String {
 }
 
 fn steps(of: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, of.inches);
     html! {
         p.small {
             "The order of the steps is ours, as procedures commonly have it. The text of the handbook of \
@@ -140,7 +144,7 @@ fn steps(of: &Specification) -> Markup {
             })
             .text("Numbers", |step| html! {
                 @for value in &step.values {
-                    (clean(&value.name)) " = " b { (known(value.words(), |words| words)) } br;
+                    (clean(&value.name)) " = " b { (known(value.words_in(unit), |words| words)) } br;
                 }
             })
             .render())
@@ -166,8 +170,8 @@ fn limits(of: &Specification) -> Markup {
         }
         (Table::of(&band.sizes)
             .name("Size of the band", |size| format!("D{}", size.percent))
-            .number("Least (mm)", |size| rounded_up(size.min_mm) + &unit.beside(size.min_mm))
-            .number("Greatest (mm)", |size| rounded_down(size.max_mm) + &unit.beside(size.max_mm))
+            .number("Least (mm)", |size| unit.least(size.min_mm))
+            .number("Greatest (mm)", |size| unit.greatest(size.max_mm))
             .render())
     }
 }
@@ -212,12 +216,14 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
             None => html! { "no result" },
         });
     }
+    let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));
     html! {
         @if !of.products.is_empty() {
             (table.render())
             p.small {
                 "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
                  its supplier’s gradation decides."
+                @if let Some(said) = to_check { " " (clean(&said)) }
             }
         }
     }
@@ -287,6 +293,11 @@ mod tests {
         assert!(products_in_short(&unknown).starts_with("No other product is known to fit"));
         let unknown = Specification { products: margins((Some(0.1), false), None, None), ..unknown };
         assert!(products_in_short(&unknown).starts_with("No standard product is known to fit"));
+        let page = products(&core, true).into_string();
+        assert!(
+            page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
+            "{page}"
+        );
         let points = [12.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
         assert_eq!(points, ["12", "1", "1.0", "0.3", "less than 0.1"]);
     }

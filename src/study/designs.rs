@@ -7,7 +7,7 @@ use super::file_names::numbered;
 use super::kept;
 use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
-use crate::outcome::design::{Design, Specification, asks_for_inches};
+use crate::outcome::design::{Design, Specification};
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
@@ -150,7 +150,7 @@ impl Planned {
         folder: &Folder,
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
-        let (mut rows, mut leaves_out, mut walks) = (Vec::new(), Vec::new(), None);
+        let (mut rows, mut leaves_out, mut walks, mut inches) = (Vec::new(), Vec::new(), None, false);
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -167,6 +167,7 @@ impl Planned {
                 false => run(&of_sample, callbacks)?,
             };
             leaves_out.clone_from(&design.model_leaves_out);
+            inches |= design.inches;
             walks = Some(DesignedWalks::of(&design, settings));
             rows.push(row.clone().designed(&design, place));
         }
@@ -175,7 +176,7 @@ impl Planned {
             work: self.work.clone(),
             filter: self.filter.clone(),
             dispersive: self.dispersive,
-            inches: asks_for_inches(settings.iter().map(String::as_str)),
+            inches,
             walks,
             notes: self.notes.clone(),
             model_leaves_out: leaves_out,

@@ -5,6 +5,7 @@ use super::finding;
 use super::practice::cited;
 use super::words::within;
 use crate::outcome::design::band::{Band, SetBy, limits, open_retention, retention};
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{PERMEABILITY, RULES};
 
@@ -53,23 +54,24 @@ impl Band {
 
     /// That nothing lies between the least D15F that drains a base and the greatest that holds it.
     pub fn empty(&self) -> Option<Finding> {
-        let size = |d15f: f64| format!("{d15f:.3} {}", self.unit);
+        let size = |rounded: String| format!("{rounded} {}", self.unit);
+        let (least, greatest) = (size(rounded_up(self.least)), size(rounded_down(self.greatest)));
         let set_by = match self.set_by {
             Some(SetBy::Practice) => self.rule(),
             _ => "the walk".into(),
         };
-        self.is_empty.then(|| finding::empty_band(&size(self.least), &size(self.greatest), &set_by))
+        self.is_empty.then(|| finding::empty_band(&least, &greatest, &set_by))
     }
 
     fn sides(&self, greatest: f64, practice: Option<String>) -> String {
         let set_by = practice.map_or("the walk".into(), |rule| format!("practice ({rule})"));
-        let (least, unit) = (self.least, &self.unit);
+        let (least, greatest, unit) = (rounded_up(self.least), rounded_down(greatest), &self.unit);
         match self.least_at_most {
             true => format!(
-                "D15F up to {greatest:.3} {unit}, by {set_by}; the least that drains is not known, and at \
-                 most {least:.3} {unit}: the base needs a hydrometer test"
+                "D15F up to {greatest} {unit}, by {set_by}; the least that drains is not known, and at \
+                 most {least} {unit}: the base needs a hydrometer test"
             ),
-            false => format!("D15F from {least:.3} to {greatest:.3} {unit}, the coarse side by {set_by}"),
+            false => format!("D15F from {least} to {greatest} {unit}, the coarse side by {set_by}"),
         }
     }
 
@@ -105,17 +107,28 @@ mod tests {
         assert!((band.practice.unwrap() - 1.6).abs() < 1e-9 && (band.greatest - 1.6).abs() < 1e-9);
         assert_eq!(
             band.said,
-            "D15F from 0.430 to 1.600 mm, the coarse side by practice (Sherard and Dunnigan's limit of \
+            "D15F from 0.430 to 1.60 mm, the coarse side by practice (Sherard and Dunnigan's limit of \
              design)"
         );
         let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
         assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));
-        assert_eq!(narrow.said, "D15F from 0.430 to 1.200 mm, the coarse side by the walk");
+        assert_eq!(narrow.said, "D15F from 0.430 to 1.20 mm, the coarse side by the walk");
         // As an earlier version wrote it.
         let old = Band { greatest: 1.8, set_by: None, said: "D15F from 0.430 to 1.800 mm".into(), ..band };
-        assert!(
-            old.words().contains("from 0.430 to 1.600 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9
-        );
+        assert!(old.words().contains("from 0.430 to 1.60 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_band_is_said_with_its_ends_rounded_inward() {
+        let all = rules(3.0);
+        let band = Band { least: 0.7051, ..Band::new(&all, D15F, 1.2068, "mm").unwrap() };
+        let of_walk = band.sides(band.greatest, None);
+        assert_eq!(of_walk, "D15F from 0.706 to 1.20 mm, the coarse side by the walk");
+        let open = Band { least_at_most: true, ..band.clone() }.sides(0.8069, None);
+        assert!(open.starts_with("D15F up to 0.806 mm") && open.contains("at most 0.706 mm"), "{open}");
+        let empty = Band { least: 1.2061, greatest: 1.2069, is_empty: true, ..band };
+        let said = empty.empty().unwrap().sentence();
+        assert!(said.contains("at least 1.21 mm") && said.contains("at most 1.20 mm"), "{said}");
     }
 
     #[test]
@@ -141,15 +154,15 @@ mod tests {
     fn an_empty_band_names_the_two_numbers_that_clash_and_whose_the_second_is() {
         let said = |base_cu: f64, greatest: f64| {
             let band = Band::new(&rules(base_cu), D15F, greatest, "mm").unwrap();
-            let least = format!("at least {:.3} mm", 5.0 * 0.4 * libm::pow(base_cu, -1.4));
+            let least = format!("at least {} mm", rounded_up(5.0 * 0.4 * libm::pow(base_cu, -1.4)));
             let sentence = band.empty().map(|finding| finding.sentence());
             assert!(sentence.as_ref().is_none_or(|said| said.contains(&least)), "{sentence:?}");
             sentence.unwrap_or_default()
         };
         assert_eq!(said(3.0, 1.8), "");
-        assert!(said(1.2, 1.5).ends_with("but the walk allows at most 1.500 mm."), "{}", said(1.2, 1.5));
+        assert!(said(1.2, 1.5).ends_with("but the walk allows at most 1.50 mm."), "{}", said(1.2, 1.5));
         let practice = said(1.1, 1.8);
-        let limit = "but Sherard and Dunnigan's limit of design allows at most 1.600 mm.";
+        let limit = "but Sherard and Dunnigan's limit of design allows at most 1.60 mm.";
         assert!(practice.ends_with(limit) && !practice.contains("walk"), "{practice}");
     }
 }

@@ -242,7 +242,8 @@ impl Sizes {
     fn size(&self, ratio: f64) -> String {
         // The greatest D15F, or the least D85B.
         let within = if self.inverse { rounded_up } else { rounded_down };
-        self.mm(ratio).map_or_else(|| format!("{ratio:.2} D85B"), |mm| format!("{} mm", within(mm)))
+        self.mm(ratio)
+            .map_or_else(|| format!("{} D85B", rounded_down(ratio)), |mm| format!("{} mm", within(mm)))
     }
 
     fn words(&self, ratio: f64) -> String {

@@ -3,6 +3,7 @@
 
 use super::entry::Finding;
 use super::finding;
+use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::numbers::whole_within;
 use crate::outcome::record::{
     AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, RuleText, TestedClass,
@@ -156,6 +157,20 @@ pub enum Standing {
     Met,
     /// No rule of design was applied.
     NoRules,
+}
+
+impl Standing {
+    /// The same as a record keeps it.
+    pub fn recorded(&self) -> ComparedStanding {
+        match self {
+            Self::Fails => ComparedStanding::Fails,
+            Self::NoMargin => ComparedStanding::NoMargin,
+            Self::Unstable => ComparedStanding::Unstable,
+            Self::Unknown(_) => ComparedStanding::Unknown,
+            Self::Met => ComparedStanding::Met,
+            Self::NoRules => ComparedStanding::NoRules,
+        }
+    }
 }
 
 /// Where the filter of a pair stands.

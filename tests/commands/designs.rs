@@ -195,6 +195,44 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
     assert!(!at.join("d").exists() && !at.join("voidwalk-designs").exists());
 }
 
+/// That no greatest D15F has more inches than mm, and no least fewer.
+fn assert_inches_lie_within(page: &str) {
+    let number = |text: &str| {
+        let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+        text[start..].parse::<f64>().ok()
+    };
+    let mut found = 0;
+    for (at, words) in page.match_indices("up to ").chain(page.match_indices("at most ")) {
+        let rest = &page[at + words.len()..];
+        let Some((mm, rest)) = rest.split_once(" mm (") else { continue };
+        let (Ok(mm), Some((inches, _))) = (mm.parse::<f64>(), rest.split_once("\u{202f}in")) else {
+            continue;
+        };
+        let Some(inches) = number(inches) else { continue };
+        assert!(inches * 25.4 <= mm * (1.0 + 1e-9), "{mm} mm, {inches} in");
+        found += 1;
+    }
+    let bands = page.match_indices("D15F from ").chain(page.match_indices("lie between "));
+    for (at, words) in bands {
+        let rest = &page[at + words.len()..];
+        let Some((mm, rest)) = rest.split_once(" mm (") else { continue };
+        let Some((inches, _)) = rest.split_once("\u{202f}in") else { continue };
+        let ends = |text: &str| -> Option<Vec<f64>> {
+            text.split([' '])
+                .filter(|word| !["to", "and"].contains(word))
+                .map(|word| word.parse().ok())
+                .collect()
+        };
+        let (Some(mm), Some(inches)) = (ends(mm), ends(inches)) else { continue };
+        assert!(
+            inches[0] * 25.4 * (1.0 + 1e-9) >= mm[0] && inches[1] * 25.4 <= mm[1] * (1.0 + 1e-9),
+            "{mm:?}"
+        );
+        found += 1;
+    }
+    assert!(found > 0, "{page}");
+}
+
 #[test]
 fn inches_stand_beside_mm_where_they_are_asked_for() {
     let root = site();
@@ -203,9 +241,14 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     let said = String::from_utf8(designed(at, &steps).stdout).unwrap();
     let page = fs::read_to_string(at.join("s/specification.html")).unwrap();
     assert!(said.contains("\u{202f}in)"), "{said}");
-    assert!(
-        page.contains("\u{202f}in), by practice.") && !page.contains("<title>Specification of a filter (")
-    );
+    assert_inches_lie_within(&page);
+    // The table of the band has the inches of the headline.
+    let answer = page.split("D15F from ").nth(1).unwrap().split("\u{202f}in), by practice").next().unwrap();
+    let (mm, inches) = answer.split_once(" mm (").unwrap();
+    for (mm, inches) in mm.split(" to ").zip(inches.split(" to ")) {
+        assert!(page.contains(&format!("{mm} ({inches}\u{202f}in)")), "{answer}");
+    }
+    assert!(page.contains("in), by practice.") && !page.contains("<title>Specification of a filter ("));
     let csv = fs::read_to_string(at.join("s/specification.csv")).unwrap();
     assert!(csv.contains("No. 200") && !csv.contains("in)"), "{csv}");
     let walk = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--units", "us", "--out", "w"];
@@ -214,6 +257,16 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     let page = fs::read_to_string(at.join("w/design.html")).unwrap();
     assert!(said.lines().nth(1).unwrap().contains("in)"), "{said}");
     assert!(page.matches("in)").count() > 5);
+    assert_inches_lie_within(&page);
+    // As the scene reads it, however it is written.
+    let literal = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--set", "about.units='us'"];
+    let literal =
+        [&literal[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12", "--out", "l"]].concat();
+    designed(at, &literal);
+    let record = |of: &str| fs::read_to_string(at.join(of).join("design.json")).unwrap();
+    let [said, as_option] = ["l", "w"].map(|of| serde_json::from_str::<Value>(&record(of)).unwrap());
+    assert!(said["inches"] == true && as_option["inches"] == true);
+    assert!(fs::read_to_string(at.join("l/design.html")).unwrap().matches("in)").count() > 5);
     // Numbers in files stay in mm, and the page that is made again is the same.
     designed(at, &["report", "w"]);
     assert_eq!(fs::read_to_string(at.join("w/design.html")).unwrap(), page);

@@ -13,7 +13,7 @@ mod spread;
 
 pub use record::{
     BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignFinding, DesignRow, NetworkBoundaries,
-    Range, WalkRow, asks_for_inches,
+    Range, WalkRow,
 };
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};

@@ -31,7 +31,7 @@ pub const PRODUCTS: [Product; 5] = [
             (4.75, 95.0, 100.0),
             (9.5, 100.0, 100.0),
         ],
-        source: "ASTM C33, table 1, as others cite it; the standard itself was not read",
+        source: "ASTM C33, table 1: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 8 stone",
@@ -54,8 +54,7 @@ pub const PRODUCTS: [Product; 5] = [
             (12.5, 90.0, 100.0),
             (19.0, 100.0, 100.0),
         ],
-        source: "AASHTO M 43, as table 703.01-1M of a highway specification cites it; the standard itself \
-                 was not read",
+        source: "AASHTO M 43: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",
@@ -82,6 +81,17 @@ pub const PRODUCTS: [Product; 5] = [
                  limits at these sieves and one of its own at 0.075 mm",
     },
 ];
+
+/// How the source of a product ends whose limits were read in no text of a named body.
+const TO_BE_CHECKED: &str = "limits to be checked against the standard";
+
+/// That the limits of some products are to be checked, from the name and the source of each; `None` where
+/// none are.
+pub fn to_be_checked<'a>(products: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
+    let named: Vec<&str> =
+        products.filter(|(_, source)| source.ends_with(TO_BE_CHECKED)).map(|(name, _)| name).collect();
+    (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
+}
 
 /// A product beside a band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -169,6 +179,23 @@ mod tests {
             assert!(product.limits.iter().all(|row| row.1 <= row.2), "{}", product.name);
             assert_eq!(product.limits.last().unwrap().1, 100.0);
         }
+    }
+
+    /// Nobody can sign for "a specification" or for what "others cite".
+    #[test]
+    fn a_source_names_a_body_and_a_document_or_asks_for_the_standard() {
+        for product in &PRODUCTS {
+            let is_signed = ["Colorado DOT, table", "Iowa DOT, Matls. IM"]
+                .iter()
+                .any(|body| product.source.starts_with(body));
+            assert!(is_signed || product.source.ends_with(TO_BE_CHECKED), "{}", product.name);
+        }
+        let said = to_be_checked(PRODUCTS.iter().map(|of| (of.name, of.source))).unwrap();
+        assert_eq!(
+            said,
+            "Limits to be checked against the standard: ASTM C33 fine aggregate, ASTM C33/D448 No. 78 stone."
+        );
+        assert_eq!(to_be_checked(PRODUCTS[3..].iter().map(|of| (of.name, of.source))), None);
     }
 
     #[test]

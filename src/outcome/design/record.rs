@@ -80,6 +80,9 @@ pub struct Design {
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
+    /// Whether inches stand beside mm on its page.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// Wall time (s).
     pub seconds: f64,
 }
@@ -302,21 +305,7 @@ impl BaseStated {
     }
 }
 
-/// Whether settings (`about.units=us` is one) ask for inches beside mm.
-pub fn asks_for_inches<'a>(settings: impl IntoIterator<Item = &'a str>) -> bool {
-    let is_us = |setting: &str| {
-        let said = setting.split_once('=');
-        said.map(|(key, value)| (key.trim(), value.trim().trim_matches('"'))) == Some(("about.units", "us"))
-    };
-    settings.into_iter().any(is_us)
-}
-
 impl Design {
-    /// Whether inches stand beside mm on its page: a setting of the user's.
-    pub fn shows_inches(&self) -> bool {
-        asks_for_inches(self.settings.iter().filter_map(|setting| setting.strip_prefix("--set ")))
-    }
-
     /// Whether the base particles that can block nothing moved as their expectation.
     pub fn moves_expectation(&self) -> bool {
         self.engine == Engine::Expected.name()

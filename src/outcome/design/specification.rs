@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::products::{PRODUCTS, Product, size_at};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
-use crate::outcome::numbers::{rounded_down, rounded_up, significant};
+use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, significant};
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 
 /// The whole of `specification.json`.
@@ -111,14 +111,20 @@ impl StepValue {
     /// The number with its unit, a least size rounded up and a greatest rounded down; `None` where it is not
     /// known.
     pub fn words(&self) -> Option<String> {
+        self.words_in(SizeUnit::Mm)
+    }
+
+    /// The same, with inches behind a size where they are shown.
+    pub fn words_in(&self, unit: SizeUnit) -> Option<String> {
         let value = self.value?;
-        let number = match (self.unit.as_str(), self.name.split(' ').next()) {
-            ("mm", Some("least")) => rounded_up(value),
-            ("mm", Some("greatest")) => rounded_down(value),
-            ("", _) if value.fract() == 0.0 && value < 100.0 => format!("{value:.0}"),
-            _ => significant(value),
+        let (number, beside) = match (self.unit.as_str(), self.name.split(' ').next()) {
+            ("mm", Some("least")) => (rounded_up(value), unit.beside_least(value)),
+            ("mm", Some("greatest")) => (rounded_down(value), unit.beside_greatest(value)),
+            ("mm", _) => (significant(value), unit.beside(value)),
+            ("", _) if value.fract() == 0.0 && value < 100.0 => (format!("{value:.0}"), String::new()),
+            _ => (significant(value), String::new()),
         };
-        Some(format!("{number} {}", self.unit).trim_end().to_owned())
+        Some(format!("{number} {}", self.unit).trim_end().to_owned() + &beside)
     }
 }
 

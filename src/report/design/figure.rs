@@ -11,7 +11,7 @@ use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule,
     VERMILLION,
 };
-use crate::report::numbers::significant;
+use crate::report::numbers::SizeUnit;
 use crate::report::shell::Drawn;
 
 /// Names of rules beside their lines.
@@ -40,7 +40,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let walks: Vec<&WalkRow> = walks.iter().filter(|walk| is_of(row, walk)).collect();
     // In mm where the base has a size and stays as it is.
     let (d85, axis, unit) = match design.base.d85_mm.filter(|_| !design.inverse) {
-        Some(d85) => (d85, "D15F (mm)", " mm"),
+        Some(d85) => (d85, "D15F (mm)", "mm"),
         None => (1.0, "D15F/D85B (–)", ""),
     };
     let limits = of_rules(design, d85);
@@ -85,8 +85,11 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
         }
         caption += " The other densities and thicknesses are in the table.";
     }
+    // As in the tables: no more than a greatest, and no less than a least.
+    let shown = SizeUnit::of(unit.is_empty(), design.inches);
+    let within = |rule: &AppliedRule, at: f64| shown.limit(at, unit, rule.at_least);
     let lines: Vec<String> =
-        limits.iter().map(|(rule, at)| format!("{} {}{unit}", rule.name, significant(*at))).collect();
+        limits.iter().map(|(rule, at)| format!("{} {}", rule.name, within(rule, *at).trim_end())).collect();
     if !lines.is_empty() {
         caption += &format!(" Dotted: {}.", lines.join("; "));
     }

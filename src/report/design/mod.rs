@@ -9,14 +9,15 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::files::{json, rows};
 use super::names::soil_name;
-use super::numbers::{SizeUnit, duration, significant, threshold, trimmed, whole};
+use super::numbers::{SizeUnit, duration, rounded_down, rounded_up, significant, threshold, trimmed, whole};
 use super::rules;
 use super::section::Sections;
 use super::shell::{citation, clean, fact, unbroken};
 use super::specification::Stated;
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::band::SetBy;
+use crate::outcome::design::band::{Band, SetBy};
+use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, Confidence, RuleRole};
 use crate::verdict::FOREMOST;
@@ -58,7 +59,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
-        .inches(design.shows_inches())
+        .inches(design.inches)
         .words(&sheet)
         .figures(figure::erosion(&design, &walks))
         .contents()
@@ -163,7 +164,8 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     @let of_walk = |limit: &f64| !band.is_empty && *limit != band.greatest_of_both();
                     @if let Some(practice) = band.practice.filter(of_walk) {
                         p {
-                            "Practice allows up to " (significant(practice)) " " (band.unit) " ("
+                            "Practice allows up to "
+                            (shown_in(design, &band.unit).limit(practice, &band.unit, false)) " ("
                             (clean(&band.practice_rule)) ")."
                         }
                     }
@@ -205,6 +207,11 @@ fn sentence(note: &str) -> String {
     clean(&format!("{}.", capital(note.trim_end_matches('.'))))
 }
 
+/// What sizes in a unit are shown in.
+fn shown_in(design: &Design, unit: &str) -> SizeUnit {
+    SizeUnit::of(unit != "mm", design.inches)
+}
+
 fn ratio(value: f64) -> String {
     format!("{value:.2}")
 }
@@ -222,14 +229,20 @@ fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> Str
 
 fn boundaries(design: &Design) -> Markup {
     let of_base = design.base.size().map_or(String::new(), |base| format!(" ({})", base.words()));
-    let cell = |boundary: Option<&Boundary>, note: Option<&String>| {
+    // A boundary of no erosion is stated as a limit.
+    let unit = shown_in(design, "mm");
+    let within: fn(f64) -> String = if design.inverse { rounded_up } else { rounded_down };
+    let limit = |mm: f64| unit.limit(mm, "mm", design.inverse);
+    let found = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
+    let cell = |boundary: Option<&Boundary>, note: Option<&String>, is_limit: bool| {
+        let end = if is_limit { within } else { significant };
         html! {
             @match boundary {
                 Some(boundary) => {
                     b { (ratio(boundary.median)) } (in_band(boundary.low, boundary.high, ratio))
                     @for range in [&boundary.d15f_mm, &boundary.d85b_mm].into_iter().flatten() {
-                        br; (significant(range.median)) " mm"
-                        (in_band(range.low, range.high, significant))
+                        br; (if is_limit { limit(range.median) } else { found(range.median) })
+                        (in_band(range.low, range.high, end))
                     }
                 },
                 None => "no number",
@@ -253,10 +266,10 @@ fn boundaries(design: &Design) -> Markup {
                 html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
             })
             .text("No erosion in the model up to", |row| {
-                cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref())
+                cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref(), true)
             })
             .text("Continuing erosion from", |row| {
-                cell(row.continuing.as_ref(), row.continuing_note.as_ref())
+                cell(row.continuing.as_ref(), row.continuing_note.as_ref(), false)
             })
             .number("Not monotone", |row| {
                 format!("{} of {}", row.not_monotone, row.networks.len())
@@ -277,9 +290,10 @@ fn boundaries(design: &Design) -> Markup {
 
 fn bands(design: &Design) -> Markup {
     let rows: Vec<&DesignRow> = design.boundaries.iter().filter(|row| row.band.is_some()).collect();
-    let size = |row: &DesignRow, of: fn(&crate::outcome::design::band::Band) -> Option<f64>| {
+    let size = |row: &DesignRow, at_least: bool, of: fn(&Band) -> Option<f64>| {
         let band = row.band.as_ref().expect("rows without one were left out");
-        of(band).map_or_else(|| "–".to_owned(), |value| format!("{} {}", significant(value), band.unit))
+        let limit = |value| shown_in(design, &band.unit).limit(value, &band.unit, at_least);
+        of(band).map_or_else(|| "–".to_owned(), limit)
     };
     let set_by = |row: &DesignRow| match row.band.as_ref().map(|band| band.greatest_of_both()) {
         Some(greatest) if row.band.as_ref().and_then(|band| band.practice) == Some(greatest) => "practice",
@@ -298,12 +312,12 @@ fn bands(design: &Design) -> Markup {
                 .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
                 .number("Least (drains)", |row| {
                     let is_open = row.band.as_ref().is_some_and(|band| band.least_at_most);
-                    let least = size(row, |band| Some(band.least));
+                    let least = size(row, true, |band| Some(band.least));
                     if is_open { format!("at most {least}, not known") } else { least }
                 })
-                .number("Greatest", |row| size(row, |band| Some(band.greatest_of_both())))
+                .number("Greatest", |row| size(row, false, |band| Some(band.greatest_of_both())))
                 .text("Set by", |row| set_by(row))
-                .number("Practice allows", |row| size(row, |band| band.practice))
+                .number("Practice allows", |row| size(row, false, |band| band.practice))
                 .text("", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
                     true => html! { span.breaks { "✗ empty" } },
                     false => html! { span.keeps { "✓" } },
@@ -323,6 +337,8 @@ fn products(design: &Design) -> Markup {
         true => html! { span.keeps { "✓" } },
         false => html! { span.breaks { "✗" } },
     };
+    let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
+    let to_check = to_be_checked(sources);
     html! {
         @if !design.products.is_empty() {
             p {
@@ -355,6 +371,7 @@ fn products(design: &Design) -> Markup {
                     (false, _) => html! { "does not fit" },
                 })
                 .render())
+            @if let Some(said) = to_check { p.small { (clean(&said)) } }
         }
     }
 }
@@ -376,7 +393,7 @@ fn practice(design: &Design) -> Markup {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
                 (read_at(design)) "."
             }
-            (rules::table(&rules, SizeUnit::Mm))
+            (rules::table(&rules, shown_in(design, &design.unit)))
         }
     }
 }
@@ -433,6 +450,7 @@ mod tests {
     use crate::outcome::design::BaseStated;
     use crate::outcome::design::products::Fit;
     use crate::outcome::record::ModelLimit;
+    use crate::outcome::rules::DESIGN;
     use crate::verdict::PairRules;
 
     fn written(design: &Design, csv: &str) -> String {
@@ -517,6 +535,7 @@ mod tests {
             warnings: Vec::new(),
             model_leaves_out: vec![ModelLimit::Said("water".into())],
             settings: Vec::new(),
+            inches: false,
             seconds: 1.0,
         }
     }
@@ -576,8 +595,44 @@ mod tests {
         assert!(page.contains("Base eroded against D15F: loosest, 60 layers"), "{page}");
         assert!(page.contains("this one holds least"));
         let terzaghi =
-            |d85b: f64| format!("Terzaghi: the filter retains the base {}", significant(4.0 * d85b));
+            |d85b: f64| format!("Terzaghi: the filter retains the base {}", rounded_down(4.0 * d85b));
         assert!(page.contains(&terzaghi(part)) && !page.contains(&terzaghi(d85)), "{page}");
+    }
+
+    /// The limit of practice is 0.8069 mm, the walk holds to 0.8068 mm, and 0.7051 mm drain.
+    #[test]
+    fn limits_are_rounded_inward_wherever_the_page_has_them() {
+        let sand = |size| Gradation::linear_from_dx(15.0, size, 1.5).unwrap();
+        let rules = PairRules::of(&sand(0.15), &sand(0.8)).rules.into_iter();
+        let rules = rules.filter(|rule| rule.id == DESIGN);
+        let mut design = design(Boundary::of(&[Ok(4.034), Ok(4.034)], Some(0.2)), Confidence::Within);
+        design.rules = rules.map(|rule| AppliedRule { limit: Some(0.8069), ..rule }).collect();
+        design.base.d85_mm = Some(0.2);
+        let band = Band {
+            least: 0.7051,
+            least_at_most: false,
+            greatest: 0.8068,
+            set_by: Some(SetBy::Walk),
+            practice: Some(0.8069),
+            practice_rule: "r".into(),
+            practice_rule_id: None,
+            unit: "mm".into(),
+            is_empty: false,
+            said: "D15F from 0.706 to 0.806 mm".into(),
+        };
+        design.boundaries[0].band = Some(band);
+        let csv = CSV.replace("4.0,", "3.9,");
+        let page = written(&design, &csv);
+        assert!(page.contains("D15F up to 0.806 mm") && page.contains("Practice allows up to 0.806 mm"));
+        assert!(page.contains(" 0.806 mm.</figcaption>") && page.contains(">0.706 mm<"), "{page}");
+        assert!(!page.contains("0.807") && !page.contains("0.705"), "{page}");
+        design.inches = true;
+        let page = written(&design, &csv);
+        // 0.806 mm are 0.03173 in, and 0.706 mm 0.02780 in.
+        let inches = |mm: &str| page.match_indices(&format!("{mm} mm (")).count();
+        assert!(inches("0.806") > 3 && inches("0.706") > 0);
+        assert_eq!(inches("0.806"), page.matches("0.0317\u{202f}in").count(), "{page}");
+        assert!(page.contains("0.706 mm (0.0278\u{202f}in)"), "{page}");
     }
 
     #[test]

@@ -17,6 +17,7 @@ use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
+use crate::verdict::practice::standing;
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -95,6 +96,7 @@ impl ComparePlan {
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
             case.headline = outcome.headline();
             case.practice = outcome.practice_in_words();
+            case.standing = Some(standing(&outcome.rules).recorded());
             case.walk = outcome.walk_in_words();
             case.next = outcome.next_in_words();
             case.beside = outcome.beside_the_verdict();

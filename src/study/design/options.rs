@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::outcome::design::SieveSeries;
 use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
+use crate::scene::Scene;
 use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
@@ -68,14 +69,16 @@ impl Default for DesignOptions {
     }
 }
 
+/// The setting that a dispersive base has.
+const KEY: &str = "base.dispersive";
+
 impl DesignOptions {
     /// Whether the settings say that the base is dispersive.
     pub(in crate::study) fn says_dispersive(&self) -> bool {
-        let is_said = |setting: &String| {
-            let said = setting.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
-            said == Some(("base.dispersive", "true"))
-        };
-        self.settings.iter().any(is_said)
+        // As the scene reads it; what the scene refuses is refused where the whole of it is read.
+        let is_of = |setting: &&String| setting.split('=').next().unwrap_or_default().trim() == KEY;
+        let said: Vec<String> = self.settings.iter().filter(is_of).cloned().collect();
+        Scene::built_in(&said).is_ok_and(|scene| scene.base.dispersive == Some(true))
     }
 }
 
@@ -155,6 +158,18 @@ impl std::fmt::Display for Thickness {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_base_is_dispersive_as_the_scene_says() {
+        let of = |settings: &[&str]| {
+            let settings = settings.iter().map(ToString::to_string).collect();
+            DesignOptions { settings, ..DesignOptions::default() }.says_dispersive()
+        };
+        assert!(of(&["base.dispersive=true"]) && of(&["base.cu=3", " base.dispersive = true "]));
+        assert!(!of(&[]) && !of(&["base.dispersive=false"]));
+        // The last counts.
+        assert!(!of(&["base.dispersive=true", "base.dispersive=false"]));
+    }
 
     #[test]
     fn a_thickness_says_what_it_is_in() {

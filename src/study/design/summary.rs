@@ -122,6 +122,7 @@ pub(super) fn design(
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
+        inches: shows_inches(first),
         seconds,
         boundaries,
     };
@@ -130,6 +131,11 @@ pub(super) fn design(
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
     Ok(Design { answer: Some(answer), warnings, specification, ..design })
+}
+
+/// Whether inches stand beside mm, as the scene says.
+fn shows_inches(row: &Row) -> bool {
+    row.stated.scene.about.units == Some(SheetUnits::Us)
 }
 
 /// The specification of a filter that practice and the answer allow; `None` without an answer in mm.
@@ -146,9 +152,8 @@ fn specification(
         sieves: options.sieves,
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };
-    let inches = row.stated.scene.about.units == Some(SheetUnits::Us);
     let of = Specification::of(name, &[(name.to_owned(), given.clone())], specified);
-    Some(Specification { inches, ..of })
+    Some(Specification { inches: shows_inches(row), ..of })
 }
 
 /// A row as its networks have it, and what they say against it.

@@ -1982,6 +1982,8 @@ class Design(_Design, total=False):
         What the model does not contain.
     settings
         Settings that were given, as on the command line.
+    inches
+        Whether inches stand beside mm on its page.
     seconds
         Wall time (s).
     """
@@ -1990,6 +1992,7 @@ class Design(_Design, total=False):
     findings: List[DesignFinding]
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
+    inches: bool
 
 
 class _BaseSize(TypedDict):
@@ -2048,6 +2051,8 @@ class ComparedCase(_ComparedCase, total=False):
         The rules of practice that were made for these soils and are not kept, by name.
     practice
         What filter practice says of the pair, in a line; records of earlier versions do not say.
+    standing
+        Where the filter stands by practice; records of earlier versions do not say.
     headline
         Whether the filter holds, in a line; records of earlier versions do not say.
     walk
@@ -2083,6 +2088,7 @@ class ComparedCase(_ComparedCase, total=False):
     """
 
     practice: str
+    standing: Optional[Literal["fails", "no_margin", "unstable", "unknown", "met", "no_rules"]]
     headline: str
     walk: str
     next: str
