@@ -150,7 +150,7 @@ impl Planned {
         folder: &Folder,
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
-        let (mut rows, mut leaves_out, mut walks, mut inches) = (Vec::new(), Vec::new(), None, false);
+        let (mut rows, mut leaves_out, mut walks) = (Vec::new(), Vec::new(), None);
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -167,7 +167,6 @@ impl Planned {
                 false => run(&of_sample, callbacks)?,
             };
             leaves_out.clone_from(&design.model_leaves_out);
-            inches |= design.inches;
             walks = Some(DesignedWalks::of(&design, settings));
             rows.push(row.clone().designed(&design, place));
         }
@@ -176,7 +175,7 @@ impl Planned {
             work: self.work.clone(),
             filter: self.filter.clone(),
             dispersive: self.dispersive,
-            inches,
+            inches: options.design.shows_inches(),
             walks,
             notes: self.notes.clone(),
             model_leaves_out: leaves_out,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::outcome::design::SieveSeries;
 use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
-use crate::scene::Scene;
+use crate::scene::{Scene, SheetUnits};
 use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
@@ -69,16 +69,23 @@ impl Default for DesignOptions {
     }
 }
 
-/// The setting that a dispersive base has.
-const KEY: &str = "base.dispersive";
-
 impl DesignOptions {
     /// Whether the settings say that the base is dispersive.
     pub(in crate::study) fn says_dispersive(&self) -> bool {
-        // As the scene reads it; what the scene refuses is refused where the whole of it is read.
-        let is_of = |setting: &&String| setting.split('=').next().unwrap_or_default().trim() == KEY;
+        self.scene_of("base.dispersive").is_some_and(|scene| scene.base.dispersive == Some(true))
+    }
+
+    /// Whether the settings ask for inches beside mm.
+    pub(in crate::study) fn shows_inches(&self) -> bool {
+        self.scene_of("about.units").is_some_and(|scene| scene.about.units == Some(SheetUnits::Us))
+    }
+
+    /// What the scene reads of the settings of one key; what it refuses is refused where the whole of it is
+    /// read.
+    fn scene_of(&self, key: &str) -> Option<Scene> {
+        let is_of = |setting: &&String| setting.split('=').next().unwrap_or_default().trim() == key;
         let said: Vec<String> = self.settings.iter().filter(is_of).cloned().collect();
-        Scene::built_in(&said).is_ok_and(|scene| scene.base.dispersive == Some(true))
+        Scene::built_in(&said).ok()
     }
 }
 
