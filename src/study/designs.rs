@@ -136,7 +136,7 @@ impl Planned {
             // A table or a page that somebody took away is written again.
             let is_whole = |name: &&str| out.join(name).is_file();
             let page = cfg!(feature = "report").then_some(PAGE);
-            return Ok([TABLE].iter().chain(&page).all(|name| is_whole(&name)).then_some(there));
+            return Ok([TABLE].iter().chain(&page).all(is_whole).then_some(there));
         }
         let problem =
             "holds the designs of other samples or settings; name another folder or add --overwrite";

@@ -92,7 +92,7 @@ mod tests {
         let unknown = beyond(Beyond::Above, Ended::NotWalked("too fine".into()));
         for less in [erodes, holds, unknown] {
             assert_eq!(wanted(&[at(4.0), less.clone()]), None, "{less:?}");
-            assert_eq!(wanted(&[less.clone()]), None, "{less:?}");
+            assert_eq!(wanted(std::slice::from_ref(&less)), None, "{less:?}");
         }
     }
 
