@@ -130,7 +130,7 @@ impl StopRule {
     /// The widest half of the 95 % intervals, and whether it is narrow enough.
     fn closeness(&self, runs: &[ReplicateValues]) -> (Option<f64>, bool) {
         let half = |values: &ReplicateValues| {
-            let statistic = statistic(values, 0.05);
+            let statistic = statistic(values, USUAL_ERROR);
             Some(statistic.high? - statistic.mean)
         };
         let widest = runs.iter().map(half).try_fold(0.0, |widest, half| Some(f64::max(widest, half?)));

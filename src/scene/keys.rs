@@ -474,6 +474,13 @@ impl NetworkMadeOf {
     }
 }
 
+impl About {
+    /// Whether inches stand beside mm.
+    pub fn shows_inches(&self) -> bool {
+        self.units == Some(SheetUnits::Us)
+    }
+}
+
 /// Units that a sheet shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::outcome::design::SieveSeries;
 use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
-use crate::scene::{Scene, SheetUnits};
+use crate::scene::Scene;
 use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
@@ -77,7 +77,7 @@ impl DesignOptions {
 
     /// Whether the settings ask for inches beside mm.
     pub(in crate::study) fn shows_inches(&self) -> bool {
-        self.scene_of("about.units").is_some_and(|scene| scene.about.units == Some(SheetUnits::Us))
+        self.scene_of("about.units").is_some_and(|scene| scene.about.shows_inches())
     }
 
     /// What the scene reads of the settings of one key; what it refuses is refused where the whole of it is

@@ -19,7 +19,6 @@ use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::scene::SheetUnits;
 use crate::verdict::by_authority::of_design;
 use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
 
@@ -122,7 +121,7 @@ pub(super) fn design(
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
-        inches: shows_inches(first),
+        inches: first.stated.scene.about.shows_inches(),
         seconds,
         boundaries,
     };
@@ -131,11 +130,6 @@ pub(super) fn design(
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
     Ok(Design { answer: Some(answer), warnings, specification, ..design })
-}
-
-/// Whether inches stand beside mm, as the scene says.
-fn shows_inches(row: &Row) -> bool {
-    row.stated.scene.about.units == Some(SheetUnits::Us)
 }
 
 /// The specification of a filter that practice and the answer allow; `None` without an answer in mm.
@@ -153,7 +147,7 @@ fn specification(
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };
     let of = Specification::of(name, &[(name.to_owned(), given.clone())], specified);
-    Some(Specification { inches: shows_inches(row), ..of })
+    Some(Specification { inches: row.stated.scene.about.shows_inches(), ..of })
 }
 
 /// A row as its networks have it, and what they say against it.

@@ -44,6 +44,16 @@ pub enum Trial {
     CannotBe(Beyond, String),
 }
 
+impl Trial {
+    /// Whether 7.5 % or more eroded; `None` where the base cannot be walked.
+    pub(super) fn erodes(&self) -> Option<bool> {
+        match self {
+            Self::Eroded(eroded) => Some(!eroded.below_threshold),
+            Self::CannotBe(..) => None,
+        }
+    }
+}
+
 /// What walks at a ratio; asked once for each.
 pub trait Walker {
     /// The first run at D15F/D85B `ratio`.
@@ -129,14 +139,14 @@ impl<W: Walker> Search<W> {
 
     /// Whether the first run erodes at a step.
     pub(super) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
-        Ok(matches!(self.try_first(step)?, Trial::Eroded(eroded) if !eroded.below_threshold))
+        Ok(self.try_first(step)?.erodes() == Some(true))
     }
 
     /// Whether erosion continues at a step: both runs erode.
     pub(super) fn try_second(&mut self, step: i64) -> Result<Trial, RunError> {
-        match self.try_first(step)? {
-            Trial::Eroded(first) if !first.below_threshold => {}
-            other => return Ok(other),
+        let first = self.try_first(step)?;
+        if first.erodes() != Some(true) {
+            return Ok(first);
         }
         if !self.second.contains_key(&step) {
             let trial = self.walker.second(step, ratio_at(step))?;
@@ -155,18 +165,14 @@ impl<W: Walker> Search<W> {
         let Some(hint) = hint.filter(|hint| (self.stops[0]..=self.stops[1]).contains(hint)) else {
             return Ok(None);
         };
-        let erodes = |trial: Trial| match trial {
-            Trial::Eroded(eroded) => Some(!eroded.below_threshold),
-            Trial::CannotBe(..) => None,
-        };
-        let Some(first) = erodes(trial(self, hint)?) else { return Ok(None) };
+        let Some(first) = trial(self, hint)?.erodes() else { return Ok(None) };
         let (mut at, mut far) = (hint, NEAR);
         loop {
             let next = if first { at - far } else { at + far };
             if !(self.stops[0]..=self.stops[1]).contains(&next) {
                 return Ok(None);
             }
-            match erodes(trial(self, next)?) {
+            match trial(self, next)?.erodes() {
                 None => return Ok(None),
                 Some(erodes) if erodes != first => {
                     return self.halved((at.min(next), at.max(next)), trial).map(Some);
@@ -194,8 +200,8 @@ impl<W: Walker> Search<W> {
 
     /// Whether a step holds, and those below it that are tried besides.
     pub(super) fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
-        let holds = |trial: Trial| matches!(trial, Trial::Eroded(eroded) if eroded.below_threshold);
-        Ok(holds(self.try_first(step)?) && self.smallest_that_erodes(step + 1, Self::try_first)? == step + 1)
+        let holds = self.try_first(step)?.erodes() == Some(false);
+        Ok(holds && self.smallest_that_erodes(step + 1, Self::try_first)? == step + 1)
     }
 
     /// The smallest step that is seen to erode, from one that does on, after single steps below it have been
@@ -248,8 +254,7 @@ impl<W: Walker> Search<W> {
 
 /// The smallest of these steps that erodes.
 pub(super) fn smallest_seen(trials: &BTreeMap<i64, Trial>) -> Option<i64> {
-    let erodes = |trial: &Trial| matches!(trial, Trial::Eroded(of) if !of.below_threshold);
-    trials.iter().find(|(_, trial)| erodes(trial)).map(|(step, _)| *step)
+    trials.iter().find(|(_, trial)| trial.erodes() == Some(true)).map(|(step, _)| *step)
 }
 
 /// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway where the lower one was
