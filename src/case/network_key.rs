@@ -7,7 +7,8 @@ use crate::walk::Engine;
 /// Bytes of a network: for a void, and for a constriction (its target and diameter).
 const BYTES: [u64; 2] = [8, 8];
 
-/// The same of the exits that its first runs begin with: words and ways; shares and where a constriction begins.
+/// The same of the exits that its first runs begin with: words and ways; shares, and the void that a
+/// constriction leaves.
 const EXIT_BYTES: [u64; 2] = [16, 16];
 
 impl Case {
@@ -33,7 +34,7 @@ impl Case {
         of_voids.saturating_add(constrictions.saturating_mul(BYTES[1] + exits[1]))
     }
 
-    /// Whether its first runs begin with exits that hang on the network alone, and passive particles that take
+    /// Whether its first runs begin with exits that hang on the network alone, and passive particles take
     /// them.
     pub fn begins_with_plain_exits(&self) -> bool {
         let scene = &self.scene;

@@ -386,9 +386,9 @@ pub fn seconds_on(case: &Case, threads: u64) -> f64 {
     case.core_seconds() / (threads as f64 * BUSY)
 }
 
-/// Of so many cases, how many a process walks at the same time, memory aside, where each has so many replicates
-/// and more: as many as give each thread a replicate, and one for the threads that wait for the last replicate
-/// or the page of another.
+/// Of so many cases, how many a process walks at the same time, memory aside, where each has so many
+/// replicates and more: as many as give each thread a replicate, and one for the threads that wait for the
+/// last replicate or the page of another.
 pub fn cases_at_once(threads: u64, replicates: u64, cases: usize) -> u64 {
     let other = u64::from(threads > 1);
     (threads.div_ceil(replicates.max(1)) + other).clamp(1, cases.max(1) as u64)
