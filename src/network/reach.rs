@@ -175,7 +175,7 @@ mod tests {
             let network = Network { shape: None, ..lattice.clone() };
             let mut some = 0;
             for closed in 2..9 {
-                let open = |c: usize| (c * 7919) % 101 % closed != 0;
+                let open = |c: usize| !(c * 7919 % 101).is_multiple_of(closed);
                 let those = || vec![(closed * 5 % lattice.voids()) as u32, lattice.voids() as u32 - 1];
                 let [led, expected] = [&lattice, &network].map(|of| of.leading_to(those(), open));
                 assert_eq!(led, expected, "{shape:?}");
