@@ -70,8 +70,9 @@ def tables(folder):
 
 
 def walks(folder):
-    """Every walk that is done: its file, and when it was written."""
-    return {path: path.stat().st_mtime_ns for path in sorted((folder / "pairs/cases").glob("*/outcome.json"))}
+    """Every walk that is done: when its outcome was written. It is done with `case.json`, which comes last."""
+    done = sorted((folder / "pairs/cases").glob("*/case.json"))
+    return {path: path.with_name("outcome.json").stat().st_mtime_ns for path in done}
 
 
 def killed(words, at, moments, place):

@@ -22,6 +22,7 @@ use super::cases::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
 use crate::outcome::ledger::{LedgerLine, Made};
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
+use crate::run::cost;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::Machine;
@@ -179,10 +180,9 @@ impl CaseRunner<'_> {
     /// Tries each case once.
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
-        let side_by_side = side_by_side(open, self.threads);
-        let share = (self.threads / side_by_side).max(1);
+        // One pool for all: where a case leaves a thread idle, another case has work for it.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
         let work = || -> Result<(), RunError> {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(share).build()?;
             while !self.is_stopped() {
                 let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
                 let name = &case.planned.name;
@@ -199,7 +199,7 @@ impl CaseRunner<'_> {
             Ok(())
         };
         std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..side_by_side).map(|_| scope.spawn(work)).collect();
+            let workers: Vec<_> = (0..side_by_side(open, self.threads)).map(|_| scope.spawn(work)).collect();
             workers.into_iter().try_for_each(|worker| worker.join().unwrap_or(Ok(())))
         })
     }
@@ -307,11 +307,11 @@ impl CaseRunner<'_> {
     }
 }
 
-/// Cases walked at the same time: as many as there are threads that one case's replicates would leave idle.
+/// Cases walked at the same time: as many as keep the threads busy, and fit into the memory.
 fn side_by_side(open: &[&PreparedCase], threads: usize) -> usize {
     let cases = || open.iter().map(|prepared| &prepared.case);
-    let fewest = cases().map(|case| case.scene.walk.replicates).min().unwrap_or(1).max(1) as usize;
-    let wanted = threads.div_ceil(fewest).clamp(1, open.len().max(1));
+    let fewest = cases().map(|case| case.scene.walk.replicates).min().unwrap_or(1);
+    let wanted = cost::cases_at_once(threads as u64, fewest, open.len()) as usize;
     let largest = cases().map(|case| case.peak_bytes(threads as u64)).max().unwrap_or(0);
     let allowed = cases().map(|case| case.memory).min().unwrap_or(u64::MAX);
     let room = allowed.min(Machine::here().available / 2) / largest.max(1);

@@ -2,9 +2,14 @@
 
 use super::Case;
 use crate::scene::NetworkSource;
+use crate::walk::Engine;
 
 /// Bytes of a network: for a void, and for a constriction (its target and diameter).
 const BYTES: [u64; 2] = [8, 8];
+
+/// The same of the exits that its first runs begin with: words and ways; shares, and the void that a
+/// constriction leaves.
+const EXIT_BYTES: [u64; 2] = [16, 16];
 
 impl Case {
     /// A number that two cases share only where [`Case::network`] builds the same network of this seed;
@@ -21,9 +26,19 @@ impl Case {
         Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))
     }
 
-    /// About the bytes of one of its networks.
-    pub fn network_bytes(&self) -> u64 {
+    /// About the bytes of one of its networks, with the exits that its first runs begin with.
+    pub fn shared_network_bytes(&self) -> u64 {
         let [voids, constrictions, ..] = self.counts;
-        voids.saturating_mul(BYTES[0]).saturating_add(constrictions.saturating_mul(BYTES[1]))
+        let exits = if self.begins_with_plain_exits() { EXIT_BYTES } else { [0; 2] };
+        let of_voids = voids.saturating_mul(BYTES[0] + exits[0]);
+        of_voids.saturating_add(constrictions.saturating_mul(BYTES[1] + exits[1]))
+    }
+
+    /// Whether its first runs begin with exits that hang on the network alone, and passive particles take
+    /// them.
+    pub fn begins_with_plain_exits(&self) -> bool {
+        let scene = &self.scene;
+        let has_counts = matches!(scene.walk.engine, Engine::Counts | Engine::Expected);
+        has_counts && scene.is_lattice_by_area() && scene.law().is_none() && !scene.leaves_openings()
     }
 }

@@ -45,6 +45,7 @@ pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use group::{FINES_MM, GRAVEL_MM};
 pub use regrade::{FEW_FINES, RegradeCause, RegradeReason, Regraded};
+pub(crate) use sampler::SizeGuide;
 pub use sampler::{SizeRange, SizeSampler};
 pub use shape::Gap;
 pub use sieve::Gradation;

@@ -8,8 +8,8 @@ use std::ops::Range;
 /// All words, as a count: 2^64.
 const ALL_WORDS: u128 = 1 << 64;
 
-/// Buckets of the guide table; a word's top bits are its bucket.
-const BUCKETS: usize = 256;
+/// Buckets of a guide are no more than two to this power.
+const BUCKET_BITS: u32 = 8;
 
 /// Words whose diameters are drawn together.
 const AT_ONCE: usize = 64;
@@ -102,8 +102,28 @@ fn root_within(y: f64, [a, b]: [f64; 2]) -> f32 {
 pub struct SizeSampler {
     /// Sizes rise from one to the next; `v` falls from 1 to 0.
     segments: Vec<Segment>,
+    /// Where the segments of all words are looked for.
+    guide: SizeGuide,
+}
+
+/// Where to look for the segments of the words from one on: words that draw coarse particles are few among
+/// all, and so lie close together.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SizeGuide {
+    /// The first word.
+    first: u64,
+    /// A word's bucket is how far it is from the first, less so many bits.
+    shift: u32,
     /// Segment of the smallest word of each bucket.
-    guide: Vec<u32>,
+    segment: Vec<u32>,
+}
+
+impl SizeGuide {
+    /// A segment that is no coarser than that of a word, and close to it.
+    #[inline(always)]
+    fn start(&self, word: u64) -> usize {
+        self.segment[((word - self.first) >> self.shift) as usize] as usize
+    }
 }
 
 impl SizeSampler {
@@ -137,12 +157,22 @@ impl SizeSampler {
                 segments.push(Segment { a, b, v_a, v_b, y_b: 1.0 / (b * b * b), slope });
             }
         }
-        let mut sampler = SizeSampler { segments, guide: vec![0; BUCKETS] };
-        for bucket in 1..BUCKETS {
-            let start = sampler.guide[bucket - 1] as usize;
-            sampler.guide[bucket] = sampler.segment(start, coarser_share((bucket as u64) << 56)) as u32;
-        }
+        let mut sampler =
+            SizeSampler { segments, guide: SizeGuide { first: 0, shift: 0, segment: Vec::new() } };
+        sampler.guide = sampler.guide_from(0);
         Ok(sampler)
+    }
+
+    /// Where to look for the segments of the words from this one on.
+    pub(crate) fn guide_from(&self, first: u64) -> SizeGuide {
+        let last = u64::MAX - first;
+        let shift = (u64::BITS - last.leading_zeros()).saturating_sub(BUCKET_BITS);
+        let mut at = 0;
+        let of_bucket = |bucket: u64| {
+            at = self.segment(at, coarser_share(first + (bucket << shift)));
+            at as u32
+        };
+        SizeGuide { first, shift, segment: (0..=last >> shift).map(of_bucket).collect() }
     }
 
     /// The segment of `v`, at or after segment `start`. The last one's `v_b` is 0, which no `v` is below.
@@ -159,8 +189,7 @@ impl SizeSampler {
     #[inline]
     pub fn diameter(&self, word: u64) -> f32 {
         let v = coarser_share(word);
-        let start = self.guide[(word >> 56) as usize] as usize;
-        self.segments[self.segment(start, v)].diameter(v)
+        self.segments[self.segment(self.guide.start(word), v)].diameter(v)
     }
 
     /// [`SizeSampler::diameter`] of every word, in vector code as wide as the caller is compiled for.
@@ -169,6 +198,15 @@ impl SizeSampler {
     /// If the slices differ in length.
     #[inline(always)]
     pub fn fill(&self, words: &[u64], out: &mut [f32]) {
+        self.fill_guided(&self.guide, words, out);
+    }
+
+    /// The same with a guide of these words.
+    ///
+    /// # Panics
+    /// As [`SizeSampler::fill`], and if a word is below the first of the guide.
+    #[inline(always)]
+    pub(crate) fn fill_guided(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");
         if let [segment] = self.segments[..] {
             for (out, &word) in out.iter_mut().zip(words) {
@@ -176,7 +214,7 @@ impl SizeSampler {
             }
         } else {
             for (words, out) in words.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
-                self.fill_some(words, out);
+                self.fill_some(guide, words, out);
             }
         }
     }
@@ -184,12 +222,11 @@ impl SizeSampler {
     /// The same of at most [`AT_ONCE`] words: what hangs on the segment is looked up one by one, the roots
     /// are taken together.
     #[inline(always)]
-    fn fill_some(&self, words: &[u64], out: &mut [f32]) {
+    fn fill_some(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
         let (mut y, mut least, mut most) = ([0.0; AT_ONCE], [0.0; AT_ONCE], [0.0; AT_ONCE]);
         for (at, &word) in words.iter().enumerate() {
             let v = coarser_share(word);
-            let start = self.guide[(word >> 56) as usize] as usize;
-            let segment = &self.segments[self.segment(start, v)];
+            let segment = &self.segments[self.segment(guide.start(word), v)];
             (y[at], least[at], most[at]) = (segment.y_at(v), segment.a, segment.b);
         }
         for (((out, &y), &a), &b) in out.iter_mut().zip(&y).zip(&least).zip(&most) {
@@ -349,5 +386,36 @@ impl SizeRange<'_> {
             if low < high { s.cubes(low, high) } else { 0.0 }
         };
         self.sampler.segments.iter().map(one).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Key, Purpose};
+    use rand::Rng;
+
+    /// Segments of very unequal numbers of particles, of which those of the coarse ones lie close together.
+    #[test]
+    fn a_guide_of_coarse_words_finds_the_same_diameters() {
+        let points =
+            [(0.01, 0.0), (0.02, 30.0), (0.1, 55.0), (0.11, 56.0), (1.0, 80.0), (3.0, 99.0), (9.0, 100.0)];
+        let sampler = SizeSampler::new(&Gradation::from_points(&points, None).unwrap(), 1.0).unwrap();
+        let key = Key { seed: 3, purpose: Purpose::Insertion, run: 1, increment: 1, chunk: 0 };
+        let mut generator = key.generator();
+        let limits = [0.015, 0.1, 0.105, 0.9, 3.0, 8.9].map(|d| sampler.word_limit(d) as u64);
+        for first in limits.into_iter().chain([0, 1, 1 << 63, u64::MAX - 255, u64::MAX - 1, u64::MAX]) {
+            let guide = sampler.guide_from(first);
+            let width = u128::from(u64::MAX - first) + 1;
+            let drawn = (0..1000).map(|_| first + ((u128::from(generator.next_u64()) * width) >> 64) as u64);
+            let words: Vec<u64> = drawn.chain([first, u64::MAX]).collect();
+            let mut found = vec![0.0; words.len()];
+            sampler.fill_guided(&guide, &words, &mut found);
+            assert!(words.iter().zip(&found).all(|(&word, &d)| sampler.diameter(word) == d), "{first}");
+            assert!(guide.segment.len() <= 1 << BUCKET_BITS, "{first}");
+            assert!(
+                words.iter().all(|&word| { guide.start(word) <= sampler.segment(0, coarser_share(word)) })
+            );
+        }
     }
 }

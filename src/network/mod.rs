@@ -189,7 +189,13 @@ impl Network {
     /// The finest constriction that `closed` leaves open (`f32::INFINITY` where none is): a base
     /// particle no coarser than it is *passive*, it can block nothing.
     pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
-        let open = self.diameter.iter().enumerate().filter(|&(c, &d)| d > 0.0 && !closed(c));
-        open.map(|(_, &d)| d).fold(f32::INFINITY, f32::min)
+        let mut finest = f32::INFINITY;
+        for (c, &d) in self.diameter.iter().enumerate() {
+            // Few are finer than all before: of the others it does not matter whether they are closed.
+            if d < finest && d > 0.0 && !closed(c) {
+                finest = d;
+            }
+        }
+        finest
     }
 }

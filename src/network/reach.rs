@@ -69,9 +69,10 @@ impl Network {
             moves += 1;
             let mut next = Vec::new();
             for void in front {
-                for exit in self.exits(void).filter(|&c| passable(c)) {
+                for exit in self.exits(void) {
                     let target = self.target[exit];
-                    if target != END && distance[target as usize] == NO_LAYER {
+                    // Most have been reached already, which is known at less cost than what is passable.
+                    if target != END && distance[target as usize] == NO_LAYER && passable(exit) {
                         distance[target as usize] = moves;
                         next.push(target);
                     }
@@ -83,22 +84,41 @@ impl Network {
     }
 
     fn leading_to_end(&self, passable: impl Fn(usize) -> bool) -> Vec<bool> {
-        let (begin, entrances) = self.entrances();
+        let is_last = |&void: &u32| self.exits(void).any(|c| self.target[c] == END && passable(c));
+        // On a lattice they are in its last layer.
+        let first = self.shape.map_or(0, |[nx, ny, nz]| nx * ny * (nz - 1));
+        self.leading_to((first..self.voids() as u32).filter(is_last).collect(), passable)
+    }
+
+    /// Voids from which constrictions that `passable` admits lead to any of `those`, which are among them.
+    pub fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leads = vec![false; self.voids()];
-        let mut stack = Vec::new();
-        for void in 0..self.voids() as u32 {
-            if self.exits(void).any(|c| self.target[c] == END && passable(c)) {
-                leads[void as usize] = true;
-                stack.push(void);
+        let mut stack = those;
+        stack.iter().for_each(|&void| leads[void as usize] = true);
+        let mut look = |from: u32, exit: usize, stack: &mut Vec<u32>| {
+            if !leads[from as usize] && passable(exit) {
+                leads[from as usize] = true;
+                stack.push(from);
             }
-        }
-        let upstream = self.upstream();
-        while let Some(void) = stack.pop() {
-            for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
-                let above = upstream[entrance as usize];
-                if passable(entrance as usize) && !leads[above as usize] {
-                    leads[above as usize] = true;
-                    stack.push(above);
+        };
+        if let Some([nx, ny, _]) = self.shape {
+            let plane = nx * ny;
+            while let Some(void) = stack.pop() {
+                // The voids before it along x, y and z.
+                let by_x = if void % nx == 0 { void + nx - 1 } else { void - 1 };
+                let by_y = if void % plane < nx { void + plane - nx } else { void - nx };
+                look(by_x, 3 * by_x as usize, &mut stack);
+                look(by_y, 3 * by_y as usize + 1, &mut stack);
+                if let Some(by_z) = void.checked_sub(plane) {
+                    look(by_z, 3 * by_z as usize + 2, &mut stack);
+                }
+            }
+        } else {
+            let ((begin, entrances), upstream) = (self.entrances(), self.upstream());
+            while let Some(void) = stack.pop() {
+                for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize]
+                {
+                    look(upstream[entrance as usize], entrance as usize, &mut stack);
                 }
             }
         }
@@ -144,6 +164,27 @@ mod tests {
         let network = Network::cubic_from_diameters([4, 5, 3], vec![1.0; 180], 1.0).unwrap();
         assert_eq!(network.blocked_by_one_size(2.0), (0..60).collect::<Vec<u32>>());
         assert_eq!(network.blocked_by_one_size(1.0), Vec::<u32>::new());
+    }
+
+    /// The voids before a void of a lattice are worked out, and those of other networks looked up.
+    #[test]
+    fn as_many_voids_lead_on_in_a_lattice_as_in_the_network_that_it_is() {
+        for shape in [[4, 3, 5], [1, 4, 3], [5, 1, 3], [1, 1, 4], [2, 2, 1]] {
+            let count = Network::lattice_constrictions(shape).unwrap();
+            let lattice = Network::cubic_from_diameters(shape, vec![1.0; count], 1.0).unwrap();
+            let network = Network { shape: None, ..lattice.clone() };
+            let mut some = 0;
+            for closed in 2..9 {
+                let open = |c: usize| !(c * 7919 % 101).is_multiple_of(closed);
+                let those = || vec![(closed * 5 % lattice.voids()) as u32, lattice.voids() as u32 - 1];
+                let [led, expected] = [&lattice, &network].map(|of| of.leading_to(those(), open));
+                assert_eq!(led, expected, "{shape:?}");
+                let [to_end, expected_end] = [&lattice, &network].map(|of| of.leading_to_end(open));
+                assert_eq!(to_end, expected_end, "{shape:?}");
+                some += [&led, &to_end].into_iter().flatten().filter(|&&leads| leads).count();
+            }
+            assert!(some > 7, "{shape:?}: nothing led anywhere");
+        }
     }
 
     #[test]

@@ -13,8 +13,8 @@ type Sums = [u64; 5];
 /// and not counted.
 pub fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
-    // Entrances and exits are the same there.
-    if network.reservoir().is_some() {
+    // Entrances and exits are the same there, and on the cubic lattice all voids are alike.
+    if network.reservoir().is_some() || network.shape().is_some() {
         return Vec::new();
     }
     for (void, &k) in network.connectivity().iter().enumerate() {

@@ -13,7 +13,7 @@ use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, WalkId};
 use super::error::RunError;
 use super::planned::first_replicates;
-use super::shared_networks::SharedNetworks;
+use super::shared_networks::{NetworkToWalk, SharedNetworks};
 use crate::case::{Case, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
@@ -27,7 +27,8 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{
-    Clogged, Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl, from_words,
+    Clogged, Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, UnblockedExits, Walk, WalkControl,
+    from_words,
 };
 
 /// How replicates are walked: who follows them, and what saves them.
@@ -46,10 +47,10 @@ impl ReplicateContext<'_> {
         (self.callbacks.on_event)(event);
     }
 
-    fn network(&self, case: &Case, seed: u64) -> Result<Arc<Network>, NetworkError> {
+    fn network(&self, case: &Case, seed: u64) -> Result<Arc<NetworkToWalk>, NetworkError> {
         match self.networks {
             Some(shared) => shared.get(case, seed),
-            None => Ok(Arc::new(case.network(seed)?)),
+            None => Ok(Arc::new(NetworkToWalk { network: case.network(seed)?, open: None })),
         }
     }
 }
@@ -168,9 +169,10 @@ pub(super) fn walk_replicate(
 ) -> Result<ReplicateResult, RunError> {
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
-    let network = context.network(case, seed)?;
-    let mut clogged = Clogged::none(&network);
-    let first = plan(case, &network, &clogged.blocked, n_base);
+    let to_walk = context.network(case, seed)?;
+    let NetworkToWalk { network, open } = &*to_walk;
+    let mut clogged = Clogged::none(network);
+    let first = plan(case, network, &clogged.blocked, n_base);
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
     let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
         Some(Some((done, saved))) => (done, Some(saved)),
@@ -188,7 +190,7 @@ pub(super) fn walk_replicate(
             pan_fraction: case.pan_by_mass_only(),
         };
         let begun = Instant::now();
-        let walk = RunContext { case, network: &network, id, of };
+        let walk = RunContext { case, network, open: open.as_ref(), id, of };
         let (state, network, flow) = walk.run(clogged, &mut done, saved.take(), context)?;
         let seconds = begun.elapsed().as_secs_f64();
         let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
@@ -266,6 +268,8 @@ pub fn have_networks(case: &Case) -> Result<(), RunError> {
 struct RunContext<'a> {
     case: &'a Case,
     network: &'a Network,
+    /// Its exits where nothing is blocked, if they are known.
+    open: Option<&'a UnblockedExits>,
     id: WalkId,
     of: RunId,
 }
@@ -279,7 +283,7 @@ impl RunContext<'_> {
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
     ) -> Result<(State, Cow<'_, Network>, Option<FlowRecord>), RunError> {
-        let Self { case, network, id, of } = *self;
+        let Self { case, network, open, id, of } = *self;
         let WalkId { part, seed, n_base, .. } = id;
         let clogged = match &saved {
             // What is left of constrictions now comes with the state.
@@ -300,7 +304,7 @@ impl RunContext<'_> {
             }
             state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
         }
-        let mut walk = Walk::new(network, &supply, &state);
+        let mut walk = Walk::with_exits(network, &supply, &state, open);
         let (mut last, mut failed) = (Instant::now(), None);
         let mut wanted = case.scene.record.wanted();
         // One replicate is picture enough.

@@ -2,22 +2,31 @@
 //!
 //! Cases with one seed draw their networks from the same random numbers; where nothing that makes a network
 //! differs, it is the same network, and one of them is enough. The bits are those of networks that each case
-//! builds for itself.
+//! builds for itself. With a network stay the exits that its first runs begin with.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use crate::case::Case;
 use crate::network::{Network, NetworkError};
+use crate::walk::UnblockedExits;
 
 /// Networks that are kept take no more than this (bytes), and no more than one part in so many of what the
 /// walks may take.
 const MOST_BYTES: u64 = 1 << 27;
 const PART: u64 = 16;
 
+/// A network, and where nothing of it is blocked, which exits draws pick, as far as somebody keeps both.
+pub struct NetworkToWalk {
+    /// The network.
+    pub network: Network,
+    /// Its exits.
+    pub open: Option<UnblockedExits>,
+}
+
 /// Networks by what makes them.
 pub struct SharedNetworks {
-    kept: Mutex<VecDeque<(u128, Arc<Network>)>>,
+    kept: Mutex<VecDeque<(u128, Arc<NetworkToWalk>)>>,
     most_bytes: u64,
 }
 
@@ -36,26 +45,30 @@ impl SharedNetworks {
     ///
     /// # Errors
     /// As [`Case::network`].
-    pub fn get(&self, case: &Case, seed: u64) -> Result<Arc<Network>, NetworkError> {
-        let Some(key) = case.network_key(seed) else { return Ok(Arc::new(case.network(seed)?)) };
+    pub fn get(&self, case: &Case, seed: u64) -> Result<Arc<NetworkToWalk>, NetworkError> {
+        let Some(key) = case.network_key(seed) else {
+            return Ok(Arc::new(NetworkToWalk { network: case.network(seed)?, open: None }));
+        };
         if let Some(network) = self.find(key) {
             return Ok(network);
         }
         // Others are found meanwhile; two that build the same one build the same bits.
-        let network = Arc::new(case.network(seed)?);
-        let most = (self.most_bytes / case.network_bytes().max(1)) as usize;
+        let network = case.network(seed)?;
+        let open = case.begins_with_plain_exits().then(|| UnblockedExits::new(&network));
+        let found = Arc::new(NetworkToWalk { network, open });
+        let most = (self.most_bytes / case.shared_network_bytes().max(1)) as usize;
         if let Ok(mut kept) = self.kept.lock() {
             if kept.iter().all(|(other, _)| *other != key) {
-                kept.push_back((key, network.clone()));
+                kept.push_back((key, found.clone()));
             }
             while kept.len() > most {
                 kept.pop_front();
             }
         }
-        Ok(network)
+        Ok(found)
     }
 
-    fn find(&self, key: u128) -> Option<Arc<Network>> {
+    fn find(&self, key: u128) -> Option<Arc<NetworkToWalk>> {
         let kept = self.kept.lock().ok()?;
         kept.iter().find(|(other, _)| *other == key).map(|(_, network)| network.clone())
     }
@@ -77,7 +90,7 @@ mod tests {
         let shared = SharedNetworks::new(MOST_BYTES);
         let own = case(&[]);
         let network = shared.get(&own, 5).unwrap();
-        assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
+        assert_eq!(network.network.fingerprint(), own.network(5).unwrap().fingerprint());
         for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
         {
             assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap()), "{same:?}");
@@ -92,15 +105,31 @@ mod tests {
             let (other, name) = (case(&other), other);
             let found = shared.get(&other, 5).unwrap();
             assert!(!Arc::ptr_eq(&network, &found), "{name:?}");
-            assert_eq!(found.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+            assert_eq!(found.network.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
         }
         assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap()));
+    }
+
+    /// Exits are worked out only where first runs begin with them.
+    #[test]
+    fn exits_stay_with_the_networks_whose_walks_take_them() {
+        let shared = SharedNetworks::new(MOST_BYTES);
+        let has_exits = |set: &[&str]| shared.get(&case(set), 5).unwrap().open.is_some();
+        assert!(has_exits(&["engine=expected"]));
+        for without in [
+            vec!["engine=particles"],
+            vec!["engine=expected", "network.connectivity=table3"],
+            vec!["walk.exit=flux"],
+        ] {
+            let other = SharedNetworks::new(MOST_BYTES);
+            assert!(other.get(&case(&without), 5).unwrap().open.is_none(), "{without:?}");
+        }
     }
 
     #[test]
     fn no_more_are_kept_than_there_is_room_for() {
         let case = case(&[]);
-        let shared = SharedNetworks::new(7 * case.network_bytes());
+        let shared = SharedNetworks::new(7 * case.shared_network_bytes());
         for seed in 0..9 {
             shared.get(&case, seed).unwrap();
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Arching;
 use super::counts::{Passive, coarse_share};
 use super::strata::{self, IncrementStrata, Strata};
-use crate::gradation::SizeSampler;
+use crate::gradation::{SizeGuide, SizeSampler};
 use crate::stream::{Key, Purpose};
 
 /// The base particles of a run.
@@ -17,6 +17,8 @@ pub struct Supply {
     sampler: SizeSampler,
     /// Lowest random word handed to the sampler: 0 for the whole base, larger for its coarse part.
     first_word: u64,
+    /// Where the sampler looks for the words from that one on.
+    guide: SizeGuide,
     /// Particles inserted one by one up to and including each increment; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
     /// The particles that are kept as counts.
@@ -46,6 +48,7 @@ impl Supply {
         let part = |t: u64| (u128::from(n) * u128::from(t) / u128::from(increments)) as u64;
         let inserted = (1..=increments).map(part).collect();
         Self {
+            guide: sampler.guide_from(0),
             sampler,
             first_word: 0,
             inserted,
@@ -124,8 +127,8 @@ impl Supply {
             *sum += share;
             Some(*sum)
         });
-        let inserted = running.collect();
-        Self { sampler: sampler.clone(), first_word, inserted, ..Self::new(sampler, 0, 1) }
+        let (inserted, guide) = (running.collect(), sampler.guide_from(first_word));
+        Self { guide, first_word, inserted, ..Self::new(sampler, 0, 1) }
     }
 
     /// Number of increments after which everything is inserted.
@@ -198,7 +201,7 @@ impl Supply {
         if self.first_word != 0 {
             words.iter_mut().for_each(|word| *word = self.word(*word));
         }
-        self.sampler.fill(words, out);
+        self.sampler.fill_guided(&self.guide, words, out);
     }
 
     /// The sampler's word for a random word.

@@ -50,9 +50,10 @@ impl Search {
     pub fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
         let chunks = state.particles.live.len();
         let mut trapped = HashSet::new();
-        for chunk in (self.hint..chunks).chain(0..self.hint) {
+        // The last that were inserted first: those that are trapped stay, and lie in front.
+        for chunk in (0..=self.hint).rev().chain((self.hint + 1..chunks).rev()).filter(|&c| c < chunks) {
             let (void, diameter) = state.particles.chunk(chunk);
-            for (&void, &diameter) in void.iter().zip(diameter) {
+            for (&void, &diameter) in void.iter().zip(diameter).rev() {
                 // Passive particles fit everywhere: what holds for one holds for all.
                 let size = if diameter <= state.passive_limit { 0.0 } else { diameter };
                 if trapped.contains(&(void, size.to_bits())) {

@@ -250,21 +250,7 @@ fn leads_out(network: &Network, open: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut exits = network.exits(*void).filter(|&c| open(c)).peekable();
         exits.peek().is_none() || exits.any(|c| network.targets()[c] == END)
     };
-    let (begin, entrances) = network.entrances();
-    let upstream = network.upstream();
-    let mut stack: Vec<u32> = (0..network.voids() as u32).filter(ends).collect();
-    let mut leads = vec![false; network.voids()];
-    stack.iter().for_each(|&void| leads[void as usize] = true);
-    while let Some(void) = stack.pop() {
-        for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
-            let above = upstream[entrance as usize];
-            if open(entrance as usize) && !leads[above as usize] {
-                leads[above as usize] = true;
-                stack.push(above);
-            }
-        }
-    }
-    leads
+    network.leading_to((0..network.voids() as u32).filter(ends).collect(), open)
 }
 
 #[cfg(test)]

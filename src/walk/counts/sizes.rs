@@ -15,6 +15,8 @@ pub(super) struct PassiveSizes<'a> {
     sampler: &'a SizeSampler,
     /// Words up to the upper bound of each class; the last is the number of passive words.
     words: Vec<u128>,
+    /// Share of the passive words up to the upper bound of each class.
+    share: Vec<f64>,
     /// Probability that a passive particle, no finer than the class, is in it.
     probability: Vec<u64>,
     /// Mean diameter cubed of each class.
@@ -39,7 +41,8 @@ impl<'a> PassiveSizes<'a> {
             before = upto;
         }
         let mean_cube_of_all = sampler.part(0..passive_words).mean_cube().unwrap_or(0.0);
-        Self { sampler, words, probability, mean_cube, mean_cube_of_all }
+        let share = words.iter().map(|&upto| upto as f64 / passive_words as f64).collect();
+        Self { sampler, words, share, probability, mean_cube, mean_cube_of_all }
     }
 
     /// Mass of `count` passive particles, expected.
@@ -70,11 +73,13 @@ impl<'a> PassiveSizes<'a> {
     /// Raises the expected number of particles from `before` to `after`, rounded class by class such that
     /// the sum stays exact.
     pub fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
+        if before == after {
+            return;
+        }
         let all = *self.words.last().expect("at least one class");
-        let upto = |count: u64, words: u128| scaled(count, words, all);
         let (mut last_before, mut last_after) = (0, 0);
-        for (class, &words) in self.words.iter().enumerate() {
-            let (now_before, now_after) = (upto(before, words), upto(after, words));
+        for (class, (&words, &share)) in self.words.iter().zip(&self.share).enumerate() {
+            let [now_before, now_after] = [before, after].map(|count| scaled(count, words, all, share));
             let (old, new) = (now_before - last_before, now_after - last_after);
             into.number[class] = into.number[class] + new - old;
             into.mass[class] += (new as f64 - old as f64) * self.mean_cube[class];
@@ -116,15 +121,29 @@ pub(super) fn fraction(width: u128, rest: u128) -> u64 {
     }
 }
 
-/// `count * words / all`, rounded.
-fn scaled(count: u64, words: u128, all: u128) -> u64 {
+/// Below this many particles a product with a share is right to one.
+const NEARLY_EXACT: u64 = 1 << 52;
+
+/// `count * words / all`, rounded; `share` is `words / all`.
+fn scaled(count: u64, words: u128, all: u128, share: f64) -> u64 {
     if words == all {
         return count;
     }
     // Here words < 2^64.
     let product = u128::from(count) * words;
-    let (whole, rest) = (product / all, product % all);
-    (whole + u128::from(rest >= all - rest)) as u64
+    if count >= NEARLY_EXACT {
+        let (whole, rest) = (product / all, product % all);
+        return (whole + u128::from(rest >= all - rest)) as u64;
+    }
+    // Divisions of 128 bits take ten times as long; they would be most of an increment of a small network.
+    let mut rounded = (count as f64 * share + 0.5) as u64;
+    while (2 * u128::from(rounded) + 1) * all <= 2 * product {
+        rounded += 1;
+    }
+    while 2 * u128::from(rounded) * all > 2 * product + all {
+        rounded -= 1;
+    }
+    rounded
 }
 
 #[cfg(test)]
@@ -193,6 +212,33 @@ mod tests {
         }
         sizes.expect(0, u64::MAX, &mut at_once);
         assert_eq!(grown.number, at_once.number);
+    }
+
+    /// Against the division, at halves and beside them too, and on both sides of where it is not divided.
+    #[test]
+    fn rounded_products_are_those_of_the_division() {
+        let by_division = |count: u64, words: u128, all: u128| {
+            let product = u128::from(count) * words;
+            let (whole, rest) = (product / all, product % all);
+            (whole + u128::from(2 * rest >= all)) as u64
+        };
+        let mut words = draws(4);
+        let mut compared = 0;
+        for all in [1u128 << 64, (1 << 64) - 1, 3 << 40, 1000, 2, 1] {
+            let of_all = |word: u64| (u128::from(word) * all) >> 64;
+            let some: Vec<u128> = [0, 1, 2, all / 2, all - 1].into_iter().filter(|&w| w < all).collect();
+            let drawn: Vec<u128> = (0..200).map(|_| of_all(words.word())).filter(|&w| w < all).collect();
+            for &part in some.iter().chain(&drawn) {
+                let drawn = (0..20).map(|at| words.word() >> (3 * at));
+                let edges = [0, 1, 2, 3, 999, 1 << 32, NEARLY_EXACT - 1, NEARLY_EXACT, u64::MAX];
+                for count in edges.into_iter().chain(drawn) {
+                    let found = scaled(count, part, all, part as f64 / all as f64);
+                    assert_eq!(found, by_division(count, part, all), "{count} {part} {all}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 20_000);
     }
 
     #[test]

@@ -5,29 +5,36 @@ use crate::network::Network;
 use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
 
-/// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
-pub(super) struct GeneralFlow(Vec<f64>);
+/// The shares of the exits, and room for what moves.
+pub(super) struct GeneralFlow {
+    /// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
+    shares: Vec<f64>,
+    /// By void: what is expected there after the step; nothing between two of them.
+    pub next: Vec<f64>,
+}
 
 impl GeneralFlow {
-    pub fn new(shares: &Shares) -> Self {
-        Self(shares.probability().iter().map(|&p| as_unit(p)).collect())
+    pub fn new(shares: &Shares, voids: usize) -> Self {
+        let shares = shares.probability().iter().map(|&p| as_unit(p)).collect();
+        Self { shares, next: vec![0.0; voids] }
     }
 
     /// The shares of one void are others now.
     pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         let exits = network.exits(void);
         let news = &shares.probability()[exits.clone()];
-        self.0[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = as_unit(p));
+        self.shares[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = as_unit(p));
     }
 
-    /// Moves what is expected in each void into `next`, which holds nothing yet, and takes it from there.
+    /// Moves what is expected in each void.
     pub fn step(
         &mut self,
         network: &Network,
         shares: &Shares,
         expected: &mut Expected,
-        (next, holding): (&mut [f64], &mut Vec<u32>),
+        holding: &mut Vec<u32>,
     ) {
+        let next = &mut self.next;
         let Expected { moving, retained, sums, .. } = expected;
         let targets = network.targets();
         let (mut moves, mut eroded) = (sums.moves, sums.eroded);
@@ -46,7 +53,7 @@ impl GeneralFlow {
             moves += n;
             let exits = network.exits(void as u32);
             // Behind an exit that takes all nothing is left for those after it.
-            for (share, &target) in self.0[exits.clone()].iter().zip(&targets[exits]) {
+            for (share, &target) in self.shares[exits.clone()].iter().zip(&targets[exits]) {
                 let taken = n * share;
                 n -= taken;
                 // END is beyond every void.
@@ -57,5 +64,6 @@ impl GeneralFlow {
             }
         }
         (sums.moves, sums.eroded) = (moves, eroded);
+        std::mem::swap(moving, next);
     }
 }

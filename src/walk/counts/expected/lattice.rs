@@ -1,14 +1,13 @@
-//! The step of the expectation on the cubic lattice: layer by layer, each void from the three that lead
-//! there, so that many rows are moved at once.
+//! The step of the expectation on the cubic lattice: layer by layer and row by row, in place, each void from
+//! the three that lead there.
+//!
+//! What leaves a void is known once its row is read, and a row needs besides only what leaves the row before
+//! it along y and the layer above it along z: a row and a layer of buffers, which stay in the first cache.
 
 use super::numbers::{Expected, NOTHING, retain};
 use crate::walk::Isa;
 use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
-
-/// Voids that are moved at once, in whole rows: what leaves them stays in the first cache, and short rows
-/// make long loops.
-const AT_ONCE: usize = 1024;
 
 /// The shares of the lattice's exits, and room for a layer.
 pub(super) struct LatticeFlow {
@@ -18,11 +17,10 @@ pub(super) struct LatticeFlow {
     shares: [Vec<f64>; 2],
     /// Voids without an open exit, ascending.
     dead_ends: Vec<u32>,
-    /// By void of the rows that are moved at once: what arrives in it along x, and along y. Behind them a
-    /// place for what leaves the last void along x, and a row for what leaves the last row along y.
-    arriving: [Vec<f64>; 2],
-    /// By void of a layer: what leaves the layer above it along z, and what leaves it.
-    along_z: [Vec<f64>; 2],
+    /// By void of a row: what leaves the row before it along y.
+    along_y: Vec<f64>,
+    /// By void of a layer: what leaves the layer above it along z, and then what leaves it.
+    along_z: Vec<f64>,
     /// Instructions that it uses.
     pub isa: Isa,
 }
@@ -30,8 +28,6 @@ pub(super) struct LatticeFlow {
 impl LatticeFlow {
     pub fn new(shape: [u32; 3], shares: &Shares) -> Self {
         let across = [shape[0] as usize, shape[1] as usize];
-        let rows = rows_at_once(across) * across[0];
-        let layer = || vec![0.0; across[0] * across[1]];
         let (of_void, _) = shares.probability().as_chunks::<3>();
         let voids = of_void.len();
         let of = |exit: usize| of_void.iter().map(|of_void| as_unit(of_void[exit])).collect();
@@ -39,8 +35,8 @@ impl LatticeFlow {
             across,
             shares: [of(0), of(1)],
             dead_ends: (0..voids).filter(|&void| !shares.leads_on(void)).map(|void| void as u32).collect(),
-            arriving: [vec![0.0; rows + 1], vec![0.0; rows + across[0]]],
-            along_z: [layer(), layer()],
+            along_y: vec![0.0; across[0]],
+            along_z: vec![0.0; across[0] * across[1]],
             isa: Isa::chosen(),
         }
     }
@@ -57,8 +53,8 @@ impl LatticeFlow {
         }
     }
 
-    /// Moves what is expected in each void into `next`, whatever that held.
-    pub fn step(&mut self, expected: &mut Expected, (next, holding): (&mut [f64], &mut Vec<u32>)) {
+    /// Moves what is expected in each void.
+    pub fn step(&mut self, expected: &mut Expected, holding: &mut Vec<u32>) {
         let Expected { moving, retained, sums, .. } = expected;
         for void in self.dead_ends.iter().map(|&void| void as usize) {
             let n = std::mem::take(&mut moving[void]);
@@ -70,104 +66,219 @@ impl LatticeFlow {
         match self.isa {
             // SAFETY: the machine has the instructions.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx512 => unsafe { with_avx512(self, moving, next) },
+            Isa::Avx512 => unsafe { vector::with_avx512(self, moving) },
             // SAFETY: the machine has the instructions.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx2 => unsafe { with_avx2(self, moving, next) },
-            _ => self.layers(moving, next),
+            Isa::Avx2 => unsafe { vector::with_avx2(self, moving) },
+            _ => self.layers(moving, |row| row.step()),
         };
-        self.along_z[0].iter().for_each(|n| sums.eroded += n);
+        if !is_nothing(&self.along_z) {
+            self.along_z.iter().for_each(|n| sums.eroded += n);
+        }
     }
 
-    /// Moves layer by layer, and some rows at once; what leaves the last layer is first in `along_z` then.
+    /// Moves layer by layer; what leaves the last layer is in `along_z` then.
     #[inline(always)]
-    fn layers(&mut self, moving: &[f64], next: &mut [f64]) {
+    fn layers(&mut self, moving: &mut [f64], mut step: impl FnMut(Row)) {
         let [nx, ny] = self.across;
-        let at_once = rows_at_once(self.across) * nx;
-        let Self { shares: [first, second], arriving: [x, y], along_z: [above, below], .. } = self;
+        let Self { shares: [first, second], along_y, along_z, .. } = self;
         let plane = nx * ny;
-        above.fill(0.0);
+        along_z.fill(0.0);
         let mut nothing_above = true;
         let shares = first.chunks_exact(plane).zip(second.chunks_exact(plane));
-        let layers = moving.chunks_exact(plane).zip(next.chunks_exact_mut(plane)).zip(shares);
-        for ((here, next), (first, second)) in layers {
-            let nothing_here = here.chunks(64).all(is_nothing);
+        for (here, (first, second)) in moving.chunks_exact_mut(plane).zip(shares) {
+            let nothing_here = is_nothing(here);
             if nothing_here && nothing_above {
-                next.fill(0.0);
+                // What leaves it is as little as what leaves the layer above.
                 continue;
             }
             nothing_above = nothing_here;
             // The last row leads to the first.
             let last = plane - nx..plane;
-            let leaving = (&mut x[1..][..nx], &mut y[..nx], &mut below[last.clone()]);
-            leave(&here[last.clone()], [&first[last.clone()], &second[last]], leaving);
-            for begin in (0..plane).step_by(at_once) {
-                let voids = begin..plane.min(begin + at_once);
-                let n = voids.len();
-                let leaving = (&mut x[1..][..n], &mut y[nx..][..n], &mut below[voids.clone()]);
-                leave(&here[voids.clone()], [&first[voids.clone()], &second[voids.clone()]], leaving);
-                // The last void of each row leads to its first.
-                for row in (0..n).step_by(nx) {
-                    x[row] = x[row + nx];
-                }
-                let (next, above) = (&mut next[voids.clone()], &above[voids]);
-                let by_y = if begin == 0 { nx } else { 0 };
-                arrive(&mut next[..by_y], &above[..by_y], [&x[..by_y], &y[..by_y]]);
-                arrive(&mut next[by_y..], &above[by_y..], [&y[by_y..n], &x[by_y..n]]);
-                y.copy_within(n..n + nx, 0);
+            let of_last = here[last.clone()].iter().zip(&first[last.clone()]).zip(&second[last]);
+            for (y, ((&n, first), second)) in along_y.iter_mut().zip(of_last) {
+                *y = leave(n, first, second)[1];
             }
-            std::mem::swap(above, below);
+            let shares = first.chunks_exact(nx).zip(second.chunks_exact(nx));
+            let rows = here.chunks_exact_mut(nx).zip(shares).zip(along_z.chunks_exact_mut(nx));
+            for (row, ((here, (first, second)), along_z)) in rows.enumerate() {
+                step(Row { is_first: row == 0, here, first, second, along_y: &mut *along_y, along_z });
+            }
         }
     }
 }
 
-/// Rows of a layer that are moved at once.
-fn rows_at_once([nx, ny]: [usize; 2]) -> usize {
-    (AT_ONCE / nx).clamp(1, ny)
+/// A row of a layer; all slices are as long as it.
+struct Row<'a> {
+    /// Whether it is the first of its layer: the row before it is the last, whose voids come later.
+    is_first: bool,
+    /// What is expected in its voids.
+    here: &'a mut [f64],
+    first: &'a [f64],
+    second: &'a [f64],
+    /// What leaves the row before it along y, and then what leaves it.
+    along_y: &'a mut [f64],
+    /// What leaves the layer above it along z, and then what leaves it.
+    along_z: &'a mut [f64],
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn with_avx512(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) {
-    flow.layers(moving, next);
-}
+impl Row<'_> {
+    /// What leaves its last void along x, which leads to its first.
+    #[inline(always)]
+    fn round(&self) -> f64 {
+        let last = self.here.len() - 1;
+        leave(self.here[last], &self.first[last], &self.second[last])[0]
+    }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,popcnt")]
-fn with_avx2(flow: &mut LatticeFlow, moving: &[f64], next: &mut [f64]) {
-    flow.layers(moving, next);
-}
+    /// Moves what is expected in its voids.
+    #[inline(always)]
+    fn step(mut self) {
+        let along_x = self.round();
+        self.step_from(0, along_x);
+    }
 
-/// What is expected in a void, where that is anything.
-#[inline(always)]
-fn some(n: f64) -> f64 {
-    if n < NOTHING { 0.0 } else { n }
-}
-
-/// Whether nothing is expected in any of these voids, without a branch for each.
-#[inline(always)]
-fn is_nothing(voids: &[f64]) -> bool {
-    voids.iter().fold(0, |bits, n| bits | n.to_bits()) == 0
-}
-
-/// What leaves voids along x, along y and along z. The last open exit is certain: along z goes what is left.
-#[inline(always)]
-fn leave(here: &[f64], [first, second]: [&[f64]; 2], (x, y, z): (&mut [f64], &mut [f64], &mut [f64])) {
-    let shares = first.iter().zip(second);
-    let leaving = x.iter_mut().zip(y).zip(z);
-    for ((&n, (first, second)), ((x, y), z)) in here.iter().zip(shares).zip(leaving) {
-        let n = some(n);
-        let along_x = n * first;
-        let along_y = (n - along_x) * second;
-        (*x, *y, *z) = (along_x, along_y, n - along_x - along_y);
+    /// The same of its voids from one on, where so much leaves the void before that along x.
+    #[inline(always)]
+    fn step_from(&mut self, begin: usize, mut along_x: f64) {
+        let is_first = self.is_first;
+        let shares = self.first[begin..].iter().zip(&self.second[begin..]);
+        let buffers = self.along_y[begin..].iter_mut().zip(&mut self.along_z[begin..]);
+        for ((here, (first, second)), (y, z)) in self.here[begin..].iter_mut().zip(shares).zip(buffers) {
+            let [leaves_x, leaves_y, leaves_z] = leave(*here, first, second);
+            *here = arrive(is_first, [*z, along_x, *y], |a, b| a + b);
+            (along_x, *y, *z) = (leaves_x, leaves_y, leaves_z);
+        }
     }
 }
 
-/// Adds up what arrives in voids: from above, and then along x and y in the order of the voids that it comes
-/// from, as on any network, but for a single row.
+/// What leaves a void along x, along y and along z. The last open exit is certain: along z goes what is left.
 #[inline(always)]
-fn arrive(voids: &mut [f64], above: &[f64], [first, second]: [&[f64]; 2]) {
-    for ((to, above), (first, second)) in voids.iter_mut().zip(above).zip(first.iter().zip(second)) {
-        *to = above + first + second;
+fn leave(here: f64, first: &f64, second: &f64) -> [f64; 3] {
+    let n = if here < NOTHING { 0.0 } else { here };
+    let along_x = n * first;
+    let along_y = (n - along_x) * second;
+    [along_x, along_y, n - along_x - along_y]
+}
+
+/// Adds up what arrives in a void along z, x and y: from above, and then in the order of the voids that it
+/// comes from, as on any network, but for a single row.
+#[inline(always)]
+fn arrive<T>(is_first: bool, [z, x, y]: [T; 3], add: impl Fn(T, T) -> T) -> T {
+    if is_first { add(add(z, x), y) } else { add(add(z, y), x) }
+}
+
+/// Whether nothing is expected in any of these voids; many at a time without a branch for each.
+#[inline(always)]
+fn is_nothing(voids: &[f64]) -> bool {
+    voids.chunks(64).all(|voids| voids.iter().fold(0, |bits, n| bits | n.to_bits()) == 0)
+}
+
+/// Rows by vectors. What leaves a void along x comes to the next by a shift within registers: a store that is
+/// read again one place further on would have to reach the cache first.
+#[cfg(target_arch = "x86_64")]
+mod vector {
+    use std::arch::x86_64::*;
+
+    use super::{LatticeFlow, NOTHING, Row, arrive};
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+    pub(super) fn with_avx512(flow: &mut LatticeFlow, moving: &mut [f64]) {
+        flow.layers(moving, |row| match row.is_first {
+            true => by_eight::<true>(row),
+            false => by_eight::<false>(row),
+        });
+    }
+
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn with_avx2(flow: &mut LatticeFlow, moving: &mut [f64]) {
+        flow.layers(moving, |mut row| {
+            let round = row.round();
+            let (done, along_x) = match row.is_first {
+                true => by_four::<true>(&mut row, 0, round),
+                false => by_four::<false>(&mut row, 0, round),
+            };
+            row.step_from(done, along_x);
+        });
+    }
+
+    /// Moves a row, eight voids at a time, then four, then one.
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+    #[inline]
+    fn by_eight<const FIRST: bool>(mut row: Row) {
+        const LANES: usize = 8;
+        let along_x = row.round();
+        let nothing = _mm512_set1_pd(NOTHING);
+        let mut before = _mm512_set1_pd(along_x);
+        let whole = row.here.len() / LANES * LANES;
+        let Row { here, first, second, along_y, along_z, .. } = &mut row;
+        let parts = here[..whole].as_chunks_mut::<LANES>().0.iter_mut();
+        let shares = first[..whole].as_chunks::<LANES>().0.iter().zip(second[..whole].as_chunks::<LANES>().0);
+        let buffers = along_y[..whole].as_chunks_mut::<LANES>().0.iter_mut();
+        let buffers = buffers.zip(along_z[..whole].as_chunks_mut::<LANES>().0);
+        for ((here, (first, second)), (y, z)) in parts.zip(shares).zip(buffers) {
+            // SAFETY: each is eight numbers.
+            unsafe {
+                let n = _mm512_loadu_pd(here.as_ptr());
+                let n = _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(n, nothing), n);
+                let x = _mm512_mul_pd(n, _mm512_loadu_pd(first.as_ptr()));
+                let left = _mm512_sub_pd(n, x);
+                let leaves_y = _mm512_mul_pd(left, _mm512_loadu_pd(second.as_ptr()));
+                let shifted = _mm512_alignr_epi64::<7>(_mm512_castpd_si512(x), _mm512_castpd_si512(before));
+                let from =
+                    [_mm512_loadu_pd(z.as_ptr()), _mm512_castsi512_pd(shifted), _mm512_loadu_pd(y.as_ptr())];
+                let sum = arrive(FIRST, from, |a, b| _mm512_add_pd(a, b));
+                _mm512_storeu_pd(here.as_mut_ptr(), sum);
+                _mm512_storeu_pd(y.as_mut_ptr(), leaves_y);
+                _mm512_storeu_pd(z.as_mut_ptr(), _mm512_sub_pd(left, leaves_y));
+                before = x;
+            }
+        }
+        if whole < row.here.len() {
+            let mut lanes = [0.0; LANES];
+            // SAFETY: they are eight numbers.
+            unsafe { _mm512_storeu_pd(lanes.as_mut_ptr(), before) };
+            let (done, along_x) = by_four::<FIRST>(&mut row, whole, lanes[LANES - 1]);
+            row.step_from(done, along_x);
+        }
+    }
+
+    /// Moves four voids of a row at a time, from one on, where so much leaves the void before that along x;
+    /// up to which void, and what leaves the last of these along x.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn by_four<const FIRST: bool>(row: &mut Row, begin: usize, along_x: f64) -> (usize, f64) {
+        const LANES: usize = 4;
+        let nothing = _mm256_set1_pd(NOTHING);
+        let mut before = _mm256_set1_pd(along_x);
+        let Row { here, first, second, along_y, along_z, .. } = row;
+        let whole = begin..begin + (here.len() - begin) / LANES * LANES;
+        let parts = here[whole.clone()].as_chunks_mut::<LANES>().0.iter_mut();
+        let shares = first[whole.clone()].as_chunks::<LANES>().0.iter();
+        let shares = shares.zip(second[whole.clone()].as_chunks::<LANES>().0);
+        let buffers = along_y[whole.clone()].as_chunks_mut::<LANES>().0.iter_mut();
+        let buffers = buffers.zip(along_z[whole.clone()].as_chunks_mut::<LANES>().0);
+        for ((here, (first, second)), (y, z)) in parts.zip(shares).zip(buffers) {
+            // SAFETY: each is four numbers.
+            unsafe {
+                let n = _mm256_loadu_pd(here.as_ptr());
+                let n = _mm256_and_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(n, nothing), n);
+                let x = _mm256_mul_pd(n, _mm256_loadu_pd(first.as_ptr()));
+                let left = _mm256_sub_pd(n, x);
+                let leaves_y = _mm256_mul_pd(left, _mm256_loadu_pd(second.as_ptr()));
+                // The upper half of those before and the lower half of these; then each one place on.
+                let halves = _mm256_permute2f128_pd::<0x21>(before, x);
+                let shifted = _mm256_shuffle_pd::<0b0101>(halves, x);
+                let from = [_mm256_loadu_pd(z.as_ptr()), shifted, _mm256_loadu_pd(y.as_ptr())];
+                let sum = arrive(FIRST, from, |a, b| _mm256_add_pd(a, b));
+                _mm256_storeu_pd(here.as_mut_ptr(), sum);
+                _mm256_storeu_pd(y.as_mut_ptr(), leaves_y);
+                _mm256_storeu_pd(z.as_mut_ptr(), _mm256_sub_pd(left, leaves_y));
+                before = x;
+            }
+        }
+        let mut lanes = [0.0; LANES];
+        // SAFETY: they are four numbers.
+        unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), before) };
+        (whole.end, lanes[LANES - 1])
     }
 }

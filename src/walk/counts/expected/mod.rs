@@ -19,8 +19,6 @@ pub use numbers::{Counted, Expected, ExpectedSums};
 /// The machinery that moves expectations; rebuilt from network and expectation, and never stored.
 pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
-    /// By void: what is expected there after the step.
-    next: Vec<f64>,
     /// Voids that retain something, ascending.
     holding: Vec<u32>,
     /// What they retain together.
@@ -39,9 +37,8 @@ impl ExpectedFlow {
         Self {
             by_network: match network.shape().filter(|_| !network.exit_rule().needs_flow()) {
                 Some(shape) => ByNetwork::Lattice(LatticeFlow::new(shape, shares)),
-                None => ByNetwork::General(GeneralFlow::new(shares)),
+                None => ByNetwork::General(GeneralFlow::new(shares, expected.moving.len())),
             },
-            next: vec![0.0; expected.moving.len()],
             rests: resting(&holding, expected),
             holding,
         }
@@ -75,10 +72,9 @@ impl ExpectedFlow {
     /// Every particle attempts one move.
     pub fn step(&mut self, network: &Network, shares: &Shares, expected: &mut Expected) {
         let (known, eroded) = (self.holding.len(), expected.sums.eroded);
-        let into = (&mut self.next[..], &mut self.holding);
         match &mut self.by_network {
-            ByNetwork::General(flow) => flow.step(network, shares, expected, into),
-            ByNetwork::Lattice(flow) => flow.step(expected, into),
+            ByNetwork::General(flow) => flow.step(network, shares, expected, &mut self.holding),
+            ByNetwork::Lattice(flow) => flow.step(expected, &mut self.holding),
         }
         if self.holding.len() > known {
             self.holding.sort_unstable();
@@ -88,7 +84,6 @@ impl ExpectedFlow {
             // All that was inserted and had neither left nor come to rest.
             expected.sums.moves += (expected.sums.inserted as f64 - eroded - self.rests).max(0.0);
         }
-        std::mem::swap(&mut expected.moving, &mut self.next);
     }
 }
 

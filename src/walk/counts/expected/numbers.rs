@@ -81,7 +81,8 @@ impl Expected {
         trapped: Option<f64>,
         retained_in_voids: &mut [u64],
     ) -> [Counted; 2] {
-        let whole = |x: f64| ((x + 0.5).floor() as u64).min(self.sums.inserted);
+        // No sum is negative, and `floor` is a call where a machine must not have an instruction for it.
+        let whole = |x: f64| ((x + 0.5) as u64).min(self.sums.inserted);
         let mut at_rest = whole(self.sums.eroded + stranded);
         let mut eroded = whole(self.sums.eroded);
         if let Some(trapped) = trapped {
@@ -93,9 +94,11 @@ impl Expected {
             for void in holding.iter().map(|&void| void as usize) {
                 sum += self.retained[void];
                 let upto = whole(sum).clamp(last, at_rest);
-                retained_in_voids[void] =
-                    retained_in_voids[void] - self.counted_retained[void] + (upto - last);
-                self.counted_retained[void] = upto - last;
+                let (before, now) = (self.counted_retained[void], upto - last);
+                if now != before {
+                    retained_in_voids[void] = retained_in_voids[void] - before + now;
+                    self.counted_retained[void] = now;
+                }
                 last = upto;
             }
             // What rounding left over, to the last void that retains something.
@@ -104,7 +107,7 @@ impl Expected {
                 self.counted_retained[void as usize] += at_rest - last;
             }
         }
-        let moves = (self.sums.moves + 0.5).floor() as u64;
+        let moves = (self.sums.moves + 0.5) as u64;
         let counted = Counted { moves, eroded, at_rest };
         [std::mem::replace(&mut self.sums.counted, counted), counted]
     }
