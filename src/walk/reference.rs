@@ -135,7 +135,7 @@ impl<'a> Reference<'a> {
                 continue;
             }
             let place = (particle.rank / CHUNK as u64, *place - 1);
-            let beside = crowd.get(&particle.void).copied().unwrap_or_default();
+            let beside = crowd.get(&particle.void).map_or(&[][..], |sizes| sizes);
             if self.arches(place, exit, particle.diameter, beside, &mut begun) {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
@@ -227,27 +227,24 @@ impl<'a> Reference<'a> {
         });
     }
 
-    /// How many particles that are not too fine for any arch each void holds, and their diameters cubed.
-    fn crowd(&self) -> HashMap<u32, (u32, f64)> {
-        let mut crowd = HashMap::new();
+    /// The sizes of the particles of each void that are not too fine for any arch.
+    fn crowd(&self) -> HashMap<u32, Vec<f64>> {
+        let mut crowd: HashMap<u32, Vec<f64>> = HashMap::new();
         for particle in self.moving.iter().filter(|particle| particle.diameter > self.passive_limit) {
-            let (number, cubes): &mut (u32, f64) = crowd.entry(particle.void).or_default();
-            *number += 1;
-            *cubes +=
-                f64::from(particle.diameter) * f64::from(particle.diameter) * f64::from(particle.diameter);
+            crowd.entry(particle.void).or_default().push(f64::from(particle.diameter));
         }
         crowd
     }
 
     /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
-    /// that the first of an increment began there has room. `crowd`: what its void holds. `begun`: by
+    /// that the first of an increment began there has room. `crowd`: the sizes in its void. `begun`: by
     /// constriction, the room that is left.
     fn arches(
         &self,
         (chunk, place): (u64, u64),
         exit: usize,
         diameter: f32,
-        crowd: (u32, f64),
+        crowd: &[f64],
         begun: &mut HashMap<usize, u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
@@ -258,12 +255,26 @@ impl<'a> Reference<'a> {
         let probability = match arching.of_void() {
             None => arching.by_table(ratio),
             Some(by_void) => {
-                let volume = |d: f64| d * d * d;
-                if by_void.size == ArchSize::VoidMean {
-                    ratio = f64::from(self.width(exit)) / cbrt(crowd.1 / f64::from(crowd.0));
-                }
-                let others = (crowd.1 - volume(f64::from(diameter))).max(0.0) / by_void.void_cube;
-                arching.law().probability(ratio, if crowd.0 == 1 { 0.0 } else { others.min(0.64) })
+                let cubes = |sizes: &[f64]| sizes.iter().map(|d| d * d * d).sum::<f64>();
+                let all = cubes(crowd);
+                let size = match by_void.size {
+                    ArchSize::Own => f64::from(diameter),
+                    ArchSize::VoidMean => cbrt(all / crowd.len() as f64),
+                    ArchSize::VoidD85 => {
+                        let mut sizes = crowd.to_vec();
+                        sizes.sort_by(f64::total_cmp);
+                        let (wanted, mut finer) = (0.85 * cubes(&sizes), 0.0);
+                        let no_coarser = sizes.iter().take_while(|d| {
+                            let before = finer;
+                            finer += cubes(&[**d]);
+                            before < wanted
+                        });
+                        no_coarser.last().copied().unwrap_or(0.0)
+                    }
+                };
+                ratio = f64::from(self.width(exit)) / size;
+                let others = (all - cubes(&[f64::from(diameter)])).max(0.0) / by_void.void_cube;
+                arching.law().probability(ratio, if crowd.len() == 1 { 0.0 } else { others.min(0.64) })
             }
         };
         if ((self.jam_draw(chunk, place) >> 16) as f64) >= probability * 2f64.powi(48) {
