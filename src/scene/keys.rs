@@ -170,8 +170,8 @@ section! {
             "a part from 0 to 0.64, or \"by-void\"",
             |of| !matches!(of, Concentration::Stated(part) if !(0.0..=DENSEST).contains(part)),
         ).offering(&["by-void"]);
-        /// Which size counts where the concentration is "by-void": the particle's "own", or that of the mean
-        /// volume of the particles in its void ("void-mean"). Default: "own".
+        /// Which size counts where the concentration is "by-void": the particle's "own", that of the mean
+        /// volume of the particles in its void ("void-mean"), or D85 of them ("void-d85"). Default: "own".
         pub arch_size: Option<ArchSize> = None, off "\"void-mean\"",
             words(&ArchSize::ALL.map(ArchSize::name));
         /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that

@@ -23,7 +23,7 @@
 use libm::{exp, lgamma, log, pow};
 use serde::{Deserialize, Serialize};
 
-use super::crowding::ByVoid;
+use super::crowding::{ByVoid, VoidCrowd};
 
 /// A published law of clogging.
 ///
@@ -261,10 +261,9 @@ impl Arching {
     }
 
     /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
-    /// by this word, in a void with this number of particles and sum of their diameters cubed; `None` where
-    /// it passes.
+    /// by this word, in a void with these particles; `None` where it passes.
     #[inline]
-    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64, crowd: (u32, f64)) -> Option<u32> {
+    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64, crowd: VoidCrowd) -> Option<u32> {
         if !self.may(width, diameter) {
             return None;
         }
@@ -275,7 +274,7 @@ impl Arching {
                 (ratio, self.by_table(ratio))
             }
             Some(by_void) => {
-                let (ratio, concentration) = by_void.asked(width, diameter, crowd.0, crowd.1);
+                let (ratio, concentration) = by_void.asked(width, diameter, crowd);
                 (ratio, self.law.probability(ratio, concentration))
             }
         };
@@ -348,6 +347,7 @@ mod tests {
     fn no_draw_jams_beyond_its_reach() {
         let by_void = Arching::by_void(&LAWS[1], ByVoid { void_cube: 9.0, size: crate::walk::ArchSize::Own });
         let laws = LAWS.iter().map(|law| Arching::new(law, 0.2)).chain([by_void]);
+        let nine = VoidCrowd { number: 9, cubes: 9.0, d85: 1.0 };
         for arching in laws {
             for draw in 0..=u16::MAX {
                 let class = Arching::class_of(draw);
@@ -360,7 +360,7 @@ mod tests {
                 for k in 1..=40u8 {
                     let width = reach * (1.0 + f32::from(k) / 40.0 * 3.0);
                     let word = u64::from(draw) << 48;
-                    assert_eq!(arching.jams(width, 1.0, word, (9, 9.0)), None, "{draw} {width}");
+                    assert_eq!(arching.jams(width, 1.0, word, nine), None, "{draw} {width}");
                 }
             }
         }

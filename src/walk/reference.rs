@@ -25,6 +25,16 @@ pub struct Particle {
     pub diameter: f32,
 }
 
+/// What a void holds of particles that may arch.
+#[derive(Clone, Copy, Default)]
+struct Beside {
+    number: usize,
+    /// Their diameters cubed, summed.
+    cubes: f64,
+    /// The finest size for which those no coarser hold 85 % of that.
+    d85: f64,
+}
+
 /// A run, particle by particle.
 pub struct Reference<'a> {
     network: Cow<'a, Network>,
@@ -227,16 +237,27 @@ impl<'a> Reference<'a> {
         });
     }
 
-    /// How many particles that are not too fine for any arch each void holds, and their diameters cubed.
-    fn crowd(&self) -> HashMap<u32, (u32, f64)> {
-        let mut crowd = HashMap::new();
+    /// What each void holds of particles that are not too fine for any arch.
+    fn crowd(&self) -> HashMap<u32, Beside> {
+        let mut crowd: HashMap<u32, Vec<f64>> = HashMap::new();
         for particle in self.moving.iter().filter(|particle| particle.diameter > self.passive_limit) {
-            let (number, cubes): &mut (u32, f64) = crowd.entry(particle.void).or_default();
-            *number += 1;
-            *cubes +=
-                f64::from(particle.diameter) * f64::from(particle.diameter) * f64::from(particle.diameter);
+            crowd.entry(particle.void).or_default().push(f64::from(particle.diameter));
         }
-        crowd
+        let of_void = |(void, mut sizes): (u32, Vec<f64>)| {
+            let cubes = |sizes: &[f64]| sizes.iter().map(|d| d * d * d).sum::<f64>();
+            let (number, in_order) = (sizes.len(), cubes(&sizes));
+            sizes.sort_by(f64::total_cmp);
+            let mut finer = 0.0;
+            let wanted = 0.85 * cubes(&sizes);
+            let no_coarser = sizes.iter().take_while(|d| {
+                let before = finer;
+                finer += cubes(&[**d]);
+                before < wanted
+            });
+            let d85 = no_coarser.last().copied().unwrap_or(0.0);
+            (void, Beside { number, cubes: in_order, d85 })
+        };
+        crowd.into_iter().map(of_void).collect()
     }
 
     /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
@@ -247,7 +268,7 @@ impl<'a> Reference<'a> {
         (chunk, place): (u64, u64),
         exit: usize,
         diameter: f32,
-        crowd: (u32, f64),
+        crowd: Beside,
         begun: &mut HashMap<usize, u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
@@ -258,12 +279,15 @@ impl<'a> Reference<'a> {
         let probability = match arching.of_void() {
             None => arching.by_table(ratio),
             Some(by_void) => {
-                let volume = |d: f64| d * d * d;
-                if by_void.size == ArchSize::VoidMean {
-                    ratio = f64::from(self.width(exit)) / cbrt(crowd.1 / f64::from(crowd.0));
-                }
-                let others = (crowd.1 - volume(f64::from(diameter))).max(0.0) / by_void.void_cube;
-                arching.law().probability(ratio, if crowd.0 == 1 { 0.0 } else { others.min(0.64) })
+                let own = f64::from(diameter);
+                let size = match by_void.size {
+                    ArchSize::Own => own,
+                    ArchSize::VoidMean => cbrt(crowd.cubes / crowd.number as f64),
+                    ArchSize::VoidD85 => crowd.d85,
+                };
+                ratio = f64::from(self.width(exit)) / size;
+                let others = (crowd.cubes - own * own * own).max(0.0) / by_void.void_cube;
+                arching.law().probability(ratio, if crowd.number == 1 { 0.0 } else { others.min(0.64) })
             }
         };
         if ((self.jam_draw(chunk, place) >> 16) as f64) >= probability * 2f64.powi(48) {

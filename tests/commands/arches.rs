@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
+use voidwalk::walk::{LAWS, Law};
 
 use crate::program::{call, done, refused};
 
@@ -34,7 +35,10 @@ fn a_law_holds_what_sieving_lets_pass_and_is_said() {
     for law in ["zuriguel-2005", "critical-3"] {
         let arching = walked(at, law, &["--set", &format!("walk.arching={law}")]);
         assert!(eroded(&arching, 0) < 0.5 * eroded(&sieving, 0), "{law}");
-        assert_eq!(arching["arching"]["law"], law);
+        let said = &arching["arching"];
+        assert_eq!(said["law"], law);
+        assert_eq!(said["source"], Law::named(law).unwrap().source);
+        assert_eq!(said["range_of_ratio"], serde_json::json!([1.0, Law::named(law).unwrap().widest]));
         let run = &arching["replicates"][0]["runs"][0];
         let [arches, inside, all] =
             ["arches", "retained_in_arches", "retained_in_constrictions"].map(|of| run[of].as_u64().unwrap());
@@ -52,6 +56,48 @@ fn a_law_holds_what_sieving_lets_pass_and_is_said() {
         let threads = walked(at, "threads", &["--set", &format!("walk.arching={law}"), "--threads", "3"]);
         assert_eq!(threads["summary"], arching["summary"]);
     }
+}
+
+#[test]
+fn every_law_is_named_for_programs() {
+    let root = tempfile::tempdir().unwrap();
+    let output = call(root.path(), &["init", "--json"]);
+    done(&output);
+    let reference: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let sections = reference["sections"].as_array().unwrap();
+    let mut settings = sections.iter().flat_map(|section| section["settings"].as_array().unwrap());
+    let arching = settings.find(|setting| setting["name"] == "walk.arching").unwrap();
+    let allowed = arching["allowed"].as_str().unwrap();
+    for law in ["none"].into_iter().chain(LAWS.iter().map(|law| law.name)) {
+        assert!(allowed.contains(&format!("\"{law}\"")), "{law}: {allowed}");
+    }
+}
+
+/// A design searches with the law, takes a coarser filter for it, and is never within the checked range.
+#[test]
+fn a_design_takes_the_law() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("base.csv"), "opening_mm,percent_finer\n0.063,0\n0.125,20\n0.25,75\n0.5,100\n")
+        .unwrap();
+    let design = |law: &str| {
+        let law = format!("walk.arching={law}");
+        let words =
+            ["design", "base.csv", "--filter", "cu1.5-loose", "--thickness", "12layers", "-q", "--json"];
+        let settings = ["network.nx=8", "network.ny=8", "replicates=2", &law];
+        let set = settings.iter().flat_map(|setting| ["--set", setting]);
+        let output = call(at, &words.into_iter().chain(set).chain(["--overwrite"]).collect::<Vec<_>>());
+        done(&output);
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let [sieving, arching] = ["none", "critical-3"].map(design);
+    let boundary = |of: &Value| of["boundaries"][0]["no_erosion"]["median"].as_f64();
+    assert!(boundary(&arching).unwrap() > 1.5 * boundary(&sieving).unwrap(), "{:?}", boundary(&arching));
+    assert!(sieving["model_leaves_out"].to_string().contains("bridging"));
+    assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
+    assert_ne!(arching["confidence"], "within checked range");
+    let findings = arching["findings"].as_array().unwrap();
+    assert!(findings.iter().any(|of| of["id"] == "arches"), "{findings:?}");
 }
 
 /// A base three times as fine is held by arches as sieving holds one three times as coarse.
@@ -119,9 +165,13 @@ fn by_void_the_walk_brings_its_own_concentration() {
     for threads in ["2", "3", "7"] {
         assert_eq!(of("more", &["--threads", threads])["summary"], one["summary"], "{threads}");
     }
-    let mean = of("mean", &["--set", "walk.arch_size=void-mean"]);
-    assert_eq!(mean["arching"]["by_void"]["size"], "void-mean");
-    assert_ne!(mean["summary"], one["summary"]);
+    let [mean, d85] = ["void-mean", "void-d85"].map(|size| {
+        let walked = of(size, &["--set", &format!("walk.arch_size={size}")]);
+        assert_eq!(walked["arching"]["by_void"]["size"], size);
+        assert_ne!(walked["summary"], one["summary"]);
+        walked["summary"].clone()
+    });
+    assert_ne!(mean, d85);
 }
 
 /// A void has the volume of its grains by the void ratio, whatever the base is.

@@ -64,7 +64,8 @@ fn probability(law: &str, ratio: f64) -> f64 {
 /// The number that passes one constriction is geometric: mean, variance and the first five probabilities.
 #[test]
 fn through_one_constriction_a_geometric_number_passes() {
-    for (law, ratio) in [("zuriguel-2005", 1.5), ("zuriguel-2005", 2.0), ("marin-2018", 2.0)] {
+    let cells = [("zuriguel-2005", 1.5), ("zuriguel-2005", 2.0), ("marin-2018", 1.5), ("marin-2018", 2.0)];
+    for (law, ratio) in cells {
         let found = passed(&format!("from,to,diameter_mm\nstart,0,\n0,end,{ratio}\n"), law);
         let p = probability(law, ratio);
         let q = 1.0 - p;
@@ -84,32 +85,52 @@ fn through_one_constriction_a_geometric_number_passes() {
     }
 }
 
+/// By `critical-3` the first particle below R = 3 closes it, so that none passes: the same with p = 1.
+#[test]
+fn through_one_constriction_none_passes_below_the_critical_ratio() {
+    for (ratio, passes) in [(1.0, 0), (2.0, 0), (2.9, 0), (3.1, 120)] {
+        let network = format!("from,to,diameter_mm\nstart,0,\n0,end,{ratio}\n");
+        for seed in 1..=40 {
+            assert_eq!(walk(&network, "critical-3", 120, 120, seed).eroded, passes, "{ratio} {seed}");
+        }
+    }
+}
+
+/// The laws whose probability is neither 0 nor 1.
+const RANDOM: [&str; 2] = ["zuriguel-2005", "marin-2018"];
+
 /// Of two that are alike, whichever is taken: both close after two geometric numbers.
 #[test]
 fn through_two_side_by_side_pass_two_geometric_numbers() {
-    let found = passed("from,to,diameter_mm\nstart,0,\n0,end,2\n0,end,2\n", "zuriguel-2005");
-    let p = probability("zuriguel-2005", 2.0);
-    is_near(&found, 2.0 * (1.0 - p) / p);
+    for law in RANDOM {
+        let found = passed("from,to,diameter_mm\nstart,0,\n0,end,2\n0,end,2\n", law);
+        let p = probability(law, 2.0);
+        is_near(&found, 2.0 * (1.0 - p) / p);
+    }
 }
 
 /// Of three in a row the first that closes ends it: the least of three geometric numbers.
 #[test]
 fn through_three_in_a_row_passes_the_least_of_three() {
-    let found = passed("from,to,diameter_mm\nstart,0,\n0,1,1.5\n1,2,2\n2,end,2.5\n", "zuriguel-2005");
-    let all: f64 = [1.5, 2.0, 2.5].map(|ratio| 1.0 - probability("zuriguel-2005", ratio)).iter().product();
-    is_near(&found, all / (1.0 - all));
+    for law in RANDOM {
+        let found = passed("from,to,diameter_mm\nstart,0,\n0,1,1.5\n1,2,2\n2,end,2.5\n", law);
+        let all: f64 = [1.5, 2.0, 2.5].map(|ratio| 1.0 - probability(law, ratio)).iter().product();
+        is_near(&found, all / (1.0 - all));
+    }
 }
 
 /// At a fork into unlike ways each takes its share by area until one closes, then all take the other.
 #[test]
 fn at_a_fork_the_other_way_takes_all_once_one_is_closed() {
-    let found = passed("from,to,diameter_mm\nstart,0,\n0,end,1.5\n0,end,2\n", "zuriguel-2005");
-    let share = 1.5f64.powi(2) / (1.5f64.powi(2) + 4.0);
-    let [narrow, wide] = [1.5, 2.0].map(|ratio| probability("zuriguel-2005", ratio));
-    let closes = [share * narrow, (1.0 - share) * wide];
-    let any = closes[0] + closes[1];
-    let then = (closes[0] * (1.0 - wide) / wide + closes[1] * (1.0 - narrow) / narrow) / any;
-    is_near(&found, (1.0 - any) / any + then);
+    for law in RANDOM {
+        let found = passed("from,to,diameter_mm\nstart,0,\n0,end,1.5\n0,end,2\n", law);
+        let share = 1.5f64.powi(2) / (1.5f64.powi(2) + 4.0);
+        let [narrow, wide] = [1.5, 2.0].map(|ratio| probability(law, ratio));
+        let closes = [share * narrow, (1.0 - share) * wide];
+        let any = closes[0] + closes[1];
+        let then = (closes[0] * (1.0 - wide) / wide + closes[1] * (1.0 - narrow) / narrow) / any;
+        is_near(&found, (1.0 - any) / any + then);
+    }
 }
 
 /// Where many jam at once, an arch keeps as many as it has: R^2 + 1. The others pass.

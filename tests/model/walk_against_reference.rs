@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
+use bitvec::vec::BitVec;
 use proptest::prelude::*;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Link, LinkEnd, LinkedVoids, Network};
 use voidwalk::walk::reference::Reference;
-use voidwalk::walk::{ArchSize, Arching, ByVoid, CHUNK, Clogged, LAWS, SizeClasses, State, Supply, Walk};
+use voidwalk::walk::{
+    ArchSize, Arching, ByVoid, CHUNK, Clogged, Engine, LAWS, RunPlan, SizeClasses, State, Supply, Walk,
+};
 
 /// Diameters from a small set, so that ties, closed constrictions and blocking are frequent.
 fn diameters(count: usize, palette: &[f32], mut seed: u64) -> Vec<f32> {
@@ -96,14 +99,14 @@ fn compare(network: &Network, supply: &Supply, clogged: Clogged, seed: u64, run:
 
 /// No arches in half of the cases, else one of the laws, at one concentration or at that of each void.
 fn law() -> impl Strategy<Value = Option<Arc<Arching>>> {
-    (0..2 * LAWS.len(), prop::sample::select(vec![None, Some(ArchSize::Own), Some(ArchSize::VoidMean)]))
-        .prop_map(|(k, by_void)| {
-            let law = LAWS.get(k)?;
-            Some(Arc::new(match by_void {
-                None => Arching::new(law, 0.3),
-                Some(size) => Arching::by_void(law, ByVoid { void_cube: 30.0, size }),
-            }))
-        })
+    let sizes = ArchSize::ALL.map(Some).into_iter().chain([None]).collect::<Vec<_>>();
+    (0..2 * LAWS.len(), prop::sample::select(sizes)).prop_map(|(k, by_void)| {
+        let law = LAWS.get(k)?;
+        Some(Arc::new(match by_void {
+            None => Arching::new(law, 0.3),
+            Some(size) => Arching::by_void(law, ByVoid { void_cube: 30.0, size }),
+        }))
+    })
 }
 
 proptest! {
@@ -164,6 +167,73 @@ proptest! {
         let base = Gradation::linear_from_d0(0.7, 1.6).unwrap();
         let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10).arching_by(law).leaving_openings(open);
         compare(&network, &supply, Clogged::none(&network), seed, 1);
+    }
+}
+
+/// Walks both as long as the reference, which knows the particles alone that are not passive, and this walk to
+/// its end: those and what they block are compared after every increment, and nothing is lost.
+fn compare_coarse(network: &Network, supply: &Supply, n: u64, seed: u64) {
+    let clogged = Clogged::none(network);
+    let mut reference = Reference::new(network, supply, vec![false; network.constrictions()], seed, 1);
+    let mut state = State::new(network, supply, SizeClasses::logarithmic(0.1, 4.0, 8), clogged, seed, 1);
+    let mut walk = Walk::new(network, supply, &state);
+    while !state.finished && state.increment < LONG_ENOUGH {
+        walk.increment(&mut state).unwrap();
+        let tally = &state.tally;
+        assert!(tally.retained_in_arches <= tally.retained_in_constrictions);
+        let held = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
+        assert_eq!(tally.inserted, tally.eroded + held + tally.moving);
+        if reference.finished() {
+            continue;
+        }
+        reference.increment();
+        assert_eq!(tally.retained_in_constrictions, reference.stopped.len() as u64);
+        assert_eq!((tally.retained_in_arches, tally.arches), (reference.arched, reference.arches));
+        let history: Vec<_> = state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
+        assert_eq!(history, reference.history);
+        if state.finished || reference.finished() {
+            continue;
+        }
+        let mut moving = reference.moving.iter();
+        for chunk in 0..state.particles.live.len() {
+            let (voids, sizes) = state.particles.chunk(chunk);
+            for (&void, &diameter) in voids.iter().zip(sizes) {
+                let expected = moving.next().expect("as many particles move");
+                assert_eq!((void, diameter), (expected.void, expected.diameter));
+            }
+        }
+        assert!(moving.next().is_none(), "as many particles move");
+    }
+    if state.finished {
+        assert_eq!((state.tally.inserted, state.tally.moving), (n, 0));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(250))]
+
+    /// Engines that keep passive particles as counts or as an expectation: the others, and their arches, are as the
+    /// reference says.
+    #[test]
+    fn arches_beside_passive_particles_agree_with_the_reference(
+        shape in [1u32..5, 1u32..5, 1u32..7],
+        palette in prop::sample::select(vec![vec![1.0f32, 1.5, 2.0], vec![1.5, 2.0, 3.0], vec![0.8, 1.0, 5.0]]),
+        n in 1u64..1000,
+        increments in 1u64..40,
+        law in law(),
+        engine in prop::sample::select(vec![Engine::Counts, Engine::Expected]),
+        seed: u64,
+    ) {
+        let count = 3 * shape.iter().product::<u32>() as usize;
+        let network = Network::cubic_from_diameters(shape, diameters(count, &palette, seed), 1.0).unwrap();
+        // From too fine for any arch to coarser than some constrictions.
+        let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.15, 15.0).unwrap(), 1.0).unwrap();
+        for network in [&network, &as_general(&network)] {
+            let open = BitVec::repeat(false, network.constrictions());
+            let plan = RunPlan::with_clogging(engine, network, &sampler, &open, n, (law.clone(), false));
+            prop_assert_eq!(plan.engine(), engine);
+            compare_coarse(network, &plan.supply(sampler.clone(), n, increments, seed, 1), n, seed);
+        }
     }
 }
 

@@ -191,7 +191,7 @@ pub struct ArchingRecord {
 pub struct ArchingByVoidRecord {
     /// Diameter of a sphere with the volume of a void, mm.
     pub void_mm: f64,
-    /// Which size counts: "own" or "void-mean".
+    /// Which size counts: "own", "void-mean" or "void-d85".
     pub size: String,
 }
 

@@ -4,7 +4,7 @@ use crate::network::{END, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
 use crate::walk::Arching;
 use crate::walk::arches::Jam;
-use crate::walk::crowding::Crowd;
+use crate::walk::crowding::{Crowd, VoidCrowd};
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 
@@ -49,7 +49,7 @@ impl<'a> Jams<'a> {
         if d * self.arching.reach()[Arching::class_of(draw)] <= width {
             return None;
         }
-        let crowd = self.crowd.map_or((0, 0.0), |crowd| crowd.of_void(from));
+        let crowd = self.crowd.map_or_else(VoidCrowd::default, |crowd| crowd.of_void(from));
         let word = self.extension.complete(draw, j as u64);
         let particles = self.arching.jams(width, d, word, crowd)?;
         Some(Jam { rank: rank as u32, exit, diameter: d, particles })

@@ -20,6 +20,7 @@ use std::ops::Range;
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::arches::Jam;
 use crate::walk::arching::{Arching, Reach};
+use crate::walk::crowding::VoidCrowd;
 use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
 use crate::walk::reads::{Plain, Reads};
@@ -326,7 +327,7 @@ impl<'a> LatticeChunk<'a> {
         let Some((arching, lanes)) = &self.jams else { return false };
         let word = lanes.extension().complete(draw, index as u64);
         let width = self.exits.widths[exit as usize];
-        let particles = arching.jams(width, diameter, word, (0, 0.0));
+        let particles = arching.jams(width, diameter, word, VoidCrowd::default());
         let jam = particles.map(|particles| Jam { rank: rank as u32, exit, diameter, particles });
         self.events.jams.extend(jam);
         jam.is_some()

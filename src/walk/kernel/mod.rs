@@ -48,11 +48,11 @@ pub(super) fn step(
     let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
     let (size, receiving) = (supply.single_size(), insertion.first_chunk());
     // Where arches depend on who is in a void, all are in before any moves.
-    let crowd = supply.arching().and_then(Arching::of_void).map(|_| {
+    let crowd = supply.arching().and_then(Arching::of_void).map(|by_void| {
         let particles = &mut state.particles;
         chunks::for_each(particles, size, events, receiving, effort, |mut of| insertion.append(&mut of));
         let chunks = (0..particles.live.len()).map(|chunk| particles.chunk(chunk));
-        Crowd::of(chunks, state.passive_limit, network.voids())
+        Crowd::of(chunks, state.passive_limit, network.voids(), by_void.size)
     });
     let exits = OpenExits {
         network,

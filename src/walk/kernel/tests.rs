@@ -8,7 +8,7 @@ use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
 use crate::walk::arches::Jam;
 use crate::walk::fill::fill_diameters;
-use crate::walk::{Isa, LAWS, SizeClasses, exits};
+use crate::walk::{Isa, LAWS, SizeClasses, VoidCrowd, exits};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -198,7 +198,7 @@ fn by_definition(scene: &Scene, key: Key, reading: Reading, void: &[u32], diamet
         let constriction = network.exits(from).start + exit;
         let width = network.diameters()[constriction];
         let jams = arching.as_ref().filter(|_| d <= width);
-        if let Some(particles) = jams.and_then(|law| law.jams(width, d, jam_draw, (0, 0.0))) {
+        if let Some(particles) = jams.and_then(|law| law.jams(width, d, jam_draw, VoidCrowd::default())) {
             let (rank, exit) = (after.void.len() as u32, constriction as u32);
             after.jams.push(Jam { rank, exit, diameter: d, particles });
             continue;

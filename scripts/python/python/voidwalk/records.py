@@ -990,7 +990,7 @@ class ArchingByVoidRecord(TypedDict):
     void_mm
         Diameter of a sphere with the volume of a void, mm.
     size
-        Which size counts: "own" or "void-mean".
+        Which size counts: "own", "void-mean" or "void-d85".
     """
 
     void_mm: float

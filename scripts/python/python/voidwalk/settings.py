@@ -257,8 +257,8 @@ class WalkSettings(TypedDict, total=False):
         Default: what an increment brings into the first layer of voids. "by-void", on a lattice: what the walk
         brings into each void in each increment.
     arch_size
-        Which size counts where the concentration is "by-void": the particle's "own", or that of the mean volume
-        of the particles in its void ("void-mean"). Default: "own".
+        Which size counts where the concentration is "by-void": the particle's "own", that of the mean volume of
+        the particles in its void ("void-mean"), or D85 of them ("void-d85"). Default: "own".
     blocked
         What a blocked constriction is to those that follow: "closed", or "open" beside the particle that blocks
         it, for finer particles and water. Default: "closed". Openings need every particle walked one by one, so
