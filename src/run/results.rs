@@ -21,7 +21,7 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError};
 use crate::verdict::left_out::LeftOut;
-use crate::verdict::{Finding, beside, finding, judge, practice};
+use crate::verdict::{Finding, beside, dispersion, finding, judge, practice};
 use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -37,7 +37,8 @@ pub fn outcome(
     let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
     let pan_bounds = pan_bounds(case, walked, &other.readings);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
-    let rules = rules::apply(&rule_inputs(case, walked));
+    let inputs = rule_inputs(case, walked);
+    let rules = rules::apply(&inputs);
     let verdict = match &other.range {
         // What the base's finest part leaves open stays so.
         Some(range) if verdict == range.verdict => range.whole(),
@@ -94,8 +95,13 @@ pub fn outcome(
         seconds,
     };
     found.extend(outcome.found());
+    if case.scene.base.dispersive.is_none() {
+        let fines = inputs.base_soil.fines_percent;
+        let if_dispersive = rules::apply(&RuleInputs { dispersive: true, ..inputs });
+        found.extend(dispersion::finding(verdict, fines, &outcome.rules, &if_dispersive));
+    }
     if let Some(evidence) = &outcome.evidence {
-        found = evidence.weigh(verdict, found);
+        found = evidence.weigh(verdict, &outcome.rules, found);
     }
     let answer = judge(verdict, &outcome.rules, found);
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());

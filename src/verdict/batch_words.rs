@@ -113,6 +113,7 @@ mod tests {
             probability_no_erosion: Some(0.93),
             probability_bound: None,
             probability_by_tests: Some(0.88),
+            beyond_tests: !met,
         });
         let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
         WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
@@ -131,9 +132,12 @@ mod tests {
         assert_eq!(rows[3].answer_in_words(), "not walked: no table");
         assert_eq!(
             rows[0].answer_in_words(),
-            "no erosion in the model, within checked range. Probability of no erosion in a test: 93 % by the \
-             walk, 88 % by published tests"
+            "no erosion in the model, within checked range. Probability of no erosion in a test: 88 % by the \
+             published range, 93 % by the walk"
         );
+        // Beyond the boundary that tests saw nothing more favourable than the range is said.
+        let beyond = rows[1].answer_in_words();
+        assert!(beyond.ends_with("no erosion in a test: 88 % by the published range"), "{beyond}");
         let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
         let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
         assert_eq!(

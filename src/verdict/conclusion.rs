@@ -2,13 +2,13 @@
 //! do next, and the three findings that matter most.
 
 use super::beside::is_evidence;
-use super::evidence::probability_in_words;
-use super::practice::{Standing, broken, listed, standing};
+use super::entry::COHESIVE_FINES;
+use super::practice::{Standing, broken, is_beyond_tests, listed, standing};
 use crate::outcome::design::band::retention;
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{
-    AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
 use crate::outcome::rules::authority;
 use crate::outcome::undecided::UndecidedBy;
@@ -67,10 +67,9 @@ impl Outcome {
         Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
-    /// The probability that a test would show no erosion, by the walk and by tests alone.
+    /// The probability that a test would show no erosion.
     fn probability(&self) -> Option<String> {
-        let of = self.evidence.as_ref()?;
-        let each = probabilities(of.probability_no_erosion, of.bound, of.probability_by_tests)?;
+        let each = self.evidence.as_ref()?.probabilities(is_beyond_tests(&self.rules))?;
         Some(format!("Probability of no erosion in a test: {each}"))
     }
 
@@ -143,12 +142,29 @@ impl Outcome {
             }
             (Some(UndecidedBy::SecondRun), ..) => "walk a second run".into(),
             (Some(UndecidedBy::Replicates), ..) => "walk more replicates".into(),
-            (None, Verdict::None, Confidence::Within) => {
-                "check what the model leaves out: segregation, placing, gradients".into()
+            (None, Verdict::None, confidence) => {
+                let next = match confidence {
+                    Confidence::Within => {
+                        "check what the model leaves out: cracks, segregation, placing, gradients"
+                    }
+                    _ => "have this pair tested: the findings say why",
+                };
+                self.of_dispersion().map_or(next.into(), |first| format!("{first}; {next}"))
             }
-            (None, Verdict::None, _) => "have this pair tested: the findings say why".into(),
             (None, ..) => "have this pair tested: practice and walk differ".into(),
         }
+    }
+
+    /// What to find out of a base of which nobody has said whether it is dispersive.
+    fn of_dispersion(&self) -> Option<String> {
+        let of = |id: &str, name: &str| {
+            let finding = self.findings.iter().find(|finding| finding.id == id)?;
+            finding.numbers.get(name)?.as_str().map(String::from)
+        };
+        let allowed = of("dispersive_would_not_hold", "limit")
+            .map(|limit| format!("practice allows a D15F of {limit}, which is not met"));
+        let then = allowed.or_else(|| of("dispersion_not_known", "limit"))?;
+        Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 
     /// The findings that matter most, at most [`FOREMOST`], and how many more there are.
@@ -163,26 +179,19 @@ impl Outcome {
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
         let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
-        // That "no erosion" does not stand with less base is never folded away.
+        // What "no erosion" hangs on is never folded away: fines whose cohesion the walk ignores though the
+        // class stands, and that it does not stand with less base.
+        let is_shared = |finding: &FindingRecord| !finding.against && finding.id == COHESIVE_FINES;
         let turns = |finding: &FindingRecord| finding.against && finding.id == "worse_with_amount";
-        let at = all.iter().position(turns).filter(|at| *at >= FOREMOST);
-        if let Some(at) = at.filter(|_| self.verdict == Verdict::None) {
-            all[FOREMOST - 1..=at].rotate_right(1);
+        let pinned: [(&dyn Fn(&FindingRecord) -> bool, usize); 2] =
+            [(&is_shared, FOREMOST - 2), (&turns, FOREMOST - 1)];
+        for (is_pinned, place) in pinned.into_iter().filter(|_| self.verdict == Verdict::None) {
+            if let Some(at) = all.iter().position(is_pinned).filter(|at| *at >= FOREMOST) {
+                all[place..=at].rotate_right(1);
+            }
         }
         all
     }
-}
-
-/// The probability that a test would show no erosion: by the walk, with its bound, and by tests alone.
-pub(super) fn probabilities(
-    by_walk: Option<f64>,
-    bound: Option<Bound>,
-    by_tests: Option<f64>,
-) -> Option<String> {
-    let by_walk = by_walk.map(|of| format!("{} by the walk", probability_in_words(of, bound)));
-    let by_tests = by_tests.map(|of| format!("{} by published tests", probability_in_words(of, None)));
-    let each: Vec<String> = by_walk.into_iter().chain(by_tests).collect();
-    (!each.is_empty()).then(|| each.join(", "))
 }
 
 /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not

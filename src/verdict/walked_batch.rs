@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
-use super::conclusion::probabilities;
+use super::practice::is_beyond_tests;
+use super::probability::probabilities;
 use crate::outcome::BaseSize;
 use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
 use crate::outcome::table::{Columns, TableCell};
@@ -100,8 +101,11 @@ pub struct SampleWalk {
     pub probability_no_erosion: Option<f64>,
     /// On which side of that number it lies, where the walk's boundary was not found.
     pub probability_bound: Option<Bound>,
-    /// The same probability by published tests alone.
+    /// The same probability by the published range of tests alone.
     pub probability_by_tests: Option<f64>,
+    /// Whether the filter is beyond the boundary of no erosion that tests saw.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub beyond_tests: bool,
 }
 
 impl SampleWalk {
@@ -124,6 +128,7 @@ impl SampleWalk {
             probability_no_erosion: evidence.and_then(|of| of.probability_no_erosion),
             probability_bound: evidence.and_then(|of| of.probability_no_erosion.and(of.bound)),
             probability_by_tests: evidence.and_then(|of| of.probability_by_tests),
+            beyond_tests: is_beyond_tests(&outcome.rules),
         }
     }
 
@@ -132,9 +137,10 @@ impl SampleWalk {
         if self.in_full { "in full" } else { "first look" }
     }
 
-    /// The probability of no erosion in a test, as `at least 93 % by the walk, 88 % by published tests`.
+    /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`.
     pub fn probability_in_words(&self) -> Option<String> {
-        probabilities(self.probability_no_erosion, self.probability_bound, self.probability_by_tests)
+        let of_walk = (self.probability_no_erosion, self.probability_bound);
+        probabilities(of_walk, self.probability_by_tests, self.beyond_tests)
     }
 }
 
