@@ -179,19 +179,23 @@ impl Outcome {
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
         let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
-        // What "no erosion" hangs on is never folded away: fines whose cohesion the walk ignores though the
-        // class stands, and that it does not stand with less base.
-        let is_shared = |finding: &FindingRecord| !finding.against && finding.id == COHESIVE_FINES;
-        let turns = |finding: &FindingRecord| finding.against && finding.id == "worse_with_amount";
-        let pinned: [(&dyn Fn(&FindingRecord) -> bool, usize); 2] =
-            [(&is_shared, FOREMOST - 2), (&turns, FOREMOST - 1)];
-        for (is_pinned, place) in pinned.into_iter().filter(|_| self.verdict == Verdict::None) {
-            if let Some(at) = all.iter().position(is_pinned).filter(|at| *at >= FOREMOST) {
-                all[place..=at].rotate_right(1);
-            }
+        if self.verdict == Verdict::None {
+            unfold(&mut all);
         }
         all
     }
+}
+
+/// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the class
+/// stands, and that it does not stand with less base.
+fn unfold(all: &mut [FindingRecord]) {
+    let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
+        if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
+            all[place..=at].rotate_right(1);
+        }
+    };
+    keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
+    keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
 }
 
 /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
@@ -328,6 +332,24 @@ mod tests {
             "does not meet the limit of design, though tests held such filters; no erosion in the model"
         );
         assert_eq!(headline(&[], Verdict::None, Confidence::Outside), "no erosion in the model");
+    }
+
+    #[test]
+    fn what_no_erosion_hangs_on_is_among_the_foremost() {
+        use crate::verdict::finding;
+        let note = || finding::not_studied().record(false);
+        let fines = || finding::cohesive_fines(20.0).settled().record(false);
+        let amount = || finding::worse_with_amount("0.5", "some erosion", "each").record(true);
+        let ordered = |mut all: Vec<FindingRecord>| -> Vec<String> {
+            unfold(&mut all);
+            all.into_iter().map(|finding| finding.id).collect()
+        };
+        let both = ordered(vec![note(), note(), note(), amount(), note(), fines()]);
+        assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
+        assert_eq!(ordered(vec![note(), note(), note(), fines()])[1], "cohesive_fines");
+        let both = ordered(vec![note(), note(), fines(), amount()]);
+        assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
+        assert_eq!(ordered(vec![note(), fines(), note()])[1], "cohesive_fines");
     }
 
     /// Nobody reads "holds" alone where practice has something against the filter.

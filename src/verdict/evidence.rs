@@ -359,8 +359,8 @@ mod tests {
             "For 106 real soils of this kind (55 to 85 % fines",
             "at 0.117 times the centre of",
             "that range begins at 0.642 of its centre; 22 more eroded in every filter. The walks had one \
-             filter, of Cu 1.5, and 5 % of base; with four times that a uniform filter began to erode at 12.1 \
-             times the D15F.",
+             filter, of Cu 1.5, and 5 % of base; with four times that a uniform filter began to erode at \
+             12.1 times the D15F.",
             "by the published range; the walk, whose ratio to it scatters",
         ] {
             assert!(said.contains(words), "{words}: {said}");
