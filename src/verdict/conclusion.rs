@@ -186,8 +186,8 @@ impl Outcome {
     }
 }
 
-/// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the class
-/// stands, and that it does not stand with less base.
+/// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
+/// class stands, and that it does not stand with less base.
 fn unfold(all: &mut [FindingRecord]) {
     let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
         if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
