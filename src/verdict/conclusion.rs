@@ -78,7 +78,7 @@ impl Outcome {
         let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => {
-                let finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
+                let mut finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
                     Some((limit, false)) => {
                         format!("take a filter with a D15F of at most {} {unit}", rounded_down(limit))
                     }
@@ -88,6 +88,7 @@ impl Outcome {
                     ),
                     None => "take a finer filter".into(),
                 };
+                finer += &self.if_dispersive_in_words();
                 format!("{finer}; for a filter that exists, have this pair tested")
             }
             Standing::Unstable => {
@@ -109,6 +110,14 @@ impl Outcome {
         }
     }
 
+    /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
+    /// has said whether it is.
+    fn if_dispersive_in_words(&self) -> String {
+        let most = greatest(&self.rules, self.inputs.filter.d15_mm).map(|(most, _)| most);
+        let said = most.zip(self.if_dispersive).and_then(|(most, of)| of.beside(most));
+        said.map_or_else(String::new, |said| format!(" ({said})"))
+    }
+
     fn of_drainage(&self) -> Option<String> {
         let broken = broken(&self.rules, RuleRole::Drainage);
         let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
@@ -120,7 +129,8 @@ impl Outcome {
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
                     let [least, most] = [rounded_up(least), rounded_down(most)];
-                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}")
+                    let dispersive = self.if_dispersive_in_words();
+                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}{dispersive}")
                 }),
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
@@ -163,7 +173,7 @@ impl Outcome {
         };
         let allowed = of("dispersive_would_not_hold", "limit")
             .map(|limit| format!("practice allows a D15F of {limit}, which is not met"));
-        let then = allowed.or_else(|| of("dispersion_not_known", "limit"))?;
+        let then = allowed.or_else(|| of("dispersion_not_known", "said"))?;
         Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 

@@ -7,7 +7,50 @@ use super::entry::Finding;
 use super::finding;
 use super::practice::{against, broken};
 use crate::gradation::FEW_FINES;
-use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::numbers::rounded_down;
+use crate::outcome::record::{AppliedRule, IfDispersive, RuleQuantity, RuleRole, Verdict};
+
+impl IfDispersive {
+    /// Of a base with so many percent of fines: `if_dispersive` are the rules that it has if it is
+    /// dispersive, `d15f` is that of the filter that they judge. `None` where it has few fines, or they are not known.
+    pub fn of(fines_percent: Option<f64>, if_dispersive: &[AppliedRule], d15f: f64) -> Option<Self> {
+        if fines_percent? < FEW_FINES {
+            return None;
+        }
+        let (_, d15f_max_mm) = retention(if_dispersive, d15f)?;
+        Some(Self { d15f_max_mm, at_most: open_retention(if_dispersive).is_some() })
+    }
+
+    /// What stands behind a D15F (mm) that is recommended; `None` where it holds for a dispersive base too.
+    pub fn beside(&self, d15f_mm: f64) -> Option<String> {
+        let limit = rounded_down(self.d15f_max_mm);
+        match self.at_most {
+            true => Some(format!(
+                "if the base is dispersive, which nobody has said, the limit is not known, and {limit} mm or \
+                 less"
+            )),
+            false if self.d15f_max_mm < d15f_mm => {
+                Some(format!("{limit} mm if the base is dispersive, which nobody has said"))
+            }
+            false => None,
+        }
+    }
+
+    /// The limit in words.
+    pub fn words(&self) -> String {
+        let limit = rounded_down(self.d15f_max_mm);
+        match self.at_most {
+            true => format!("a limit of D15F that is not known, and {limit} mm or less"),
+            false => format!("D15F up to {limit} mm"),
+        }
+    }
+
+    /// Whether a filter of this D15F (mm) is known to be too coarse for it.
+    pub fn is_broken_by(&self, d15f_mm: f64) -> bool {
+        d15f_mm > self.d15f_max_mm * (1.0 + 1e-9)
+    }
+}
 
 /// What is said of a base with so many percent of fines: `rules` are those of the pair, `if_dispersive` those
 /// that it has if its base is dispersive. `None` where it has few fines, or the walk erodes.
@@ -32,17 +75,19 @@ pub fn finding(
         let all = if_dispersive.iter().filter(of_retention);
         all.filter(|rule| rule.quantity == RuleQuantity::D15F && rule.limit.is_some())
     };
-    let said = match strictest(limits().filter(|rule| !rule.limit_at_most)) {
+    let known = strictest(limits().filter(|rule| !rule.limit_at_most));
+    let limit = known.or_else(|| strictest(limits()))?;
+    let said = match known {
         Some(rule) => {
             let is_met = if rule.met == Some(true) { ", which is met" } else { "" };
             format!("practice allows a D15F of {}{is_met}", against(rule, 3)[1])
         }
         None => format!(
-            "no source that was read gives its limit, which is a D15F of {} at most",
-            against(strictest(limits())?, 3)[1]
+            "no source that was read gives its limit, which is a D15F of {} or less",
+            against(limit, 3)[1]
         ),
     };
-    Some(finding::dispersion_not_known(&said))
+    Some(finding::dispersion_not_known(&said, limit.limit?))
 }
 
 /// The rule with the least limit.

@@ -64,7 +64,7 @@ findings! {
         "dispersion", "rules.md",
         "It is not known whether the base is dispersive. If it is, practice allows a D15F of {limit}, and \
          this is {value}. The walk knows nothing of dispersion.",
-        to do "base.dispersive = true (--dispersive) or false says it.";
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false where it is not.";
 
     // What the amount of base does to a class.
     /// A worse class with another amount of base.
@@ -360,9 +360,9 @@ findings! {
     /// Constrictions from the library.
     library_of_density(density: Text, off_by: Percent): Constrictions, Open, Limits;
         "not packed", "uncertainty.md",
-        "The constrictions come from packings of filters like this one ({density}), within {off_by}: 445 of \
-         450 packings, left out in turn, were within the error that is stated so. Both ends of that range \
-         are walked.",
+        "The constrictions come from packings of filters like this one ({density}), within {off_by} (that \
+         held for 445 of 450 packings, each shape left out in turn; the error was set on these same \
+         packings). Both ends of that range are walked.",
         to do "filter.density packs this very filter.";
     /// A gradation outside the library.
     like_none_of_the_library(): Constrictions, Open, Limits;
@@ -585,11 +585,11 @@ findings! {
          {probability}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
          tested itself.";
     /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
-    dispersion_not_known(limit: Text): Practice, Open, Note;
+    dispersion_not_known(said: Text, limit: Mm): Practice, Open, Note;
         "dispersion", "rules.md",
-        "It is not known whether the base is dispersive. If it is, {limit}. The walk knows nothing of \
+        "It is not known whether the base is dispersive. If it is, {said}. The walk knows nothing of \
          dispersion.",
-        to do "base.dispersive = true (--dispersive) or false says it.";
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false where it is not.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";
