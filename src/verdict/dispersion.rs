@@ -13,7 +13,8 @@ use crate::outcome::record::{AppliedRule, IfDispersive, RuleQuantity, RuleRole, 
 
 impl IfDispersive {
     /// Of a base with so many percent of fines: `if_dispersive` are the rules that it has if it is
-    /// dispersive, `d15f` is that of the filter that they judge. `None` where it has few fines, or they are not known.
+    /// dispersive, `d15f` is that of the filter that they judge. `None` where it has few fines, or they are
+    /// not known.
     pub fn of(fines_percent: Option<f64>, if_dispersive: &[AppliedRule], d15f: f64) -> Option<Self> {
         if fines_percent? < FEW_FINES {
             return None;
@@ -43,6 +44,16 @@ impl IfDispersive {
         match self.at_most {
             true => format!("a limit of D15F that is not known, and {limit} mm or less"),
             false => format!("D15F up to {limit} mm"),
+        }
+    }
+
+    /// What practice says then of a filter of this D15F (mm), where that is known.
+    pub fn of_filter(&self, d15f_mm: f64) -> String {
+        let limit = rounded_down(self.d15f_max_mm);
+        match (self.is_broken_by(d15f_mm), self.at_most) {
+            (true, _) => format!("practice allows a D15F of {limit} mm, which is not met"),
+            (false, false) => format!("practice allows a D15F of {limit} mm, which is met"),
+            (false, true) => format!("the limit is not known, and is a D15F of {limit} mm or less"),
         }
     }
 
@@ -77,17 +88,12 @@ pub fn finding(
     };
     let known = strictest(limits().filter(|rule| !rule.limit_at_most));
     let limit = known.or_else(|| strictest(limits()))?;
-    let said = match known {
-        Some(rule) => {
-            let is_met = if rule.met == Some(true) { ", which is met" } else { "" };
-            format!("practice allows a D15F of {}{is_met}", against(rule, 3)[1])
-        }
-        None => format!(
-            "no source that was read gives its limit, which is a D15F of {} or less",
-            against(limit, 3)[1]
-        ),
+    let (before, after) = match known.map(|rule| rule.met) {
+        Some(Some(true)) => ("practice allows a D15F of", ", which is met"),
+        Some(_) => ("practice allows a D15F of", ""),
+        None => ("no source that was read gives the limit: it is a D15F of", " or less"),
     };
-    Some(finding::dispersion_not_known(&said, limit.limit?))
+    Some(finding::dispersion_not_known(before, limit.limit?, after))
 }
 
 /// The rule with the least limit.
@@ -138,7 +144,7 @@ mod tests {
         let (found, label) = said(Verdict::None, 25.0, 0.6);
         let (id, sentence) = found.unwrap();
         assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-        assert!(sentence.contains("no source that was read gives its limit"), "{sentence}");
+        assert!(sentence.contains("no source that was read gives the limit: it is a D15F of "), "{sentence}");
         assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
         for erodes in [Verdict::Some, Verdict::Continuing] {
             assert_eq!(said(erodes, 45.0, 0.6).0, None);

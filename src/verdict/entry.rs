@@ -154,8 +154,8 @@ impl Finding {
                  range"
             }
             _ => {
-                "The soils and filters of the evidence were walked so too, and this class rests on the \
-                 published range of tests"
+                "The soils of the study had this too, and the class rests on the published range of tests, \
+                 not on the walk alone"
             }
         };
         format!("{rests}: {}.", within(&said))

@@ -215,9 +215,13 @@ impl Evidence {
         let said = self.probabilities(practice::is_beyond_tests(rules));
         let probability = match (self.probability_no_erosion, said) {
             (Some(_), Some(said)) => format!("is {said}"),
-            (None, Some(said)) if self.ratio_median > 1.0 => format!("is {said}; the walk says none"),
             (None, Some(said)) => {
-                format!("is {said}; the walk, whose ratio to it scatters or rests on few soils, says none")
+                let why = match (self.ratio_median > 1.0, self.narrow) {
+                    (true, _) => "it errs on the unsafe side",
+                    (_, true) => "its boundary was not found",
+                    _ => "its ratio to that range is not known well enough for such soils",
+                };
+                format!("is {said}; the walk gives no probability, as {why}")
             }
             (_, None) => "is not known".into(),
         };
@@ -254,11 +258,13 @@ impl Evidence {
         if self.soils_without_boundary > 0 {
             said += &format!("; {} more eroded in every filter", self.soils_without_boundary);
         }
-        said += &format!(". The walks had one filter, {}, and 5 % of base", group.walked);
+        said += &format!(". One filter was walked, {}, with a base of 5 % of its mass", group.walked);
         if let Some(times) = group.times_four {
             let times = ratio(times);
-            said +=
-                &format!("; with four times that a uniform filter began to erode at {times} times the D15F");
+            said += &format!(
+                "; with four times as much base, uniform filters began to erode at {times} times the D15F \
+                 (median)"
+            );
         }
         said
     }
@@ -358,17 +364,30 @@ mod tests {
         for words in [
             "For 106 real soils of this kind (55 to 85 % fines",
             "at 0.117 times the centre of",
-            "that range begins at 0.642 of its centre; 22 more eroded in every filter. The walks had one \
-             filter, of Cu 1.5, and 5 % of base; with four times that a uniform filter began to erode at \
-             12.1 times the D15F.",
-            "by the published range; the walk, whose ratio to it scatters",
+            "that range begins at 0.642 of its centre; 22 more eroded in every filter. One filter was \
+             walked, of Cu 1.5, with a base of 5 % of its mass; with four times as much base, uniform \
+             filters began to erode at 12.1 times the D15F (median).",
+            "by the published range; the walk gives no probability, as its ratio to that range is not known \
+             well enough for such soils",
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }
         let c33 = Evidence::of(&soil(&SILTY), 0.5, Some(5.3), None).unwrap();
         let said = c33.finding(&rules(&SILTY, 0.5)).sentence();
         assert!(said.starts_with("For filters like this the walk errs on the unsafe side."), "{said}");
-        assert!(said.contains("one filter, C33 sand with a Cu of 5.3, and"), "{said}");
+        assert!(said.contains("One filter was walked, C33 sand with a Cu of 5.3, with"), "{said}");
+        assert!(said.contains("gives no probability, as it errs on the unsafe side"), "{said}");
+        // Its 86 soils lie within a factor of 1.92, and 95 % reach beyond the range.
+        let silty = [(0.03, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
+        let c33 = Evidence::of(&soil(&silty), 0.5, Some(5.3), None).unwrap();
+        assert!(
+            !c33.narrow && c33.ratio_median <= 1.0 && c33.group.starts_with("15 to 35 % fines"),
+            "{c33:?}"
+        );
+        let said = c33.finding(&rules(&silty, 0.5)).sentence();
+        assert!(said.contains("as its ratio to that range is not known well enough"), "{said}");
+        let none = Evidence::of(&sand(), 2.0, Some(1.5), None).unwrap().finding(&rules(&SAND, 2.0));
+        assert!(none.sentence().contains("as its boundary was not found"), "{}", none.sentence());
     }
 
     /// 0.7 mm is where the range begins, and Foster and Fell's boundary.
@@ -470,6 +489,11 @@ mod tests {
                 && said[2].contains("the model ignores cohesion"),
             "{said:?}"
         );
-        assert!(said[0].starts_with("The soils and filters of the evidence were walked so too"), "{said:?}");
+        assert!(
+            said[0].starts_with(
+                "The soils of the study had this too, and the class rests on the published range"
+            ),
+            "{said:?}"
+        );
     }
 }

@@ -64,7 +64,7 @@ findings! {
         "dispersion", "rules.md",
         "It is not known whether the base is dispersive. If it is, practice allows a D15F of {limit}, and \
          this is {value}. The walk knows nothing of dispersion.",
-        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false where it is not.";
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
 
     // What the amount of base does to a class.
     /// A worse class with another amount of base.
@@ -585,11 +585,11 @@ findings! {
          {probability}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
          tested itself.";
     /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
-    dispersion_not_known(said: Text, limit: Mm): Practice, Open, Note;
+    dispersion_not_known(before: Text, limit: Mm, after: Text): Practice, Open, Note;
         "dispersion", "rules.md",
-        "It is not known whether the base is dispersive. If it is, {said}. The walk knows nothing of \
-         dispersion.",
-        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false where it is not.";
+        "It is not known whether the base is dispersive. If it is, {before} {limit}{after}. The walk knows \
+         nothing of dispersion.",
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

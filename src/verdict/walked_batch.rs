@@ -7,7 +7,9 @@ use super::batch_table::BatchFilter;
 use super::practice::is_beyond_tests;
 use super::probability::probabilities;
 use crate::outcome::BaseSize;
-use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
+use crate::outcome::record::{
+    Bound, Confidence, IfDispersive, ModelLimit, Outcome, Ratios, Statistic, Verdict,
+};
 use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
 
@@ -97,6 +99,10 @@ pub struct SampleWalk {
     /// curve is no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
+    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
     /// The probability that a test would show no erosion, by the walk; `None` where evidence does not say.
     pub probability_no_erosion: Option<f64>,
     /// On which side of that number it lies, where the walk's boundary was not found.
@@ -125,6 +131,7 @@ impl SampleWalk {
             base: outcome.inputs.base_size(),
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
             curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
+            if_dispersive: outcome.if_dispersive,
             probability_no_erosion: evidence.and_then(|of| of.probability_no_erosion),
             probability_bound: evidence.and_then(|of| of.probability_no_erosion.and(of.bound)),
             probability_by_tests: evidence.and_then(|of| of.probability_by_tests),
