@@ -13,6 +13,7 @@ import json
 import math
 import random
 import subprocess
+import sys
 import tempfile
 import time
 from collections import Counter
@@ -126,8 +127,8 @@ def summary(rows):
         ("green (no erosion, within) (soils)", f"{len(green)} ({soils(green)})"),
         ("pairs that meet the limit of design, of these green",
          f"{sum(row['design_met'] == 'True' for row in done)}, {sum(row['design_met'] == 'True' for row in green)}"),
-        ("green where tests found erosion", sum(row["no_erosion_met"] == "False" for row in green)),
-        ("no erosion where tests found erosion, said to be against practice", len(unsafe)),
+        ("green beyond Foster and Fell's boundary of no erosion", sum(row["no_erosion_met"] == "False" for row in green)),
+        ("no erosion beyond that boundary, said to be against practice", len(unsafe)),
         ("seconds: median, most", f"{median(seconds):.1f}, {seconds[-1]:.1f}" if seconds else "-"),
     ]
     print("\n".join(f"| {what} | {value} |" for what, value in lines))
@@ -152,6 +153,15 @@ def summary(rows):
     print("confidence:", Counter(row["confidence"] for row in done).most_common())
 
 
+def refuse_other_columns(path):
+    """Ends with 2 where the CSV has other columns: new rows would stand below the wrong names."""
+    text = path.read_text() if path.exists() else ""
+    header = next(csv.reader(text.splitlines()), None)
+    if header not in (None, COLUMNS):
+        print(f"{path}: its columns are {','.join(header)}, not {','.join(COLUMNS)}: name another --out", file=sys.stderr)
+        sys.exit(2)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("soils", type=Path)
@@ -162,6 +172,7 @@ def main():
     options, extra = parser.parse_known_args()
     rows = list(csv.DictReader(options.out.open())) if options.out.exists() else []
     if not options.summary:
+        refuse_other_columns(options.out)
         soils = json.loads(options.soils.read_text())
         draw = random.Random(3600)
         pairs = [(soil, name) for soil in draw.sample(soils, min(len(soils), options.pairs)) for name in FILTERS]
