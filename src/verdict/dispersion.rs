@@ -93,7 +93,7 @@ pub fn finding(
         Some(_) => ("practice allows a D15F of", ""),
         None => ("no source that was read gives the limit: it is a D15F of", " or less"),
     };
-    Some(finding::dispersion_not_known(before, limit.limit?, after))
+    Some(finding::dispersion_not_known(before, &against(limit, 3)[1], after))
 }
 
 /// The rule with the least limit.

@@ -585,7 +585,7 @@ findings! {
          {probability}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
          tested itself.";
     /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
-    dispersion_not_known(before: Text, limit: Mm, after: Text): Practice, Open, Note;
+    dispersion_not_known(before: Text, limit: Text, after: Text): Practice, Open, Note;
         "dispersion", "rules.md",
         "It is not known whether the base is dispersive. If it is, {before} {limit}{after}. The walk knows \
          nothing of dispersion.",

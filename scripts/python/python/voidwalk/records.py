@@ -37,6 +37,7 @@ __all__ = [
     "Finding",
     "Fit",
     "GivenNetwork",
+    "IfDispersive",
     "Infiltration",
     "InfiltrationSize",
     "InputFile",
@@ -164,6 +165,24 @@ class Practice(TypedDict):
 
     design: LimitOfDesign
     foster_fell: Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"]
+
+
+class _IfDispersive(TypedDict):
+    d15f_max_mm: float
+
+
+class IfDispersive(_IfDispersive, total=False):
+    """What practice allows if a base is dispersive, of which nobody has said whether it is.
+
+    Keys
+    ----
+    d15f_max_mm
+        The most that D15F (mm) may be then.
+    at_most
+        Whether the true limit is not known, and is at most that.
+    """
+
+    at_most: bool
 
 
 class ConstrictionsRecord(TypedDict):
@@ -1156,6 +1175,9 @@ class Outcome(_Outcome, total=False):
         What folders of earlier versions say besides; now in `findings`.
     practice
         What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
+    if_dispersive
+        What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
+        it has few fines.
     constrictions
         Where the constrictions come from; folders of earlier versions do not say.
     seed
@@ -1221,6 +1243,7 @@ class Outcome(_Outcome, total=False):
 
     notes: List[str]
     practice: Optional[Practice]
+    if_dispersive: Optional[IfDispersive]
     constrictions: Optional[ConstrictionsRecord]
     stopping: Optional[Stopping]
     pan_bounds: Optional[PanBounds]
@@ -1879,6 +1902,9 @@ class Specification(_Specification, total=False):
         Whether the true least is not known, and is at most that.
     d15f_max_mm
         Greatest D15F (mm) that is allowed; `None` where it is not known.
+    if_dispersive
+        What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
+        it has few fines.
     band
         The band; `None` where there is none.
     no_band
@@ -1891,6 +1917,7 @@ class Specification(_Specification, total=False):
 
     inches: bool
     d15f_min_at_most: bool
+    if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
 
 
