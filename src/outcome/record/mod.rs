@@ -76,8 +76,8 @@ pub struct Outcome {
     /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice: Option<Practice>,
-    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
-    /// it has few fines.
+    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
     /// Where the constrictions come from; folders of earlier versions do not say.
