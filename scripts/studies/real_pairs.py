@@ -13,6 +13,7 @@ import json
 import math
 import random
 import subprocess
+import sys
 import tempfile
 import time
 from collections import Counter
@@ -32,7 +33,10 @@ WITHIN = "within checked range"
 COLUMNS = [
     "soil", "filter", "fines_percent", "verdict", "confidence", "origin", "eroded_percent", "design_met",
     "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "group", "probability", "seconds", "error",
+    "continuing_limit_mm", "dispersion",
 ]
+# Distances from Foster and Fell's boundary of no erosion, as a factor of D15F, in which agreement is counted.
+NEAR = (1.5, 2.0, 4.0)
 
 
 def fines(points):
@@ -64,7 +68,9 @@ def judge(binary, soil, name, extra):
     out = json.loads(done.stdout)
     rules = {rule["id"]: rule for rule in out["rules"]}
     tests, design = rules.get("foster-fell-no-erosion", {}), rules.get("sherard-dunnigan", {})
-    against = [finding["id"] for finding in out.get("findings", []) if finding["against"]]
+    findings = out.get("findings", [])
+    against = [finding["id"] for finding in findings if finding["against"]]
+    of_dispersion = [finding["id"] for finding in findings if finding["id"].startswith("dispers")]
     return row | {
         "verdict": out["verdict"],
         "confidence": out["confidence"],
@@ -77,7 +83,24 @@ def judge(binary, soil, name, extra):
         "first_finding": against[0] if against else "",
         "group": (out.get("evidence") or {}).get("group", ""),
         "probability": (out.get("evidence") or {}).get("probability_no_erosion", ""),
+        "continuing_limit_mm": rules.get("foster-fell-continuing", {}).get("limit"),
+        "dispersion": of_dispersion[0] if of_dispersion else "",
     }
+
+
+def by_distance(known):
+    """How often walk and Foster and Fell's boundary of no erosion agree, by the distance of D15F from it."""
+    far = [(abs(math.log(float(row["d15f_mm"]) / float(row["no_erosion_limit_mm"]))), row) for row in known]
+    is_alike = lambda row: (row["verdict"] == "no erosion") == (row["no_erosion_met"] == "True")
+    is_unsafe = lambda row: row["verdict"] == "no erosion" and row["no_erosion_met"] == "False"
+
+    def line(what, rows):
+        alike = sum(map(is_alike, rows))
+        return (f"| {what} | {alike} of {len(rows)} ({100 * alike / max(1, len(rows)):.0f} %); "
+                f"less strict {sum(map(is_unsafe, rows))} |")
+
+    within = [line(f"within a factor of {near:g}", [row for f, row in far if f <= math.log(near)]) for near in NEAR]
+    return within + [line(f"beyond a factor of {NEAR[-1]:g}", [row for f, row in far if f > math.log(NEAR[-1])])]
 
 
 def summary(rows):
@@ -88,28 +111,55 @@ def summary(rows):
     holds = [row for row in decided if row["verdict"] == "no erosion"]
     unsafe = [row for row in holds if row["no_erosion_met"] == "False"]
     seconds = sorted(float(row["seconds"]) for row in done)
+    within = [row for row in done if row["confidence"] == WITHIN]
+    soils = lambda of: len({row["soil"] for row in of})
+    percent = lambda part, of: f"{100 * part / max(1, of):.0f} %"
     lines = [
-        ("pairs", len(rows)),
+        ("pairs (soils)", f"{len(rows)} ({soils(rows)})"),
         ("refused", len(rows) - len(done)),
-        ("decided", f"{len(decided)} ({100 * len(decided) / max(1, len(done)):.0f} %)"),
+        ("decided", f"{len(decided)} ({percent(len(decided), len(done))} of those walked, "
+         f"{percent(len(decided), len(rows))} of all)"),
         ("no / some / continuing erosion", " / ".join(
             str(sum(row["verdict"] == f"{name} erosion" for row in decided)) for name in ["no", "some", "continuing"])),
-        ("within the checked range", sum(row["confidence"] == WITHIN for row in done)),
-        ("green (no erosion, within)", len(green)),
-        ("green where tests found erosion", sum(row["no_erosion_met"] == "False" for row in green)),
-        ("no erosion where tests found erosion, said to be against practice", len(unsafe)),
+        ("within the checked range (soils)", f"{len(within)} ({soils(within)})"),
+        ("of these no / some / continuing", " / ".join(
+            str(sum(row["verdict"] == f"{name} erosion" for row in within)) for name in ["no", "some", "continuing"])),
+        ("green (no erosion, within) (soils)", f"{len(green)} ({soils(green)})"),
+        ("pairs that meet the limit of design, of these green",
+         f"{sum(row['design_met'] == 'True' for row in done)}, {sum(row['design_met'] == 'True' for row in green)}"),
+        ("green beyond Foster and Fell's boundary of no erosion", sum(row["no_erosion_met"] == "False" for row in green)),
+        ("no erosion beyond that boundary, said to be against practice", len(unsafe)),
         ("seconds: median, most", f"{median(seconds):.1f}, {seconds[-1]:.1f}" if seconds else "-"),
     ]
     print("\n".join(f"| {what} | {value} |" for what, value in lines))
     known = [row for row in decided if row["no_erosion_met"] in ("True", "False")]
     alike = sum((row["verdict"] == "no erosion") == (row["no_erosion_met"] == "True") for row in known)
     print(f"| same side of Foster and Fell's boundary of no erosion | {alike} of {len(known)} |")
-    within = Counter(row["group"] for row in done if row["confidence"] == WITHIN)
-    print("within the checked range, by group:", dict(within))
+    for line in by_distance(known):
+        print(line)
+    print("within the checked range, by group:", dict(Counter(row["group"] for row in within)))
+    for name in FILTERS:
+        here = [row for row in done if row["filter"] == name]
+        none = [row for row in here if row["verdict"] == "no erosion"]
+        first = Counter(row["first_finding"] for row in none if row["confidence"] != WITHIN)
+        print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in none)} green;",
+              "first finding of the others:", first.most_common(4))
+    outside = [row for row in done if row["confidence"] == "outside checked range"]
+    print(f"outside: {len(outside)}, first finding:", Counter(row["first_finding"] for row in outside).most_common(5))
+    print("dispersion:", Counter((row["verdict"], row.get("dispersion", "")) for row in holds).most_common())
     print("origins:", dict(Counter(row["origin"] for row in done)))
     undecided = Counter(row["first_finding"] for row in done if row["verdict"] == "undecided")
     print("undecided by:", undecided.most_common(8))
     print("confidence:", Counter(row["confidence"] for row in done).most_common())
+
+
+def refuse_other_columns(path):
+    """Ends with 2 where the CSV has other columns: new rows would stand below the wrong names."""
+    text = path.read_text() if path.exists() else ""
+    header = next(csv.reader(text.splitlines()), None)
+    if header not in (None, COLUMNS):
+        print(f"{path}: its columns are {','.join(header)}, not {','.join(COLUMNS)}: name another --out", file=sys.stderr)
+        sys.exit(2)
 
 
 def main():
@@ -122,6 +172,7 @@ def main():
     options, extra = parser.parse_known_args()
     rows = list(csv.DictReader(options.out.open())) if options.out.exists() else []
     if not options.summary:
+        refuse_other_columns(options.out)
         soils = json.loads(options.soils.read_text())
         draw = random.Random(3600)
         pairs = [(soil, name) for soil in draw.sample(soils, min(len(soils), options.pairs)) for name in FILTERS]

@@ -3,8 +3,8 @@
 
     scripts/studies/real_soils_evidence.py [--results results] [--write]
 
-Reads `real-soils.csv` and `real-soils-bases.csv`, prints every table of `real-soils.md`, and with --write makes
-`src/data/evidence.csv`, `real-soils.svg` and `real-soils-reliability.svg`. Needs NumPy, SciPy and Matplotlib.
+Reads `real-soils.csv` and `real-soils-bases.csv`, prints most tables of `real-soils.md` (the page says which it does
+not), and with --write makes `src/data/evidence.csv` and `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
 """
 
 import argparse
@@ -26,9 +26,14 @@ GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
 # Filters of the study, and the Cu of filters that each stands for.
 FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
 USUAL = ("cu1.5", "loose", "no_erosion_mm")
-# What it takes for a group's ratio to count as known, besides a median of at most 1: soils, and the factor from the
-# median to 5 and 95 %.
-ENOUGH, WITHIN = 30, 2.0
+# What it takes for a group's ratio to count as known, besides a median of at most 1 and 95 % of the soils below the
+# upper end of the tests' range: soils, the factor from the median to 5 and 95 %, and the most without a boundary.
+ENOUGH, WITHIN, WITHOUT = 30, 2.0, 0.05
+# Groups of soils that are narrow for one filter or another.
+NARROW = ("2 35-55 steep", "3 steep", "4 steep")
+# The control of a boundary without a walk: so many times D60B.
+TIMES_D60B = 6.5
+SHUFFLES = 30
 
 
 def number(text):
@@ -117,6 +122,51 @@ def by(data, values, groups, names=None):
 HEAD = ["soils", "number", "no boundary", "5 %", "25 %", "median", "75 %", "95 %", "within a factor of 2 of the median"]
 
 
+def tenths(data):
+    """The tenth of the study that a soil is in, by contiguous ids: soils of one investigation are neighbours."""
+    return (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+
+
+def is_narrow(ratio, spread):
+    """Whether these soils' ratio counts as known."""
+    found = ratio[(ratio > 0) & np.isfinite(ratio)]
+    if len(ratio) < ENOUGH or (ratio == 0).sum() > WITHOUT * len(ratio):
+        return False
+    low, median, high = quantiles(found, [0.05, 0.5, 0.95])
+    return median / low <= WITHIN and high / median <= WITHIN and median <= 1 and high <= spread
+
+
+def left_out(data, name, group):
+    """Whether a group is narrow with all its soils, and with each tenth of the study left out."""
+    ratio, fold = data.ratio(name), tenths(data)
+    of = (data.group == group) & ~np.isnan(ratio)
+    spread = np.exp(np.nanmedian(data.half[data.group == group]))
+    return is_narrow(ratio[of], spread), [is_narrow(ratio[of & (fold != k)], spread) for k in range(FOLDS)]
+
+
+def is_checked(data, name, group):
+    whole, without = left_out(data, name, group)
+    return whole and all(without)
+
+
+def times_four(data, group):
+    """Median of the uniform loose filter's boundary with four times the base by that with the usual one."""
+    more, usual = data.of(*USUAL, "4 x base"), data.of()
+    here = (data.group == group) & (usual > 0) & (more > 0) & np.isfinite(more) & np.isfinite(usual) & ~data.is_open()
+    return np.median(more[here] / usual[here]) if here.sum() >= 5 else np.nan
+
+
+def flags(data):
+    """Of which groups the ratio counts as known, and of how many tenths left out that stays so."""
+    rows = []
+    for name in FILTERS:
+        for group in GROUPS:
+            whole, without = left_out(data, name, group)
+            if whole:
+                rows.append([name, group, f"{sum(without)} of {FOLDS}", "yes" if all(without) else "no"])
+    table(["filter", "group", "narrow with a tenth left out", "checked"], rows)
+
+
 def evidence(data, path):
     """The table that the program reads."""
     shares = [f"q{round(100 * share):02d}" for share in QUANTILES]
@@ -131,9 +181,12 @@ def evidence(data, path):
         "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
         "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
         "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
-        "# factor of 2 of the median, the median at most 1 (not on the unsafe side of tests), no boundary for at most 5 %.",
-        "# spread: the factor from the centre of the tests' range to either end. q05 to q95: quantiles of the ratio.",
-        "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,"
+        "# factor of 2 of the median, the median at most 1, 95 % at most the upper end of the tests' range, no boundary",
+        "# for at most 5 %: for all soils, and with each tenth of the study's soils (contiguous ids) left out.",
+        "# spread: the factor from the centre of the tests' range to either end. times_four: the boundary of the uniform",
+        "# loose filter with four times the base by that with 5 % of base, median of the group's soils that were walked so",
+        "# (empty: fewer than 5). q05 to q95: quantiles of the ratio.",
+        "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,times_four,"
         + ",".join(shares),
     ]
     for name, cu in FILTERS.items():
@@ -146,15 +199,16 @@ def evidence(data, path):
             fines, shape = group.rsplit(" ", 1)
             spread = np.exp(np.nanmedian(data.half[data.fines_class == fines]))
             q, none = quantiles(found, QUANTILES), int((here == 0).sum())
-            near = q[9] / q[0] <= WITHIN and q[-1] / q[9] <= WITHIN and q[9] <= 1
-            checked = "yes" if len(here) >= ENOUGH and near and none <= 0.05 * len(here) else "no"
+            checked = "yes" if is_checked(data, name, group) else "no"
+            more = times_four(data, group)
             cells = [fines, *CLASSES[fines], shape, name, *cu, len(here), none, checked, f"{spread:.3f}"]
+            cells.append("" if np.isnan(more) else f"{more:.2f}")
             lines.append(",".join(map(str, cells + [f"{x:.3f}" for x in q])))
     if path:
         path.write_text("\n".join(lines) + "\n")
     head = ["fines", "from", "to", "base", "filter", "soils", "no boundary", "checked", "5 %", "median", "95 %"]
     rows = [line.split(",") for line in lines if not line.startswith(("#", "group"))]
-    table(head, [[*row[:5], *row[7:10], row[11], row[20], row[29]] for row in rows])
+    table(head, [[*row[:5], *row[7:10], row[12], row[21], row[30]] for row in rows])
 
 
 def of_rule(distance, half):
@@ -180,15 +234,15 @@ def brier(p, outcome):
     return float(np.mean((p - outcome) ** 2))
 
 
-def validated(data, groups, likeness=0.0, seed=SEED):
-    """Probabilities and drawn outcomes, by folds of neighbouring soils.
+def validated(data, groups, likeness=0.0, seed=SEED, ratio=None):
+    """Probabilities and drawn outcomes, by folds of neighbouring soils; of the uniform filter, or of another ratio.
 
     `likeness`: rank correlation, within a group, between where a soil stands in the walk and where its test stands in
     the tests' range. 0 is what the rule alone says."""
     draw = np.random.default_rng(seed)
-    ratio = data.ratio()
-    known = ~np.isnan(ratio) & (ratio > 0)
-    fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+    ratio = data.ratio() if ratio is None else ratio
+    known = ~np.isnan(ratio) & (ratio > 0) & np.isfinite(ratio)
+    fold = tenths(data)
     names = ["design limit, yes or no", "Foster and Fell, yes or no", "walk, yes or no"]
     names += ["rule", "walk", "mean", "least"] + [f"shift {weight}" for weight in (0.25, 0.5, 1)]
     out = {name: [] for name in [*names, "outcome", "group", "distance"]}
@@ -238,15 +292,20 @@ def reliability(p, outcome, bins=10):
 
 
 def scatter(data):
-    """What goes with the walk's boundary within a group: rank correlations, and what is left of the scatter."""
+    """What goes with the ratio within a class of fines and a group: rank correlations.
+
+    The ratio's denominator holds D85B but for 35 to 85 % fines, so that its correlation with D85B / D50B is partly by
+    construction there."""
     ratio = data.ratio()
     names = {
-        "fines": data.fines, "clay": data.clay, "ln Cu": np.log(data.cu), "gravel": data.gravel,
+        "D85B / D50B": data.steepness, "fines": data.fines, "clay": data.clay, "ln Cu": np.log(data.cu),
+        "gravel": data.gravel,
         "D85B": data.d85_mm, "D95B": data.d95_mm, "D95B / D85B": data.d95_mm / data.d85_mm,
     } | {f"D{p}B": getattr(data, f"d{p}_mm") for p in (20, 30, 40, 50, 60, 70)}
     rows = []
-    for group in GROUPS:
-        of = (data.group == group) & (ratio > 0)
+    masks = [(name, data.fines_class == name) for name in CLASSES] + [(g, data.group == g) for g in GROUPS]
+    for group, mask in masks:
+        of = mask & (ratio > 0)
         if of.sum() < 20:
             continue
         cells = []
@@ -276,6 +335,76 @@ def beside(data):
         rows.append([group, int(of.sum()), *(share(limit) for limit in limits)])
     head = ["group", "soils", "beyond the design limit", "Foster and Fell", "the tests' centre", "the tests' end"]
     table(head, rows)
+
+
+def beyond_ends(data):
+    """By filter: of how many soils the walk's boundary lies beyond the lower and the upper end of the tests' range."""
+    rows = []
+    for group in GROUPS:
+        cells = []
+        for name in FILTERS:
+            b = data.ratio(name) * data.centre
+            of = (data.group == group) & ~np.isnan(b)
+            shares = [100 * np.mean(b[of] > end[of] * (1 + 1e-9)) for end in (data.low, data.high)] if of.any() else []
+            cells.append(" / ".join(f"{share:.0f}" for share in shares) + f" %, {of.sum()}" if of.sum() >= 5 else "-")
+        rows.append([group, *cells])
+    print("Beyond the lower / the upper end of the tests' range:")
+    table(["group", *FILTERS], rows)
+
+
+def more_base(data):
+    """Where the uniform loose filter's boundary lies with four times the base: ratio, and shares beyond both ends."""
+    b, rows = data.of(*USUAL, "4 x base"), []
+    masks = [("all", np.full(len(data.id), True))] + [(g, data.group == g) for g in GROUPS]
+    for group, mask in masks:
+        of = mask & ~np.isnan(b) & ~data.is_open()
+        if of.sum() < 5:
+            continue
+        shares = [f"{(b[of] > end[of] * (1 + 1e-9)).sum()} of {of.sum()}" for end in (data.low, data.high)]
+        rows.append([group, f"{np.median(b[of] / data.centre[of]):.2f}", *shares])
+    print("With four times the base, uniform, loose:")
+    table(["group", "median ratio", "beyond the lower end", "beyond the upper end"], rows)
+
+
+def controls(data):
+    """Brier scores of boundaries that are no walk of the soil: D60B, and the walks of other soils of the group."""
+    known = data.ratio()
+    draw, rows = np.random.default_rng(SEED), []
+
+    def scores(ratio):
+        found, _ = validated(data, GROUPS, ratio=ratio)
+        each = [(found["walk"][m], found["outcome"][m]) for m in
+                [np.full(len(found["group"]), True)] + [found["group"] == GROUPS.index(g) for g in NARROW]]
+        return [brier(p, outcome) for p, outcome in each]
+
+    rows.append(["walk", *(f"{score:.3f}" for score in scores(known))])
+    by_size = np.where(np.isnan(known) | (known == 0), np.nan, TIMES_D60B * data.d60_mm / data.centre)
+    rows.append([f"{TIMES_D60B} D60B", *(f"{score:.3f}" for score in scores(by_size))])
+    shuffled = []
+    for _ in range(SHUFFLES):
+        ratio = known.copy()
+        for group in GROUPS:
+            of = np.flatnonzero((data.group == group) & (known > 0))
+            ratio[of] = draw.permutation(known[of])
+        shuffled.append(scores(ratio))
+    low, middle, high = np.min(shuffled, axis=0), np.median(shuffled, axis=0), np.max(shuffled, axis=0)
+    rows.append(["walks of other soils of the group", *(f"{m:.3f} ({a:.3f} to {b:.3f})" for a, m, b in zip(low, middle, high))])
+    table(["control", "all", *NARROW], rows)
+
+
+def other_filters(data):
+    """Cross-validation of filters of other shapes, group by group: what was said with 0.9 or more, and the score."""
+    rows = []
+    for name in FILTERS:
+        found, _ = validated(data, GROUPS, ratio=data.ratio(name))
+        for group in NARROW:
+            of = found["group"] == GROUPS.index(group)
+            p, outcome = found["walk"][of], found["outcome"][of]
+            sure = p >= 0.9
+            if sure.any():
+                cells = f"{sure.sum()}", f"{p[sure].mean():.3f}", f"{outcome[sure].mean():.3f}"
+                rows.append([name, group, *cells, f"{brier(p, outcome):.3f}"])
+    table(["filter", "group", "outcomes said 0.9 or more", "said", "came", "Brier score of all"], rows)
 
 
 def against(data, keys, of=None):
@@ -326,8 +455,7 @@ def by_hand(data):
 
 def folds(data):
     """How well the quantiles of nine tenths of the soils, in the order of their ids, hold for the tenth."""
-    ratio, rows = data.ratio(), []
-    fold = (np.argsort(np.argsort(data.id)) * FOLDS) // len(data.id)
+    ratio, rows, fold = data.ratio(), [], tenths(data)
     for group in GROUPS:
         of = (data.group == group) & (ratio > 0)
         if of.sum() < 12:
@@ -405,7 +533,10 @@ def main():
     ratio, groups = data.ratio(), [(group, data.group == group) for group in GROUPS]
     table(["group", *HEAD[1:]], by(data, ratio, groups))
     evidence(data, TOP / "src/data/evidence.csv" if options.write else None)
+    flags(data)
     beside(data)
+    beyond_ends(data)
+    more_base(data)
     by_hand(data)
     folds(data)
     scatter(data)
@@ -437,6 +568,8 @@ def main():
                 rows = [[f"{k / 10:.1f} to {(k + 1) / 10:.1f}", n, f"{p:.2f}", f"{o:.2f}"]
                         for k, n, p, o in reliability(found[name], outcome)]
                 table([name, "outcomes", "said", "came"], rows)
+    other_filters(data)
+    controls(data)
 
 
 if __name__ == "__main__":

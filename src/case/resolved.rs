@@ -19,6 +19,10 @@ const RANGE_PROTOCOL: u32 = 500;
 /// What is added where particles arch: raised whenever the program gives other results for these alone.
 const ARCHING_PROTOCOL: u32 = 10_000;
 
+/// What is added where evidence of real soils is asked for: raised whenever that evidence gives another label
+/// or other numbers for the same walk.
+const EVIDENCE_PROTOCOL: u32 = 100_000;
+
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
     /// folder: run again from there, it gives the same bits.
@@ -64,6 +68,9 @@ impl Case {
         if scene.law().is_some() {
             protocol += ARCHING_PROTOCOL;
         }
+        if scene.record.margin == Some(true) {
+            protocol += EVIDENCE_PROTOCOL;
+        }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.library.is_some() {
             // Another library, or another way through it, gives other curves.
@@ -95,5 +102,10 @@ mod tests {
         assert_eq!(said.fingerprint(), case(&[]).fingerprint());
         assert_ne!(said.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
         assert_eq!(said.resolved().about.client.as_deref(), Some("Water Board"));
+        // What asks for evidence is walked again where that says something else.
+        let asks = case(&["record.margin=true"]);
+        let curve = asks.shipped.map_or("", |shipped| shipped.curve_csv);
+        let text = format!("{}\n{}{curve}", PROTOCOL + EVIDENCE_PROTOCOL, asks.resolved().to_toml());
+        assert_eq!(asks.fingerprint(), format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes())));
     }
 }

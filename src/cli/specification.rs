@@ -69,6 +69,9 @@ fn words(of: &Specification) -> String {
     if let Some(why) = &of.no_band {
         line(&sized(&format!("No band. {why}")));
     }
+    if let Some(said) = of.if_dispersive_in_words() {
+        line(&sized(&format!("{said}.")));
+    }
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {

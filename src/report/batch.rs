@@ -153,8 +153,8 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              link to the page of the walk. Below a number its 95 % interval over the replicates; the \
              threshold between the classes is "
             (threshold(batch.threshold))
-            ". Probability of no erosion in a test: by what the walk is worth for soils of this kind, and \
-             by published tests alone."
+            ". Probability of no erosion in a test: by the published range of tests alone, and by what the \
+             walk is worth for soils of this kind; beyond the boundary that tests saw, the lower of the two."
         }
     }
 }

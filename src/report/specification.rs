@@ -93,6 +93,7 @@ fn answer(of: &Specification) -> Markup {
                      keep the band narrow."
                 }
             }
+            @if let Some(said) = of.if_dispersive_in_words() { p { (clean(&said)) "." } }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
             p { (clean(&products_in_short(of))) }
         }

@@ -12,8 +12,8 @@ use super::replicates::{ReplicateResult, classed, concluded, said_by_walks, summ
 use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, Manifest, Outcome, PanBounds, PanReading, Statistic, Verdict,
-    VoidRow,
+    Classed, Confidence, ConstrictionsRecord, IfDispersive, Manifest, Outcome, PanBounds, PanReading,
+    Statistic, Verdict, VoidRow,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -21,7 +21,7 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError};
 use crate::verdict::left_out::LeftOut;
-use crate::verdict::{Finding, beside, finding, judge, practice};
+use crate::verdict::{Finding, beside, dispersion, finding, judge, practice};
 use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -37,7 +37,8 @@ pub fn outcome(
     let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
     let pan_bounds = pan_bounds(case, walked, &other.readings);
     let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
-    let rules = rules::apply(&rule_inputs(case, walked));
+    let inputs = rule_inputs(case, walked);
+    let rules = rules::apply(&inputs);
     let verdict = match &other.range {
         // What the base's finest part leaves open stays so.
         Some(range) if verdict == range.verdict => range.whole(),
@@ -61,6 +62,7 @@ pub fn outcome(
         reasons: Vec::new(),
         notes: Vec::new(),
         practice: practice::record(&rules),
+        if_dispersive: None,
         constrictions: Some(ConstrictionsRecord { origin: case.curve_origin() }),
         seed: case.scene.walk.seed,
         n_base: case.n_base,
@@ -94,8 +96,14 @@ pub fn outcome(
         seconds,
     };
     found.extend(outcome.found());
+    if case.scene.base.dispersive.is_none() {
+        let fines = inputs.base_soil.fines_percent;
+        let if_dispersive = rules::apply(&RuleInputs { dispersive: true, ..inputs });
+        found.extend(dispersion::finding(verdict, fines, &outcome.rules, &if_dispersive));
+        outcome.if_dispersive = IfDispersive::of(fines, &if_dispersive, case.filter.d(15.0).unwrap_or(1.0));
+    }
     if let Some(evidence) = &outcome.evidence {
-        found = evidence.weigh(verdict, found);
+        found = evidence.weigh(verdict, &outcome.rules, found);
     }
     let answer = judge(verdict, &outcome.rules, found);
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
@@ -248,4 +256,49 @@ fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), 
 pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
     Ok(text.into_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Callbacks, walk_case};
+    use crate::scene::Scene;
+
+    /// What comes of a soil with so many percent of fines and a uniform filter of this D15F.
+    fn walked(fines: f64, d15f: f64, set: &[&str]) -> Outcome {
+        let folder = tempfile::tempdir().unwrap();
+        let sheet = folder.path().join("base.csv");
+        let rows = format!("size_mm,percent_finer\n0.01,0\n0.075,{fines}\n0.3,92\n0.6,100\n");
+        std::fs::write(&sheet, rows).unwrap();
+        let soils = [
+            format!("base.sieve={}", sheet.display()),
+            "filter.curve=shire2016-cu1.5-loose".into(),
+            "filter.cu=1.5".into(),
+            format!("filter.d0_mm={}", d15f / 1.13),
+        ];
+        let small = ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=2", "record.sensitivity=[]"];
+        let all: Vec<String> =
+            soils.into_iter().chain(small.iter().chain(set).map(|of| (*of).into())).collect();
+        walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
+    }
+
+    /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.
+    #[test]
+    fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
+        let coarse = walked(45.0, 1.2, &[]);
+        let next = coarse.next_in_words();
+        let beside = "at most 0.700 mm (0.500 mm if the base is dispersive, which nobody has said); for";
+        assert!(next.contains(beside), "{:?}: {next}", coarse.verdict);
+        let fine = Outcome { verdict: Verdict::None, ..walked(45.0, 0.06, &[]) };
+        let next = fine.next_in_words();
+        let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which nobody has said)";
+        assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
+        let open = walked(25.0, 9.0, &[]).next_in_words();
+        let beside = "(if the base is dispersive, which nobody has said, the limit is not known, and ";
+        assert!(open.contains(beside), "{open}");
+        for set in ["base.dispersive=true", "base.dispersive=false"] {
+            let said = walked(45.0, 1.2, &[set]);
+            assert!(said.if_dispersive.is_none() && !said.next_in_words().contains("dispersive"), "{set}");
+        }
+    }
 }

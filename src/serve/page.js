@@ -166,7 +166,7 @@ function setUpSheets() {
   }
   for (const button of $$("#try button")) button.addEventListener("click", () => tryExample(button));
   for (const as of $$("input[name=as]")) as.addEventListener("change", showPair);
-  for (const field of ["#dispersive", "#joint", "#as-given"]) $(field).addEventListener("change", showPair);
+  for (const field of ["#dispersion", "#joint", "#as-given"]) $(field).addEventListener("change", showPair);
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
 }
 
@@ -210,7 +210,7 @@ async function showPair() {
   if (state.base) query.set("base", state.base);
   if (state.filter) query.set("filter", state.filter);
   if (state.more.length) query.set("more", state.more.join("\n"));
-  if ($("#dispersive").checked) query.set("dispersive", "1");
+  if ($("#dispersion").value === "true") query.set("dispersive", "1");
   if ($("#joint").value.trim()) query.set("joint_mm", $("#joint").value.trim());
   if ($("#as-given").checked) query.set("as_given", "1");
   $("#soil-options").hidden = !state.base;
@@ -389,10 +389,10 @@ async function setUpForm() {
   $("#check").addEventListener("click", check);
 }
 
-/** What is ticked beside the rules, as settings. */
+/** What is said of the soils beside the rules, as settings. */
 function ofSoils() {
   const joint = $("#joint").value.trim();
-  return [...($("#dispersive").checked ? ["base.dispersive=true"] : []), ...(joint ? [`filter.joint_mm=${joint}`] : [])];
+  return [...($("#dispersion").value ? [`base.dispersive=${$("#dispersion").value}`] : []), ...(joint ? [`filter.joint_mm=${joint}`] : [])];
 }
 
 /** How the two sheets are taken. */

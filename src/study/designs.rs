@@ -85,7 +85,8 @@ impl Planned {
         let samples = samples_in(&options.samples).map_err(RunError::refused)?;
         samples.iter().try_for_each(|of| is_a_base(&of.path, &of.name, &of.curve))?;
         let dispersive = options.design.says_dispersive();
-        let of = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+        let is_dispersion_known = options.design.knows_dispersion();
+        let of = SpecificationOptions { dispersive, is_dispersion_known, ..SpecificationOptions::default() };
         let row = |sample: &SoilSample| {
             let curve = (sample.name.clone(), sample.curve.clone());
             DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], of))

@@ -303,6 +303,20 @@ mod tests {
         assert_eq!(found.confidence, Confidence::Unstable);
     }
 
+    /// Whatever leaves it open, and that alone says nothing of the checked range.
+    #[test]
+    fn an_undecided_verdict_begins_with_what_its_replicates_or_runs_leave_open() {
+        let level = || finding::level_missed(99.0, "first", "7.4 %", 0.1, 1.0, "More");
+        for opens in [finding::replicates_leave_open(), finding::second_run_missing(), level()] {
+            let found = judge(Verdict::Undecided, &[], vec![open(), opens.clone()]);
+            let ids: Vec<&str> = found.findings.iter().map(|finding| finding.id.as_str()).collect();
+            assert_eq!((ids[0], ids[1]), (opens.id(), "cohesive_fines"));
+            assert!(found.findings[0].against && found.confidence == Confidence::Outside, "{found:?}");
+            let alone = judge(Verdict::Undecided, &[], vec![opens]);
+            assert_eq!((alone.confidence, alone.reasons().len()), (Confidence::Within, 1));
+        }
+    }
+
     /// What decides an undecided class comes before what only costs the checked range, notes come last, and
     /// nothing is said twice.
     #[test]

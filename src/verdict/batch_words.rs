@@ -1,7 +1,8 @@
 //! What the walks of a batch say of a filter, in sentences that page and terminal share.
 
+use super::batch::BatchRow;
 use super::walked_batch::{SampleWalk, WalkedBatch, WalkedRow};
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::record::{Confidence, IfDispersive, Verdict};
 
 impl WalkedBatch {
     /// What was walked of a filter, sentences without their ends: how many samples, how, and to which
@@ -29,6 +30,7 @@ impl WalkedBatch {
         if !stricter.is_empty() {
             all.push(format!("met by practice, and the walk erodes: {}", stricter.join(", ")));
         }
+        all.extend(of_dispersion(&rows));
         all
     }
 
@@ -60,6 +62,26 @@ impl WalkedRow {
         let doubted = self.walk.as_ref().is_some_and(|walk| doubts.contains(&walk.confidence));
         doubted || self.rules.met == Some(false) || self.rules.may_lose_fines
     }
+}
+
+/// How many samples that the walk holds may be dispersive, and of which of them practice is not met then.
+fn of_dispersion(rows: &[&WalkedRow]) -> Option<String> {
+    let holds = |walk: &&SampleWalk| matches!(walk.verdict, Verdict::None | Verdict::Undecided);
+    let of = |row: &&WalkedRow| Some((row.rules.clone(), row.walk.as_ref().filter(holds)?.if_dispersive?));
+    let open: Vec<_> = rows.iter().filter_map(of).collect();
+    let is_broken = |(row, of): &&(BatchRow, IfDispersive)| {
+        row.met != Some(false) && row.d15f_mm.is_some_and(|d15f| of.is_broken_by(d15f))
+    };
+    let name = |(row, of): &(BatchRow, IfDispersive)| format!("{} ({})", row.sample, of.words());
+    let broken: Vec<String> = open.iter().filter(is_broken).map(name).collect();
+    let samples = if open.len() == 1 { "sample" } else { "samples" };
+    let then = match broken.is_empty() {
+        true => String::new(),
+        false => format!("; if it is, practice allows less for {}", broken.join(", ")),
+    };
+    let said =
+        format!("not known whether dispersive: {} {samples} with 15 % fines or more{then}", open.len());
+    (!open.is_empty()).then_some(said)
 }
 
 /// How many walks came to each class; of "no erosion" also how far it can be relied on.
@@ -110,9 +132,11 @@ mod tests {
             base: None,
             runs: Vec::new(),
             curve_range: Vec::new(),
+            if_dispersive: None,
             probability_no_erosion: Some(0.93),
             probability_bound: None,
             probability_by_tests: Some(0.88),
+            beyond_tests: !met,
         });
         let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
         WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
@@ -131,8 +155,14 @@ mod tests {
         assert_eq!(rows[3].answer_in_words(), "not walked: no table");
         assert_eq!(
             rows[0].answer_in_words(),
-            "no erosion in the model, within checked range. Probability of no erosion in a test: 93 % by the \
-             walk, 88 % by published tests"
+            "no erosion in the model, within checked range. Probability of no erosion in a test: 88 % by the \
+             published range, 93 % by the walk"
+        );
+        // Beyond the boundary that tests saw nothing more favourable than the range is said.
+        let beyond = rows[1].answer_in_words();
+        assert!(
+            beyond.contains("no erosion in a test: 88 % by the published range (the lower of two; "),
+            "{beyond}"
         );
         let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
         let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
@@ -144,5 +174,35 @@ mod tests {
                 "met by practice, and the walk erodes: C"
             ]
         );
+    }
+
+    /// The filter has a D15F of 0.725 mm.
+    #[test]
+    fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
+        let of = |name: &str, verdict, d15f_max_mm| {
+            let mut row = walked(name, true, Some((verdict, Confidence::Within, true)));
+            let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false });
+            row.walk = row.walk.map(|walk| SampleWalk { if_dispersive, ..walk });
+            row
+        };
+        let sand = walked("D", true, Some((Verdict::None, Confidence::Within, true)));
+        let rows = [
+            of("A", Verdict::None, 0.5),
+            of("B", Verdict::None, 0.9),
+            of("C", Verdict::Some, 0.5),
+            sand.clone(),
+        ];
+        assert_eq!(
+            of_dispersion(&rows.each_ref()).unwrap(),
+            "not known whether dispersive: 2 samples with 15 % fines or more; if it is, practice allows less \
+             for A (D15F up to 0.500 mm)"
+        );
+        let said = of_dispersion(&[&rows[1]]).unwrap();
+        assert_eq!(said, "not known whether dispersive: 1 sample with 15 % fines or more");
+        assert_eq!(of_dispersion(&[&rows[2], &sand]), None);
+        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows.to_vec());
+        let last = batch.walks_in_words("F").pop().unwrap();
+        assert!(last.starts_with("not known whether dispersive: 2 samples"), "{last}");
     }
 }

@@ -66,7 +66,8 @@ impl Outcome {
 
     /// The sentence of a finding; `None` without it.
     pub fn sentence_of(&self, id: &str) -> Option<String> {
-        self.besides().into_iter().find(|finding| finding.id == id).map(|finding| finding.sentence)
+        let mut all = self.against().into_iter().chain(self.besides());
+        all.find(|finding| finding.id == id).map(|finding| finding.sentence)
     }
 
     /// What soils of the base's kind say of the walk, whichever way it points.

@@ -2,13 +2,13 @@
 //! do next, and the three findings that matter most.
 
 use super::beside::is_evidence;
-use super::evidence::probability_in_words;
-use super::practice::{Standing, broken, listed, standing};
+use super::entry::COHESIVE_FINES;
+use super::practice::{Standing, broken, is_beyond_tests, listed, standing};
 use crate::outcome::design::band::retention;
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{
-    AppliedRule, Bound, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
 };
 use crate::outcome::rules::authority;
 use crate::outcome::undecided::UndecidedBy;
@@ -67,10 +67,9 @@ impl Outcome {
         Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
-    /// The probability that a test would show no erosion, by the walk and by tests alone.
+    /// The probability that a test would show no erosion.
     fn probability(&self) -> Option<String> {
-        let of = self.evidence.as_ref()?;
-        let each = probabilities(of.probability_no_erosion, of.bound, of.probability_by_tests)?;
+        let each = self.evidence.as_ref()?.probabilities(is_beyond_tests(&self.rules))?;
         Some(format!("Probability of no erosion in a test: {each}"))
     }
 
@@ -79,7 +78,7 @@ impl Outcome {
         let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => {
-                let finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
+                let mut finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
                     Some((limit, false)) => {
                         format!("take a filter with a D15F of at most {} {unit}", rounded_down(limit))
                     }
@@ -89,6 +88,7 @@ impl Outcome {
                     ),
                     None => "take a finer filter".into(),
                 };
+                finer += &self.if_dispersive_in_words();
                 format!("{finer}; for a filter that exists, have this pair tested")
             }
             Standing::Unstable => {
@@ -110,6 +110,14 @@ impl Outcome {
         }
     }
 
+    /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
+    /// has said whether it is.
+    fn if_dispersive_in_words(&self) -> String {
+        let most = greatest(&self.rules, self.inputs.filter.d15_mm).map(|(most, _)| most);
+        let said = most.zip(self.if_dispersive).and_then(|(most, of)| of.beside(most));
+        said.map_or_else(String::new, |said| format!(" ({said})"))
+    }
+
     fn of_drainage(&self) -> Option<String> {
         let broken = broken(&self.rules, RuleRole::Drainage);
         let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
@@ -121,7 +129,8 @@ impl Outcome {
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
                     let [least, most] = [rounded_up(least), rounded_down(most)];
-                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}")
+                    let dispersive = self.if_dispersive_in_words();
+                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}{dispersive}")
                 }),
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
@@ -143,12 +152,23 @@ impl Outcome {
             }
             (Some(UndecidedBy::SecondRun), ..) => "walk a second run".into(),
             (Some(UndecidedBy::Replicates), ..) => "walk more replicates".into(),
-            (None, Verdict::None, Confidence::Within) => {
-                "check what the model leaves out: segregation, placing, gradients".into()
+            (None, Verdict::None, confidence) => {
+                let next = match confidence {
+                    Confidence::Within => {
+                        "check what the model leaves out: cracks, segregation, placing, gradients"
+                    }
+                    _ => "have this pair tested: the findings say why",
+                };
+                self.of_dispersion().map_or(next.into(), |first| format!("{first}; {next}"))
             }
-            (None, Verdict::None, _) => "have this pair tested: the findings say why".into(),
             (None, ..) => "have this pair tested: practice and walk differ".into(),
         }
+    }
+
+    /// What to find out of a base of which nobody has said whether it is dispersive.
+    fn of_dispersion(&self) -> Option<String> {
+        let then = self.if_dispersive?.of_filter(self.inputs.filter.d15_mm);
+        Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 
     /// The findings that matter most, at most [`FOREMOST`], and how many more there are.
@@ -163,26 +183,25 @@ impl Outcome {
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
         let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
-        // That "no erosion" does not stand with less base is never folded away.
-        let turns = |finding: &FindingRecord| finding.against && finding.id == "worse_with_amount";
-        let at = all.iter().position(turns).filter(|at| *at >= FOREMOST);
-        if let Some(at) = at.filter(|_| self.verdict == Verdict::None) {
-            all[FOREMOST - 1..=at].rotate_right(1);
+        if self.verdict == Verdict::None {
+            unfold(&mut all);
         }
         all
     }
 }
 
-/// The probability that a test would show no erosion: by the walk, with its bound, and by tests alone.
-pub(super) fn probabilities(
-    by_walk: Option<f64>,
-    bound: Option<Bound>,
-    by_tests: Option<f64>,
-) -> Option<String> {
-    let by_walk = by_walk.map(|of| format!("{} by the walk", probability_in_words(of, bound)));
-    let by_tests = by_tests.map(|of| format!("{} by published tests", probability_in_words(of, None)));
-    let each: Vec<String> = by_walk.into_iter().chain(by_tests).collect();
-    (!each.is_empty()).then(|| each.join(", "))
+/// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
+/// class stands, before them that it does not stand if the base is dispersive, and that it does not with less
+/// base.
+fn unfold(all: &mut [FindingRecord]) {
+    let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
+        if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
+            all[place..=at].rotate_right(1);
+        }
+    };
+    keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
+    keep(FOREMOST - 2, &|finding| finding.id == "dispersive_would_not_hold");
+    keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
 }
 
 /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
@@ -319,6 +338,29 @@ mod tests {
             "does not meet the limit of design, though tests held such filters; no erosion in the model"
         );
         assert_eq!(headline(&[], Verdict::None, Confidence::Outside), "no erosion in the model");
+    }
+
+    #[test]
+    fn what_no_erosion_hangs_on_is_among_the_foremost() {
+        use crate::verdict::finding;
+        let note = || finding::not_studied().record(false);
+        let fines = || finding::cohesive_fines(20.0).settled().record(false);
+        let amount = || finding::worse_with_amount("0.5", "some erosion", "each").record(true);
+        let ordered = |mut all: Vec<FindingRecord>| -> Vec<String> {
+            unfold(&mut all);
+            all.into_iter().map(|finding| finding.id).collect()
+        };
+        let both = ordered(vec![note(), note(), note(), amount(), note(), fines()]);
+        assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
+        assert_eq!(ordered(vec![note(), note(), note(), fines()])[1], "cohesive_fines");
+        let both = ordered(vec![note(), note(), fines(), amount()]);
+        assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
+        assert_eq!(ordered(vec![note(), fines(), note()])[1], "cohesive_fines");
+        let dispersive = || finding::dispersive_would_not_hold("0.500 mm", "0.600 mm").record(true);
+        let all = ordered(vec![note(), note(), note(), dispersive(), fines()]);
+        assert_eq!(all[1..3], ["dispersive_would_not_hold", "cohesive_fines"]);
+        let all = ordered(vec![note(), note(), dispersive(), amount(), fines()]);
+        assert_eq!(all[1..3], ["dispersive_would_not_hold", "worse_with_amount"]);
     }
 
     /// Nobody reads "holds" alone where practice has something against the filter.

@@ -11,7 +11,7 @@ use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::{Confidence, ModelLimit};
+use crate::outcome::record::{Confidence, IfDispersive, ModelLimit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -119,6 +119,10 @@ pub struct DesignedSample {
     /// Whether the true least is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
+    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
     /// Greatest D15F that both practice and walk allow; `None` where none is known.
     pub d15f_max_mm: Option<f64>,
     /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
@@ -173,6 +177,7 @@ impl DesignedSample {
             rule: curve.d15f_max_rule.clone(),
             d15f_min_mm: practice.d15f_min_mm,
             d15f_min_at_most: practice.d15f_min_at_most,
+            if_dispersive: practice.if_dispersive,
             d15f_max_mm: practice.d15f_max_mm,
             no_band: practice.no_band.clone().unwrap_or_default(),
             governs: None,

@@ -4,7 +4,7 @@ use super::designed_samples::{DesignedSample, DesignedSamples};
 use super::specification::no_band_between;
 use super::words::capital;
 use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::Confidence;
+use crate::outcome::record::{Confidence, IfDispersive};
 
 /// So many samples.
 fn counted(samples: usize) -> String {
@@ -134,6 +134,7 @@ impl DesignedSamples {
                 row.sample
             ));
         }
+        said.extend(self.dispersion_in_words());
         let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
         if walked > 0 {
             said.extend(self.set_in_words());
@@ -154,6 +155,24 @@ impl DesignedSamples {
             said.push(format!("Not walked, by practice alone: {}", by_practice.join(", ")));
         }
         said
+    }
+
+    /// How many samples may be dispersive, and what practice allows the strictest of those for which it then
+    /// allows less.
+    fn dispersion_in_words(&self) -> Option<String> {
+        let open: Vec<_> = self.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
+        let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
+            of.beside(row.bound().unwrap_or(f64::INFINITY)).is_some()
+        };
+        let strictest =
+            open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
+        let (row, of) = strictest?;
+        Some(format!(
+            "Not known whether dispersive: {} with 15 % fines or more; if {} is, practice allows it {}",
+            counted(open.len()),
+            row.sample,
+            of.words()
+        ))
     }
 
     /// For how many samples each of practice and walk sets the greatest D15F.
@@ -246,6 +265,8 @@ mod tests {
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no greatest D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
+            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is, practice allows it \
+             D15F up to ",
             "The greatest D15F is set for 1 sample by the walk, for 1 sample by practice",
             "Outside checked range: 2 of 2 samples",
             "May govern, as no greatest D15F is known: silt (limit of practice ",

@@ -6,6 +6,9 @@ use super::quantity::FindingValue;
 use super::words::within;
 use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdict, Weight};
 
+/// The name of the finding of fines that may be cohesive.
+pub const COHESIVE_FINES: &str = "cohesive_fines";
+
 /// What the table declares of a finding.
 #[derive(Debug)]
 pub struct Entry {
@@ -119,7 +122,7 @@ pub struct Finding {
     pub entry: &'static Entry,
     /// Its numbers, in the order of the entry's names.
     pub values: Vec<FindingValue>,
-    /// Whether evidence shows what it is worth, so that it is no doubt.
+    /// Whether the class rests on tests of soils that had the same, so that it does not limit it.
     pub is_settled: bool,
 }
 
@@ -135,7 +138,7 @@ impl Finding {
         self.entry.id
     }
 
-    /// The same where evidence shows what it is worth.
+    /// The same where the class rests on tests of soils that had it too.
     pub fn settled(self) -> Self {
         Self { is_settled: true, ..self }
     }
@@ -143,13 +146,19 @@ impl Finding {
     /// What it says.
     pub fn sentence(&self) -> String {
         let said = self.filled(self.entry.sentence);
-        match self.is_settled {
-            true => format!(
-                "The soils of the evidence had the same, so that it is no doubt here: {}.",
-                within(&said)
-            ),
-            false => said,
-        }
+        // What tests and walks share is no less a gap of the model.
+        let rests = match self.entry.id {
+            _ if !self.is_settled => return said,
+            COHESIVE_FINES => {
+                "The published range of tests is for soils with such fines too, and this class rests on that \
+                 range"
+            }
+            _ => {
+                "The soils of the study had this too, and the class rests on the published range of tests, \
+                 not on the walk alone"
+            }
+        };
+        format!("{rests}: {}.", within(&said))
     }
 
     /// The sentence, and which setting changes it.

@@ -4,11 +4,12 @@
 //! `src/data/evidence.csv` is made by `scripts/studies/real_soils_evidence.py` from walks of 639 real soils
 //! against filters of four shapes (`results/real-soils.md`). Of each group of soils and shape of filter it
 //! has the distribution over soils of `r`, the walk's D15F of no erosion by the centre of the range in which
-//! tests found it, and half of that range as a factor.
+//! tests found it (the geometric mean of its ends), and half of that range as a factor.
 //!
 //! With the walk's boundary `B` of this pair a test is taken to have its boundary at `B s / r`, where `s` is
 //! uniform over the range in its logarithm. The probability that it would show no erosion is that of
-//! `B s / r >= D15F`, a mean over the quantiles of `r`.
+//! `B s / r >= D15F`, a mean over the quantiles of `r`. The source gives the two ends of a range; that
+//! boundaries are uniform between them is taken here.
 //!
 //! No soil of the study was tested itself: tests' boundaries are the ranges published for its kind (Fell et
 //! al., Geotechnical Engineering of Dams, Table 9.2, after Foster 1999).
@@ -17,10 +18,12 @@ use std::sync::LazyLock;
 
 use libm::log;
 
-use super::entry::Finding;
-use super::finding;
-use crate::outcome::record::{Bound, Evidence, Margin, Verdict};
-use crate::outcome::rules::{BaseSoil, range_of_tests};
+use super::entry::{COHESIVE_FINES, Finding};
+use super::probability::probabilities;
+use super::quantity::FindingValue;
+use super::{finding, practice};
+use crate::outcome::record::{AppliedRule, Bound, Evidence, Margin, Verdict};
+use crate::outcome::rules::{BaseSoil, TESTS_CONTINUING, TESTS_NO_EROSION, range_of_tests};
 
 const TABLE: &str = include_str!("../data/evidence.csv");
 
@@ -32,7 +35,7 @@ const SHARES: [f64; 2] = [0.9, 0.5];
 
 /// Findings that the soils and filters of the study had themselves: they are in its ratio.
 const STUDIED: [&str; 7] = [
-    "cohesive_fines",
+    COHESIVE_FINES,
     "broadly_graded",
     "cu_unchecked",
     "cu_in_doubt",
@@ -50,22 +53,6 @@ pub const LAYERS: u64 = 60;
 /// A probability is never nearer to 0 or 1 than this.
 const SURE: f64 = 0.02;
 
-/// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
-const WALK_SURE: f64 = 0.025;
-
-/// A probability of no erosion in percent: at its caps it may be any less or more.
-pub fn probability_in_words(probability: f64, bound: Option<Bound>) -> String {
-    let shown = format!("{:.0} %", 100.0 * probability);
-    let (is_most, is_least) = (probability >= 1.0 - WALK_SURE, probability <= WALK_SURE);
-    match bound {
-        Some(Bound::AtMost) if !is_least => format!("at most {shown}"),
-        Some(Bound::AtLeast) if !is_most => format!("at least {shown}"),
-        _ if is_most => format!("{shown} or more"),
-        _ if is_least => format!("{shown} or less"),
-        _ => shown,
-    }
-}
-
 /// A group of soils against filters of one shape.
 #[derive(Debug)]
 struct Group {
@@ -75,11 +62,20 @@ struct Group {
     steep: bool,
     /// Cu of the filters.
     filter_cu: [f64; 2],
+    /// The one filter that was walked, in words.
+    walked: String,
+    /// Soils with a ratio.
     soils: u64,
-    /// Whether enough soils have a ratio within a factor of 2 of the median, which is at most 1.
+    /// Soils of which the walk erodes in every filter.
+    without_boundary: u64,
+    /// Whether enough soils have a ratio within a factor of 2 of the median, which is at most 1, and few lie
+    /// beyond the tests' range.
     narrow: bool,
     /// Half of the tests' range, as a factor.
     spread: f64,
+    /// Times the D15F at which a uniform filter begins to erode with four times the base; `None` where too
+    /// few soils were walked so.
+    times_four: Option<f64>,
     /// The ratio at equal steps of probability, from one step to one less than all.
     ratios: Vec<f64>,
 }
@@ -91,7 +87,8 @@ static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| {
 
 impl Group {
     /// Reads a row: name, least and most fines, shape of the base, name and Cu of the filter, soils, those
-    /// without a boundary, whether it is narrow, half of the tests' range, and the ratio's quantiles.
+    /// without a boundary, whether it is narrow, half of the tests' range, what four times the base does, and
+    /// the ratio's quantiles.
     fn read(row: &'static str) -> Self {
         let cells: Vec<&str> = row.split(',').collect();
         let number = |cell: usize| -> f64 { cells[cell].parse().expect("a number") };
@@ -99,10 +96,16 @@ impl Group {
             fines: [number(1), number(2)],
             steep: cells[3] == "steep",
             filter_cu: [number(5), number(6)],
-            soils: number(7) as u64,
+            walked: match cells[4] {
+                "c33" => "C33 sand with a Cu of 5.3".into(),
+                name => format!("of Cu {}", name.trim_start_matches("cu")),
+            },
+            soils: (number(7) - number(8)) as u64,
+            without_boundary: number(8) as u64,
             narrow: cells[9] == "yes",
             spread: number(10),
-            ratios: (11..cells.len()).map(number).collect(),
+            times_four: cells[11].parse().ok(),
+            ratios: (12..cells.len()).map(number).collect(),
         }
     }
 
@@ -145,12 +148,6 @@ impl Group {
     }
 }
 
-/// The centre of the range in which tests of such a base had their boundary of no erosion, as D15F (mm).
-fn centre_of_tests(soil: &BaseSoil) -> Option<f64> {
-    let [low, high] = range_of_tests(soil.fines_percent?, soil.gradation.d(85.0)?);
-    Some((low * high).sqrt())
-}
-
 impl Evidence {
     /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None`
     /// where they are of no group.
@@ -161,6 +158,8 @@ impl Evidence {
         margin: Option<&Margin>,
     ) -> Option<Self> {
         let group = Group::of(soil, filter_cu)?;
+        let sizes = soil.fines_percent.zip(soil.gradation.d(85.0));
+        let range = sizes.map(|(fines, d85b)| range_of_tests(fines, d85b));
         let bounds = margin.map(|of| (of.boundary(), of.holds_to(), of.erodes_from()));
         let (factor, bound) = match bounds {
             Some((Some(boundary), ..)) => (Some(boundary), None),
@@ -171,61 +170,103 @@ impl Evidence {
         Some(Self {
             group: group.in_words(),
             soils: group.soils,
+            soils_without_boundary: group.without_boundary,
             ratio_median: group.quantile(0.5),
             ratio_low: group.quantile(0.05),
             ratio_high: group.quantile(0.95),
             narrow: group.narrow,
+            range_of_tests_mm: range,
             boundary_d15f_mm: factor.map(|factor| factor * d15f_mm),
             // A ratio that scatters widely says nothing of one soil.
             probability_no_erosion: factor.filter(|_| group.narrow).map(|factor| group.probability(factor)),
-            probability_by_tests: centre_of_tests(soil)
-                .map(|of| group.beyond(d15f_mm / of).clamp(SURE, 1.0 - SURE)),
+            probability_by_tests: range
+                .map(|[low, high]| group.beyond(d15f_mm / (low * high).sqrt()).clamp(SURE, 1.0 - SURE)),
             bound,
         })
     }
 
-    /// Whether its soils show what the walk's class is worth, and tests share that class.
-    pub fn supports(&self, verdict: Verdict) -> bool {
+    /// Whether its soils show what the walk's class is worth, and tests share that class. Of continuing
+    /// erosion that is so beyond the boundary that tests saw: the ratio is of no erosion alone.
+    pub fn supports(&self, verdict: Verdict, rules: &[AppliedRule]) -> bool {
         let ([high, low], Some(of_walk)) = (SHARES, self.probability_no_erosion) else { return false };
         let of_tests = self.probability_by_tests.unwrap_or(of_walk);
+        let erodes = of_walk.max(of_tests) <= low && self.bound != Some(Bound::AtLeast);
         self.narrow
             && match verdict {
                 Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
-                Verdict::Some | Verdict::Continuing => {
-                    of_walk.max(of_tests) <= low && self.bound != Some(Bound::AtLeast)
-                }
+                Verdict::Some => erodes,
+                Verdict::Continuing => erodes && practice::met_of(rules, TESTS_CONTINUING) == Some(false),
                 Verdict::Undecided => false,
             }
     }
 
-    /// The findings of a verdict: what its soils had in common with this pair is no doubt where the evidence
-    /// supports the class.
-    pub fn weigh(&self, verdict: Verdict, found: Vec<Finding>) -> Vec<Finding> {
-        let supports = self.supports(verdict);
+    /// The findings of a verdict: what its soils had in common with this pair does not limit a class that the
+    /// evidence supports.
+    pub fn weigh(&self, verdict: Verdict, rules: &[AppliedRule], found: Vec<Finding>) -> Vec<Finding> {
+        let supports = self.supports(verdict, rules);
         let is_studied = |finding: &Finding| supports && STUDIED.contains(&finding.id());
         let settle = |finding: Finding| if is_studied(&finding) { finding.settled() } else { finding };
-        found.into_iter().map(settle).chain([self.finding()]).collect()
+        found.into_iter().map(settle).chain([self.finding(rules)]).collect()
     }
 
-    /// What it says. Where tests hold and the walk erodes, that speaks against the walk.
-    fn finding(&self) -> Finding {
-        let of_walk = match self.probability_no_erosion {
-            Some(of) => format!("is {}", probability_in_words(of, self.bound)),
-            None if self.ratio_median > 1.0 => "is not known by the walk".into(),
-            None => "is not known by the walk, whose ratio to tests scatters or rests on few soils".into(),
+    /// What it says. Where the filter is finer than the range of tests and the walk erodes, that speaks
+    /// against the walk.
+    fn finding(&self, rules: &[AppliedRule]) -> Finding {
+        let said = self.probabilities(practice::is_beyond_tests(rules));
+        let probability = match (self.probability_no_erosion, said) {
+            (Some(_), Some(said)) => format!("is {said}"),
+            (None, Some(said)) => {
+                let why = match (self.ratio_median > 1.0, self.narrow) {
+                    (true, _) => "it errs on the unsafe side",
+                    (_, true) => "its boundary was not found",
+                    _ => "its ratio to that range is not known well enough for such soils",
+                };
+                format!("is {said}; the walk gives no probability, as {why}")
+            }
+            (_, None) => "is not known".into(),
         };
-        let of_tests = self.probability_by_tests.map(|of| probability_in_words(of, None));
-        let of_tests = of_tests
-            .map_or(String::new(), |of| format!("; by the published range of such tests alone it is {of}"));
+        let finding = match self.ratio_median > 1.0 {
+            true => finding::evidence_unsafe,
+            false if self.is_finer_than_tests(rules) => finding::evidence_safe,
+            false => finding::evidence,
+        };
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
-        let probability = format!("{of_walk}{of_tests}");
-        let tests_hold = self.probability_by_tests.is_some_and(|of| of >= SHARES[0]);
-        let finding = match (median > 1.0, tests_hold) {
-            (true, _) => finding::evidence_unsafe,
-            (false, true) => finding::evidence_safe,
-            (false, false) => finding::evidence,
+        finding(&probability, self.soils, &self.group, median, low, high, &self.more_in_words())
+    }
+
+    /// Whether the filter is finer than any for which tests of soils with such fines had their boundary.
+    fn is_finer_than_tests(&self, rules: &[AppliedRule]) -> bool {
+        let rule = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.met == Some(true));
+        let d15f = rule.and_then(|rule| rule.value);
+        d15f.zip(self.range_of_tests_mm).is_some_and(|(d15f, [low, _])| d15f <= low)
+    }
+
+    /// The probability of no erosion in a test, in words: by the published range, and by the walk; beyond the
+    /// boundary that tests saw the lower of the two alone.
+    pub fn probabilities(&self, is_beyond_tests: bool) -> Option<String> {
+        let of_walk = (self.probability_no_erosion, self.bound);
+        probabilities(of_walk, self.probability_by_tests, is_beyond_tests)
+    }
+
+    /// What else a reader must know of the ratio: clauses and sentences, the last without its end.
+    fn more_in_words(&self) -> String {
+        let Some(group) = GROUPS.iter().find(|group| group.in_words() == self.group) else {
+            return String::new();
         };
-        finding(&probability, self.soils, &self.group, median, low, high)
+        let ratio = |of: f64| FindingValue::Ratio(of).shown(None);
+        let mut said = format!("; that range begins at {} of its centre", ratio(1.0 / group.spread));
+        if self.soils_without_boundary > 0 {
+            said += &format!("; {} more eroded in every filter", self.soils_without_boundary);
+        }
+        said += &format!(". One filter was walked, {}, with a base of 5 % of its mass", group.walked);
+        if let Some(times) = group.times_four {
+            let times = ratio(times);
+            said += &format!(
+                "; with four times as much base, uniform filters began to erode at {times} times the D15F \
+                 (median)"
+            );
+        }
+        said
     }
 }
 
@@ -249,14 +290,25 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::MarginWalk;
+    use crate::verdict::PairRules;
 
     fn soil(points: &[(f64, f64)]) -> BaseSoil {
         BaseSoil::of(&Gradation::from_points(points, None).unwrap(), false)
     }
 
     /// A sand without fines, D85B 0.487 mm.
+    const SAND: [(f64, f64); 3] = [(0.075, 0.0), (0.3, 50.0), (0.6, 100.0)];
+    /// With 45 % fines, D85B 0.244 mm and D50B 0.087 mm.
+    const SILTY: [(f64, f64); 4] = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+
     fn sand() -> BaseSoil {
-        soil(&[(0.075, 0.0), (0.3, 50.0), (0.6, 100.0)])
+        soil(&SAND)
+    }
+
+    /// The rules of practice of a base and a uniform filter of this D15.
+    fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
+        let filter = Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap();
+        PairRules::of(&Gradation::from_points(base, None).unwrap(), &filter).rules
     }
 
     fn margin(holds: f64, erodes: f64) -> Margin {
@@ -273,13 +325,93 @@ mod tests {
             let all: Vec<f64> =
                 (-40..=40).map(|k| group.probability(libm::exp(f64::from(k) / 8.0))).collect();
             assert!(all.is_sorted() && all[0] == 0.025 && all[80] == 0.975, "{}: {all:?}", group.in_words());
+            // No group is known that lies beyond the tests' range, or in the middle of it beyond the centre.
+            let [median, high] = [0.5, 0.95].map(|p| group.quantile(p));
+            assert!(!group.narrow || (median <= 1.0 && high <= group.spread), "{}", group.in_words());
             // All soils at the median, all tests at their centre.
             let one = Group { ratios: vec![0.5; 19], spread: group.spread, ..Group::read(ROW) };
             assert!((one.probability(0.5) - 0.5).abs() < 1e-12);
         }
     }
 
-    const ROW: &str = "4,0,15,steep,cu1.5,1,2,55,0,yes,1.2,0.5,0.5";
+    const ROW: &str = "4,0,15,steep,cu1.5,1,2,55,0,yes,1.2,1.5,0.5,0.5";
+
+    /// C33 sand with 15 to 35 % fines reaches beyond the range; with a tenth of the soils left out Cu 3 with
+    /// 35 to 55 % fines does not stay narrow, and with less than 15 % it has fewer than 30 soils.
+    #[test]
+    fn a_group_is_narrow_whatever_tenth_of_its_soils_is_left_out() {
+        let narrow: Vec<String> = GROUPS.iter().filter(|of| of.narrow).map(Group::in_words).collect();
+        let of = |fines: &str, cu: &str| format!("{fines} fines, D85B/D50B at most 4, filters of Cu {cu}");
+        let few = "less than 15 %";
+        assert_eq!(
+            narrow,
+            [
+                of("35 to 55 %", "1 to 2"),
+                of("15 to 35 %", "1 to 2"),
+                of(few, "1 to 2"),
+                of("15 to 35 %", "2 to 4"),
+                of(few, "4 to 8"),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_client_reads_what_the_ratio_is_of_and_where_the_range_begins() {
+        let broad = [(0.001, 10.0), (0.01, 30.0), (0.075, 60.0), (0.6, 85.0), (2.0, 100.0)];
+        let of = Evidence::of(&soil(&broad), 0.5, Some(1.5), None).unwrap();
+        assert_eq!((of.soils, of.soils_without_boundary, of.narrow), (106, 22, false));
+        let said = of.finding(&rules(&broad, 0.5)).sentence();
+        for words in [
+            "For 106 real soils of this kind (55 to 85 % fines",
+            "at 0.117 times the centre of",
+            "that range begins at 0.642 of its centre; 22 more eroded in every filter. One filter was \
+             walked, of Cu 1.5, with a base of 5 % of its mass; with four times as much base, uniform \
+             filters began to erode at 12.1 times the D15F (median).",
+            "by the published range; the walk gives no probability, as its ratio to that range is not known \
+             well enough for such soils",
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+        let c33 = Evidence::of(&soil(&SILTY), 0.5, Some(5.3), None).unwrap();
+        let said = c33.finding(&rules(&SILTY, 0.5)).sentence();
+        assert!(said.starts_with("For filters like this the walk errs on the unsafe side."), "{said}");
+        assert!(said.contains("One filter was walked, C33 sand with a Cu of 5.3, with"), "{said}");
+        assert!(said.contains("gives no probability, as it errs on the unsafe side"), "{said}");
+        // Its 86 soils lie within a factor of 1.92, and 95 % reach beyond the range.
+        let silty = [(0.03, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
+        let c33 = Evidence::of(&soil(&silty), 0.5, Some(5.3), None).unwrap();
+        assert!(
+            !c33.narrow && c33.ratio_median <= 1.0 && c33.group.starts_with("15 to 35 % fines"),
+            "{c33:?}"
+        );
+        let said = c33.finding(&rules(&silty, 0.5)).sentence();
+        assert!(said.contains("as its ratio to that range is not known well enough"), "{said}");
+        let none = Evidence::of(&sand(), 2.0, Some(1.5), None).unwrap().finding(&rules(&SAND, 2.0));
+        assert!(none.sentence().contains("as its boundary was not found"), "{}", none.sentence());
+    }
+
+    /// 0.7 mm is where the range begins, and Foster and Fell's boundary.
+    #[test]
+    fn only_a_filter_finer_than_the_whole_range_speaks_against_a_walk_that_erodes() {
+        let id = |d15f: f64| {
+            let of = Evidence::of(&soil(&SILTY), d15f, Some(1.5), Some(&margin(0.5, 0.52))).unwrap();
+            assert!(of.probability_by_tests > Some(0.9), "{of:?}");
+            let finding = of.finding(&rules(&SILTY, d15f));
+            (finding.id(), finding.is_against(Verdict::Some))
+        };
+        assert_eq!([id(0.69), id(0.75)], [("evidence_safe", true), ("evidence", false)]);
+    }
+
+    /// The ratio is of no erosion; that continuing erosion follows is another criterion.
+    #[test]
+    fn continuing_erosion_is_supported_beyond_its_own_boundary_alone() {
+        // 9 D95B is 5.04 mm.
+        let supports = |d15f: f64| {
+            let of = Evidence::of(&sand(), d15f, Some(1.5), Some(&margin(0.3, 0.31))).unwrap();
+            [Verdict::Some, Verdict::Continuing].map(|verdict| of.supports(verdict, &rules(&SAND, d15f)))
+        };
+        assert_eq!([supports(4.95), supports(5.2)], [[true, false], [true, true]]);
+    }
 
     #[test]
     fn a_sand_is_of_its_group_and_at_the_walks_boundary_tests_still_hold() {
@@ -289,14 +421,17 @@ mod tests {
         assert!(of.soils >= 30 && of.ratio_median < 0.7 && probability > 0.9, "{of:?}");
         // 2 mm is 4.1 D85B, and tests held to 6.8.
         assert_eq!(of.probability_by_tests, Some(0.98));
-        assert!(of.supports(Verdict::None) && !of.supports(Verdict::Some));
-        assert!(of.finding().is_against(Verdict::Some) && !of.finding().is_against(Verdict::None));
+        let (all, verdicts) = (rules(&SAND, 2.0), [Verdict::None, Verdict::Some]);
+        assert_eq!(verdicts.map(|verdict| of.supports(verdict, &all)), [true, false]);
+        assert_eq!(verdicts.map(|verdict| of.finding(&all).is_against(verdict)), [false, true]);
         let coarse = Evidence::of(&sand(), 6.0, Some(1.5), Some(&margin(0.3, 0.31))).unwrap();
-        assert!(coarse.supports(Verdict::Continuing) && !coarse.supports(Verdict::None), "{coarse:?}");
-        assert!(!coarse.finding().is_against(Verdict::Continuing));
+        let all = rules(&SAND, 6.0);
+        assert!(coarse.supports(Verdict::Continuing, &all) && !coarse.supports(Verdict::None, &all));
+        assert!(!coarse.finding(&all).is_against(Verdict::Continuing), "{coarse:?}");
         // The walk alone does not make a filter beyond the tests' range a good one.
         let beyond = Evidence::of(&sand(), 4.5, Some(1.5), Some(&margin(4.0, 4.1))).unwrap();
-        assert!(beyond.probability_no_erosion > Some(0.9) && !beyond.supports(Verdict::None), "{beyond:?}");
+        let supports = beyond.supports(Verdict::None, &rules(&SAND, 4.5));
+        assert!(beyond.probability_no_erosion > Some(0.9) && !supports, "{beyond:?}");
     }
 
     #[test]
@@ -310,9 +445,8 @@ mod tests {
         assert_eq!(Evidence::of(&sand(), 2.0, Some(60.0), Some(&margin(0.98, 1.02))), None);
         assert_eq!(Evidence::of(&sand(), 2.0, None, Some(&margin(0.98, 1.02))), None);
         let unknown = Evidence::of(&sand(), 2.0, Some(1.5), None).unwrap();
-        assert!(
-            unknown.narrow && unknown.probability_no_erosion.is_none() && !unknown.supports(Verdict::None)
-        );
+        let supports = unknown.supports(Verdict::None, &rules(&SAND, 2.0));
+        assert!(unknown.narrow && unknown.probability_no_erosion.is_none() && !supports);
         let empty = Evidence::of(&sand(), 2.0, Some(1.5), Some(&Margin { walks: Vec::new() }));
         assert_eq!(empty.unwrap(), unknown);
     }
@@ -322,41 +456,44 @@ mod tests {
         let mut held = margin(1.0, 2.0);
         held.walks.pop();
         let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&held)).unwrap();
-        assert!(
-            of.bound == Some(Bound::AtLeast) && of.supports(Verdict::None) && !of.supports(Verdict::Some)
-        );
-        let said = of.finding().sentence();
+        let all = rules(&SAND, 2.0);
+        assert_eq!(of.bound, Some(Bound::AtLeast));
+        assert!(of.supports(Verdict::None, &all) && !of.supports(Verdict::Some, &all));
+        let said = of.finding(&all).sentence();
         assert!(said.contains("at least") || said.contains(" or more"), "{said}");
         let mut eroded = margin(0.5, 1.0);
         eroded.walks.remove(0);
         let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&eroded)).unwrap();
-        assert!(of.bound == Some(Bound::AtMost) && !of.supports(Verdict::None), "{of:?}");
+        assert!(of.bound == Some(Bound::AtMost) && !of.supports(Verdict::None, &all), "{of:?}");
     }
 
     #[test]
-    fn a_probability_at_its_cap_is_no_value() {
-        let said = probability_in_words;
-        assert_eq!(
-            [0.98, 0.975, 0.02, 0.025].map(|of| said(of, None)),
-            ["98 % or more", "98 % or more", "2 % or less", "2 % or less"]
-        );
-        assert_eq!(said(0.27, None), "27 %");
-        assert_eq!(said(0.93, Some(Bound::AtLeast)), "at least 93 %");
-        assert_eq!(said(0.975, Some(Bound::AtLeast)), "98 % or more");
-        assert_eq!(said(0.975, Some(Bound::AtMost)), "at most 98 %");
-        assert_eq!(said(0.02, Some(Bound::AtMost)), "2 % or less");
-    }
-
-    #[test]
-    fn what_the_study_had_is_no_doubt_where_it_supports_the_class() {
+    fn what_the_study_had_does_not_limit_a_class_that_it_supports_and_stays_a_gap() {
         let of = Evidence::of(&sand(), 2.0, Some(1.5), Some(&margin(0.98, 1.02))).unwrap();
-        let found = || vec![finding::library_of_any_density(3.0), finding::few_replicates(4)];
+        let all = rules(&SAND, 2.0);
+        let found = || {
+            let fines = finding::cohesive_fines(14.0);
+            vec![finding::library_of_any_density(3.0), finding::few_replicates(4), fines]
+        };
         let against = |verdict| -> Vec<&str> {
-            let weighed = of.weigh(verdict, found());
+            let weighed = of.weigh(verdict, &all, found());
             weighed.iter().filter(|of| of.is_against(verdict)).map(Finding::id).collect()
         };
         assert_eq!(against(Verdict::None), ["few_replicates"]);
         let of_some = against(Verdict::Some);
-        assert_eq!(of_some, ["library_of_any_density", "few_replicates", "evidence_safe"]);
+        assert_eq!(of_some, ["library_of_any_density", "few_replicates", "cohesive_fines", "evidence_safe"]);
+        let said: Vec<String> =
+            of.weigh(Verdict::None, &all, found()).iter().map(Finding::sentence).collect();
+        assert!(
+            said[2].starts_with("The published range of tests is for soils with such fines too, and this")
+                && said[2].contains("the model ignores cohesion"),
+            "{said:?}"
+        );
+        assert!(
+            said[0].starts_with(
+                "The soils of the study had this too, and the class rests on the published range"
+            ),
+            "{said:?}"
+        );
     }
 }

@@ -11,6 +11,8 @@ use crate::outcome::record::{Confidence, Direction, Topic, Verdict, Weight};
 const HELD: &[Verdict] = &[Verdict::None];
 /// Rules that say something of a filter that seals, too.
 const HELD_OR_SEALED: &[Verdict] = &[Verdict::None, Verdict::Some];
+/// What leaves a verdict undecided.
+const OPEN: &[Verdict] = &[Verdict::Undecided];
 
 findings! {
     // Rules of practice that are not kept. Limits and values have as many digits as tell them apart.
@@ -55,6 +57,14 @@ findings! {
     may_segregate(rules: Text): Practice, Open, Limits, sets MaySegregate, against HELD;
         "segregation", "rules.md",
         "The filter may segregate when it is placed: {rules}.";
+
+    // What nobody has said of the base.
+    /// A filter too coarse for the base if that is dispersive.
+    dispersive_would_not_hold(limit: Text, value: Text): Practice, Unsafe, Limits, against HELD;
+        "dispersion", "rules.md",
+        "It is not known whether the base is dispersive. If it is, practice allows a D15F of {limit}, and \
+         this is {value}. The walk knows nothing of dispersion.",
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
 
     // What the amount of base does to a class.
     /// A worse class with another amount of base.
@@ -350,8 +360,9 @@ findings! {
     /// Constrictions from the library.
     library_of_density(density: Text, off_by: Percent): Constrictions, Open, Limits;
         "not packed", "uncertainty.md",
-        "The constrictions come from packings of filters like this one ({density}). Nine of ten such filters \
-         were within {off_by}; both ends of that range are walked.",
+        "The constrictions come from packings of filters like this one ({density}), within {off_by} (that \
+         held for 445 of 450 packings, each shape left out in turn; the error was set on these same \
+         packings). Both ends of that range are walked.",
         to do "filter.density packs this very filter.";
     /// A gradation outside the library.
     like_none_of_the_library(): Constrictions, Open, Limits;
@@ -442,18 +453,18 @@ findings! {
          D15F {limit} (Foster and Fell), and this network retains uniform sands up to a ratio near \
          {holds}.";
     /// Which class the replicates leave open.
-    replicates_leave_open(): Walk, Open, Note;
+    replicates_leave_open(): Walk, Open, Decides, sets Within, against OPEN;
         "replicates", "uncertainty.md",
         "The replicates do not separate the classes; more replicates may decide it.",
         to do "--decide 99% adds them until the class is that certain.";
     /// A second run that was not asked for.
-    second_run_missing(): Walk, Open, Note;
+    second_run_missing(): Walk, Open, Decides, sets Within, against OPEN;
         "second run", "uncertainty.md",
         "Some and continuing erosion differ by the second run, and only a first was asked for.",
         to do "runs = 2 walks both.";
     /// A confidence level that was not reached.
     level_missed(level: Percent, run: Text, mean: Text, distance: Points, sd: Points, more: Text):
-        Walk, Open, Note;
+        Walk, Open, Decides, sets Within, against OPEN;
         "level", "uncertainty.md",
         "Inconclusive at the {level} confidence level: the mean of the {run} run, {mean}, lies {distance} \
          from 7.5 %, and the replicates scatter by {sd}. {more}.";
@@ -545,30 +556,40 @@ findings! {
         "A blocked constriction stays open beside the particle that blocks it. No filter test has checked \
          how wide.";
     /// What soils of this kind say of the walk's boundary.
-    evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+    evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text):
         Practice, Settled, Note;
         "evidence", "uncertainty.md",
         "The probability that a test would show no erosion {probability}. For {soils} real soils of this \
-         kind ({group}) the walk began to erode at {median} times the D15F of no-erosion tests on soils of \
-         these fines (nine in ten: {low} to {high}). The walk knows no cohesion, no segregation and no \
-         crack, and none of these soils was tested itself.";
-    /// The same where tests hold such filters.
-    evidence_safe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+         kind ({group}) the walk began to erode at {median} times the centre of the range published for \
+         soils of these fines (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
+         segregation and no crack, and none of these soils was tested itself.";
+    /// The same where the filter is finer than the range of tests.
+    evidence_safe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text):
         Practice, Safe, Limits;
         "evidence", "uncertainty.md",
-        "Tests on soils like this held such filters. The probability that a test would show no erosion \
-         {probability}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} \
-         times the D15F of no-erosion tests on soils of these fines (nine in ten: {low} to {high}). The walk \
-         knows no cohesion, no segregation and no crack, and none of these soils was tested itself.";
+        "This D15F is finer than the range in which tests on soils of such fines had their boundary. The \
+         probability that a test would show no erosion {probability}. For {soils} real soils of this kind \
+         ({group}) the walk began to erode at {median} times the centre of that range (nine in ten: {low} to \
+         {high}){more}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
+         tested itself.";
     /// The same where the walk errs on the unsafe side.
-    evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio):
+    evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text):
         Practice, Unsafe, Limits;
         "evidence", "uncertainty.md",
-        "For filters like this the walk is on the unsafe side of tests. For {soils} real soils of this kind \
-         ({group}) it began to erode at {median} times the D15F of no-erosion tests on soils of these fines \
-         (nine in ten: {low} to {high}). The probability that a test would show no erosion {probability}. \
-         The walk knows no cohesion, no segregation and no crack, and none of these soils was tested \
-         itself.";
+        "For filters like this the walk errs on the unsafe side. For {soils} real soils of this kind \
+         ({group}) it began to erode at {median} times the centre of the range published for soils of these \
+         fines (nine in ten: {low} to {high}){more}. The probability that a test would show no erosion \
+         {probability}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
+         tested itself.";
+    /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
+    dispersion_not_known(before: Text, limit: Text, after: Text): Practice, Open, Note;
+        "dispersion", "rules.md",
+        "It is not known whether the base is dispersive. If it is, {before} {limit}{after}. The walk knows \
+         nothing of dispersion.",
+        to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";

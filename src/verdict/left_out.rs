@@ -33,9 +33,11 @@ impl ModelLimit {
                 "the excessive-erosion class of Foster and Fell",
                 "the verdict knows no, some and continuing erosion",
             ),
-            Self::Cohesion => {
-                ("cohesion, suffusion of the filter itself, segregation and layering of the filter", "")
-            }
+            Self::Cohesion => (
+                "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the \
+                 filter",
+                "",
+            ),
             Self::Said(words) => (words, ""),
         }
     }
@@ -328,7 +330,7 @@ mod tests {
             "{brief}"
         );
         assert!(brief.ends_with(
-            "; cohesion, suffusion of the filter itself, segregation and layering of the filter."
+            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter."
         ));
     }
 }

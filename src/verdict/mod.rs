@@ -6,6 +6,8 @@
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - `practice` is what the rules of filter practice say of a pair.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
+//! - `evidence` is what soils of the base's kind say of a walk, `probability` has its probabilities in words.
+//! - `dispersion` is what is said of a base of which nobody has said whether it is dispersive.
 //! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
@@ -30,6 +32,7 @@ mod conclusion;
 mod design;
 mod designed_samples;
 mod designed_words;
+pub(crate) mod dispersion;
 mod entry;
 pub(crate) mod evidence;
 pub(crate) mod finding;
@@ -37,6 +40,7 @@ pub(crate) mod left_out;
 mod pair;
 mod planned_walk;
 pub(crate) mod practice;
+mod probability;
 mod quantity;
 mod rule_notes;
 mod specification;

@@ -345,8 +345,13 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
 }
 
 /// Whether a rule that was made for these soils is kept; `None` where it has no result.
-fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
+}
+
+/// Whether a filter is coarser than any for which tests of Foster and Fell found no erosion.
+pub(super) fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
+    met_of(rules, TESTS_NO_EROSION) == Some(false)
 }
 
 /// 0 no erosion, 1 some or excessive, 2 continuing; `None` where it is undecided.

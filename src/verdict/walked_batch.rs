@@ -4,9 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
-use super::conclusion::probabilities;
+use super::practice::is_beyond_tests;
+use super::probability::probabilities;
 use crate::outcome::BaseSize;
-use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
+use crate::outcome::record::{
+    Bound, Confidence, IfDispersive, ModelLimit, Outcome, Ratios, Statistic, Verdict,
+};
 use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
 
@@ -96,12 +99,19 @@ pub struct SampleWalk {
     /// curve is no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
+    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
     /// The probability that a test would show no erosion, by the walk; `None` where evidence does not say.
     pub probability_no_erosion: Option<f64>,
     /// On which side of that number it lies, where the walk's boundary was not found.
     pub probability_bound: Option<Bound>,
-    /// The same probability by published tests alone.
+    /// The same probability by the published range of tests alone.
     pub probability_by_tests: Option<f64>,
+    /// Whether the filter is beyond the boundary of no erosion that tests saw.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub beyond_tests: bool,
 }
 
 impl SampleWalk {
@@ -121,9 +131,11 @@ impl SampleWalk {
             base: outcome.inputs.base_size(),
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
             curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
+            if_dispersive: outcome.if_dispersive,
             probability_no_erosion: evidence.and_then(|of| of.probability_no_erosion),
             probability_bound: evidence.and_then(|of| of.probability_no_erosion.and(of.bound)),
             probability_by_tests: evidence.and_then(|of| of.probability_by_tests),
+            beyond_tests: is_beyond_tests(&outcome.rules),
         }
     }
 
@@ -132,9 +144,10 @@ impl SampleWalk {
         if self.in_full { "in full" } else { "first look" }
     }
 
-    /// The probability of no erosion in a test, as `at least 93 % by the walk, 88 % by published tests`.
+    /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`.
     pub fn probability_in_words(&self) -> Option<String> {
-        probabilities(self.probability_no_erosion, self.probability_bound, self.probability_by_tests)
+        let of_walk = (self.probability_no_erosion, self.probability_bound);
+        probabilities(of_walk, self.probability_by_tests, self.beyond_tests)
     }
 }
 

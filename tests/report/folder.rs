@@ -290,6 +290,7 @@ pub fn outcome(replicates: u64) -> Outcome {
         }),
         curve_range: None,
         margin: None,
+        if_dispersive: None,
         evidence: None,
         arching: None,
         sensitivity: sensitivity.collect(),

@@ -9,6 +9,7 @@ use super::products::{PRODUCTS, Product, size_at};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
 use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, significant};
+use crate::outcome::record::IfDispersive;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 
 /// The whole of `specification.json`.
@@ -37,6 +38,10 @@ pub struct Specification {
     pub d15f_min_at_most: bool,
     /// Greatest D15F (mm) that is allowed; `None` where it is not known.
     pub d15f_max_mm: Option<f64>,
+    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
     /// The band; `None` where there is none.
     pub band: Option<SizeBand>,
     /// Why there is no band.

@@ -33,7 +33,7 @@ pub use inputs::{
     NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest};
-pub use practice::{LimitOfDesign, Practice, TestedClass};
+pub use practice::{IfDispersive, LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
@@ -76,6 +76,10 @@ pub struct Outcome {
     /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice: Option<Practice>,
+    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
     /// Where the constrictions come from; folders of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub constrictions: Option<ConstrictionsRecord>,

@@ -13,6 +13,17 @@ pub struct Practice {
     pub foster_fell: TestedClass,
 }
 
+/// What practice allows if a base is dispersive, of which nobody has said whether it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct IfDispersive {
+    /// The most that D15F (mm) may be then.
+    pub d15f_max_mm: f64,
+    /// Whether the true limit is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub at_most: bool,
+}
+
 /// What filter tests showed, by the boundaries of Foster and Fell.
 ///
 /// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between

@@ -42,8 +42,10 @@ fn verdict(outcome: &Outcome) -> Sheet {
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
     }
     if let Some(evidence) = &outcome.evidence {
-        sheet.item("Probability that a test shows no erosion", evidence.probability_no_erosion, "-");
-        sheet.item("The same by the range of tests alone", evidence.probability_by_tests, "-");
+        let what = "Probability that a test shows no erosion";
+        let by_range = format!("{what}, by the published range");
+        sheet.item(&by_range, evidence.probability_by_tests, "-");
+        sheet.item("The same by the walk", evidence.probability_no_erosion, "-");
     }
     for (index, finding) in outcome.findings.iter().enumerate() {
         sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");

@@ -70,6 +70,11 @@ impl Default for DesignOptions {
 }
 
 impl DesignOptions {
+    /// Whether the settings say that the base is dispersive, or that it is not.
+    pub(in crate::study) fn knows_dispersion(&self) -> bool {
+        self.scene_of("base.dispersive").is_some_and(|scene| scene.base.dispersive.is_some())
+    }
+
     /// Whether the settings say that the base is dispersive.
     pub(in crate::study) fn says_dispersive(&self) -> bool {
         self.scene_of("base.dispersive").is_some_and(|scene| scene.base.dispersive == Some(true))
@@ -174,6 +179,11 @@ mod tests {
         };
         assert!(of(&["base.dispersive=true"]) && of(&["base.cu=3", " base.dispersive = true "]));
         assert!(!of(&[]) && !of(&["base.dispersive=false"]));
+        let knows = |settings: &[&str]| {
+            let settings = settings.iter().map(ToString::to_string).collect();
+            DesignOptions { settings, ..DesignOptions::default() }.knows_dispersion()
+        };
+        assert!(!knows(&[]) && knows(&["base.dispersive=false"]) && knows(&["base.dispersive=true"]));
         // The last counts.
         assert!(!of(&["base.dispersive=true", "base.dispersive=false"]));
     }

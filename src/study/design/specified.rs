@@ -44,7 +44,7 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     no_filter_within(&options.base, &bases)?;
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
     let (dispersive, sieves) = (options.dispersive, options.sieves);
-    let specified = SpecificationOptions { dispersive, sieves, walked_mm: None };
+    let specified = SpecificationOptions { dispersive, sieves, ..SpecificationOptions::default() };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let specification = Specification { inches: options.inches, ..specification };
     let kind = FolderKind::Specification;

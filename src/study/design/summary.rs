@@ -125,8 +125,11 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
-    let answer = design_answer(&design, finest.as_ref());
+    let mut answer = design_answer(&design, finest.as_ref());
     let specification = specification(first, &design.base.name, &answer, options);
+    if let Some(said) = specification.as_ref().and_then(Specification::if_dispersive_in_words) {
+        answer.said += &format!(". {said}");
+    }
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
     Ok(Design { answer: Some(answer), warnings, specification, ..design })
@@ -143,6 +146,7 @@ fn specification(
     let given = row.stated.regraded_from.as_ref().map_or(&row.stated.gradation, |(given, _)| given);
     let specified = SpecificationOptions {
         dispersive: row.stated.scene.base.dispersive == Some(true),
+        is_dispersion_known: row.stated.scene.base.dispersive.is_some(),
         sieves: options.sieves,
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };

@@ -3,7 +3,7 @@
 use crate::gradation::{GRAVEL_MM, Gradation};
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
-use crate::outcome::record::AppliedRule;
+use crate::outcome::record::{AppliedRule, IfDispersive};
 use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply};
 use crate::verdict::practice::cited_rule;
 
@@ -72,4 +72,17 @@ impl ReadCurve {
 
 fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
     curve.points().into_iter().map(|(size, percent)| [size, percent]).collect()
+}
+
+/// What practice allows if a base of these curves is dispersive: the strictest of them; `None` where all have
+/// few fines.
+pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
+    let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
+    let of = |(_, base): &NamedCurve| {
+        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) });
+        IfDispersive::of(BaseSoil::of(base, false).fines_percent, &rules, ANY_D15F)
+    };
+    let all: Vec<IfDispersive> = bases.iter().filter_map(of).collect();
+    let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
+    Some(IfDispersive { at_most: all.iter().any(|of| of.at_most), ..*least })
 }

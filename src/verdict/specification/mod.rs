@@ -18,6 +18,8 @@ use steps::{Control, D15_OVER_D10, Found};
 pub struct SpecificationOptions {
     /// Whether the base is dispersive.
     pub dispersive: bool,
+    /// Whether somebody has said that it is dispersive, or that it is not.
+    pub is_dispersion_known: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
     /// Greatest D15F (mm) that the walk holds, where a base was walked.
@@ -49,6 +51,8 @@ impl Specification {
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
+        let is_open = !options.dispersive && !options.is_dispersion_known;
+        let if_dispersive = if is_open { curve::if_dispersive(bases) } else { None };
         let found = Found {
             walked_mm: options.walked_mm,
             read: &read,
@@ -70,6 +74,7 @@ impl Specification {
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
+            if_dispersive,
             limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
             products: margins((d15f_min, at_most), d15f_max, band.as_ref()),
             no_band,
@@ -102,6 +107,16 @@ impl Specification {
             rounded_up(least),
             rounded_down(greatest)
         ))
+    }
+}
+
+impl Specification {
+    /// What the greatest D15F is if the base is dispersive, in a sentence without its end; `None` where that
+    /// is the same, or somebody has said whether it is.
+    pub fn if_dispersive_in_words(&self) -> Option<String> {
+        let of =
+            self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
+        Some(format!("If the base is dispersive, which nobody has said: {}", of.words()))
     }
 }
 

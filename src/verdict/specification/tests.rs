@@ -174,3 +174,25 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
         }
     }
 }
+
+/// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive; with 25 % fines no source has a limit.
+#[test]
+fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
+    let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+    let said = |points: &[(f64, f64)], options| {
+        Specification::of("silt", &[("silt".into(), soil(points))], options).if_dispersive_in_words()
+    };
+    let nobody = SpecificationOptions::default();
+    let silty = said(&silt, nobody).unwrap();
+    assert_eq!(silty, "If the base is dispersive, which nobody has said: D15F up to 0.500 mm");
+    let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
+    assert!(
+        open.contains("nobody has said: a limit of D15F that is not known, and ")
+            && open.ends_with("or less")
+    );
+    // What is finer anyway, few fines, and what was said.
+    assert_eq!(said(&silt, SpecificationOptions { walked_mm: Some(0.4), ..nobody }), None);
+    assert_eq!(said(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], nobody), None);
+    assert_eq!(said(&silt, SpecificationOptions { dispersive: true, ..nobody }), None);
+    assert_eq!(said(&silt, SpecificationOptions { is_dispersion_known: true, ..nobody }), None);
+}

@@ -37,6 +37,7 @@ __all__ = [
     "Finding",
     "Fit",
     "GivenNetwork",
+    "IfDispersive",
     "Infiltration",
     "InfiltrationSize",
     "InputFile",
@@ -164,6 +165,24 @@ class Practice(TypedDict):
 
     design: LimitOfDesign
     foster_fell: Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"]
+
+
+class _IfDispersive(TypedDict):
+    d15f_max_mm: float
+
+
+class IfDispersive(_IfDispersive, total=False):
+    """What practice allows if a base is dispersive, of which nobody has said whether it is.
+
+    Keys
+    ----
+    d15f_max_mm
+        The most that D15F (mm) may be then.
+    at_most
+        Whether the true limit is not known, and is at most that.
+    """
+
+    at_most: bool
 
 
 class ConstrictionsRecord(TypedDict):
@@ -940,6 +959,7 @@ class Margin(TypedDict):
 class _Evidence(TypedDict):
     group: str
     soils: int
+    soils_without_boundary: int
     ratio_median: float
     ratio_low: float
     ratio_high: float
@@ -957,16 +977,20 @@ class Evidence(_Evidence, total=False):
     group
         Group of soils by fines after regrading and by D85B/D50B, and of filters by Cu.
     soils
-        Soils that it rests on.
+        Soils that the ratio rests on: those of which the walk has a boundary.
+    soils_without_boundary
+        Soils of the group of which the walk erodes in every filter; they have no ratio.
     ratio_median
-        Median over these soils of the walk's D15F of no erosion by that of tests.
+        Median over these soils of the walk's D15F of no erosion by the centre of the range of tests.
     ratio_low
         The ratio below which 5 % of the soils lie.
     ratio_high
         The ratio below which 95 % of the soils lie.
     narrow
-        Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, and that is at
-        most 1.
+        Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, that is at most
+        1, 95 % do not lie beyond the range of tests, and all this holds with any tenth of the soils left out.
+    range_of_tests_mm
+        The range in which tests of soils with such fines had their boundary, as D15F (mm).
     boundary_d15f_mm
         D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so; `None`
         where the group is not narrow, and it was not looked for.
@@ -974,11 +998,13 @@ class Evidence(_Evidence, total=False):
         The probability that a test of this pair would show no erosion, by the walk; `None` where the group is
         not narrow.
     probability_by_tests
-        The same by the range of tests alone: the part of it that lies beyond the filter's D15F.
+        The same by the range of tests alone: the part of it that lies beyond the filter's D15F, taken as
+        uniform in its logarithm.
     bound
         Where the walk's boundary was not found: on which side of its number, and of the probability, it lies.
     """
 
+    range_of_tests_mm: Optional[List[float]]
     bound: Optional[Literal["at_least", "at_most"]]
 
 
@@ -1149,6 +1175,9 @@ class Outcome(_Outcome, total=False):
         What folders of earlier versions say besides; now in `findings`.
     practice
         What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
+    if_dispersive
+        What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
+        it has few fines.
     constrictions
         Where the constrictions come from; folders of earlier versions do not say.
     seed
@@ -1214,6 +1243,7 @@ class Outcome(_Outcome, total=False):
 
     notes: List[str]
     practice: Optional[Practice]
+    if_dispersive: Optional[IfDispersive]
     constrictions: Optional[ConstrictionsRecord]
     stopping: Optional[Stopping]
     pan_bounds: Optional[PanBounds]
@@ -1872,6 +1902,9 @@ class Specification(_Specification, total=False):
         Whether the true least is not known, and is at most that.
     d15f_max_mm
         Greatest D15F (mm) that is allowed; `None` where it is not known.
+    if_dispersive
+        What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
+        it has few fines.
     band
         The band; `None` where there is none.
     no_band
@@ -1884,6 +1917,7 @@ class Specification(_Specification, total=False):
 
     inches: bool
     d15f_min_at_most: bool
+    if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
 
 

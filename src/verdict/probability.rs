@@ -1,0 +1,85 @@
+//! The probability that a test would show no erosion, in words.
+
+use crate::outcome::record::Bound;
+
+/// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
+const WALK_SURE: f64 = 0.025;
+
+/// Said of the one number that stands alone.
+const LOWER: &str = "the lower of two; beyond the D15F for which tests saw no erosion";
+
+/// A probability of no erosion in percent: at its caps it may be any less or more.
+fn probability_in_words(probability: f64, bound: Option<Bound>) -> String {
+    let shown = format!("{:.0} %", 100.0 * probability);
+    let (is_most, is_least) = (probability >= 1.0 - WALK_SURE, probability <= WALK_SURE);
+    match bound {
+        Some(Bound::AtMost) if !is_least => format!("at most {shown}"),
+        Some(Bound::AtLeast) if !is_most => format!("at least {shown}"),
+        _ if is_most => format!("{shown} or more"),
+        _ if is_least => format!("{shown} or less"),
+        _ => shown,
+    }
+}
+
+/// The probability that a test would show no erosion, in words: by the published range, and by the walk with
+/// its bound; beyond the boundary that tests saw the lower of the two alone, where their order is known.
+pub fn probabilities(
+    (by_walk, bound): (Option<f64>, Option<Bound>),
+    by_tests: Option<f64>,
+    is_beyond_tests: bool,
+) -> Option<String> {
+    let of_walk = by_walk.map(|of| (of, format!("{} by the walk", probability_in_words(of, bound))));
+    let of_tests = |of: f64| (of, format!("{} by the published range", probability_in_words(of, None)));
+    let mut each: Vec<(f64, String)> = by_tests.map(of_tests).into_iter().chain(of_walk).collect();
+    if is_beyond_tests && let [(by_tests, _), (by_walk, _)] = each[..] {
+        let is_walk = by_walk < by_tests;
+        // A bound on the far side leaves open which of the two is the lower.
+        let is_open = bound == Some(if is_walk { Bound::AtLeast } else { Bound::AtMost });
+        if !is_open {
+            let (_, lower) = each.swap_remove(usize::from(is_walk));
+            return Some(format!("{lower} ({LOWER})"));
+        }
+    }
+    let each: Vec<String> = each.into_iter().map(|(_, said)| said).collect();
+    (!each.is_empty()).then(|| each.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beyond_the_boundary_of_tests_the_lower_probability_stands_alone() {
+        let said = |walk, tests, beyond| probabilities((walk, None), tests, beyond).unwrap();
+        assert_eq!(said(Some(0.9), Some(0.6), false), "60 % by the published range, 90 % by the walk");
+        let lower =
+            |of: &str| format!("{of} (the lower of two; beyond the D15F for which tests saw no erosion)");
+        assert_eq!(said(Some(0.9), Some(0.6), true), lower("60 % by the published range"));
+        assert_eq!(said(Some(0.3), Some(0.6), true), lower("30 % by the walk"));
+        assert_eq!(said(None, Some(0.6), true), "60 % by the published range");
+        assert_eq!(probabilities((None, None), None, false), None);
+    }
+
+    #[test]
+    fn a_bound_that_leaves_the_order_open_leaves_both() {
+        let said = |walk, bound| probabilities((Some(walk), Some(bound)), Some(0.6), true).unwrap();
+        assert_eq!(said(0.9, Bound::AtMost), "60 % by the published range, at most 90 % by the walk");
+        assert_eq!(said(0.3, Bound::AtLeast), "60 % by the published range, at least 30 % by the walk");
+        assert!(said(0.3, Bound::AtMost).starts_with("at most 30 % by the walk (the lower of two; "));
+        assert!(said(0.9, Bound::AtLeast).starts_with("60 % by the published range (the lower of two; "));
+    }
+
+    #[test]
+    fn a_probability_at_its_cap_is_no_value() {
+        let said = probability_in_words;
+        assert_eq!(
+            [0.98, 0.975, 0.02, 0.025].map(|of| said(of, None)),
+            ["98 % or more", "98 % or more", "2 % or less", "2 % or less"]
+        );
+        assert_eq!(said(0.27, None), "27 %");
+        assert_eq!(said(0.93, Some(Bound::AtLeast)), "at least 93 %");
+        assert_eq!(said(0.975, Some(Bound::AtLeast)), "98 % or more");
+        assert_eq!(said(0.975, Some(Bound::AtMost)), "at most 98 %");
+        assert_eq!(said(0.02, Some(Bound::AtMost)), "2 % or less");
+    }
+}
