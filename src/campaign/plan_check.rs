@@ -9,6 +9,7 @@ use super::cases::{FailedCase, named, wanted};
 use super::plan::{CampaignPlan, PlannedCase};
 use super::run::{CampaignOptions, have_common_seeds, rooms};
 use crate::case::{Case, PackingPlan};
+use crate::run::at_once::CasesAtOnce;
 use crate::run::error::RunError;
 use crate::run::machine::threads;
 use crate::run::planned::runs_to_walk;
@@ -37,6 +38,10 @@ pub struct PlanCheck {
     pub core_seconds: f64,
     /// Memory of the largest case (bytes).
     pub bytes: u64,
+    /// Cases that this machine walks at the same time.
+    pub cases_at_once: u64,
+    /// Memory that the program takes then (bytes).
+    pub bytes_at_once: u64,
     /// Memory that a case may take (bytes).
     pub bytes_allowed: u64,
 }
@@ -113,17 +118,19 @@ pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Plan
                     core_seconds: case.core_seconds_here(),
                     ..none
                 };
-                (check, packing)
+                (check, Some((case, packing)))
             }
         }
     };
     let looked: Vec<_> = pool.install(|| wanted.into_par_iter().map(of).collect());
     let mut packings: BTreeMap<String, PackingPlan> = BTreeMap::new();
-    for packing in looked.iter().filter_map(|(_, packing)| packing.as_ref()) {
+    for packing in looked.iter().filter_map(|(_, of)| of.as_ref()?.1.as_ref()) {
         packings.entry(packing.fingerprint()).or_insert_with(|| packing.clone());
     }
     let is_missing = |packing: &&PackingPlan| matches!(options.packed(packing), Ok(None));
     let missing: Vec<&PackingPlan> = packings.values().filter(is_missing).collect();
+    let sound: Vec<&Case> = looked.iter().filter_map(|(_, of)| Some(&of.as_ref()?.0)).collect();
+    let at_once = CasesAtOnce::here(&sound, workers);
     let cases: Vec<CaseCheck> = looked.into_iter().map(|(case, _)| case).collect();
     Ok(PlanCheck {
         plan: plan.file.clone(),
@@ -134,6 +141,8 @@ pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Plan
         packing_core_seconds: missing.iter().map(|packing| packing.core_seconds_here()).sum(),
         core_seconds: cases.iter().map(|case| case.core_seconds).sum(),
         bytes: cases.iter().map(|case| case.bytes).max().unwrap_or(0),
+        cases_at_once: at_once.cases,
+        bytes_at_once: at_once.bytes,
         bytes_allowed: limits.memory,
         cases,
     })
@@ -158,6 +167,9 @@ mod tests {
         assert_eq!((thin.runs_to_walk, check.packings), (6, 0));
         assert!(gone.problem.contains("nowhere.csv") && gone.n_base == 0, "{gone:?}");
         assert_eq!(check.bytes, thick.bytes);
+        // Two cases at most, and the program itself.
+        assert!((1..=2).contains(&check.cases_at_once), "{check:?}");
+        assert!(check.bytes_at_once > check.cases_at_once * thin.bytes + 100_000_000, "{check:?}");
         let refusal = check.refusal().unwrap();
         assert!(refusal.to_string().starts_with("case gone: "), "{refusal}");
         assert_eq!(refusal.exit().code(), 2);

@@ -19,13 +19,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::cases::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
+use crate::case::Case;
 use crate::outcome::ledger::{LedgerLine, Made};
+use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
-use crate::run::cost;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
-use crate::run::machine::Machine;
 use crate::run::other_walks::OtherWalks;
 use crate::run::planned;
 use crate::run::replicates::{self, ReplicateContext};
@@ -181,6 +181,8 @@ impl CaseRunner<'_> {
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
         // One pool for all: where a case leaves a thread idle, another case has work for it.
+        // A thread that waits in a call of rayon may take up a whole other case meanwhile: across such a call
+        // nobody holds a mutex, waits for the lock of a file or borrows what is local to a thread.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
         let work = || -> Result<(), RunError> {
             while !self.is_stopped() {
@@ -198,8 +200,10 @@ impl CaseRunner<'_> {
             }
             Ok(())
         };
+        let cases: Vec<&Case> = open.iter().map(|prepared| &prepared.case).collect();
+        let at_once = CasesAtOnce::here(&cases, self.threads as u64).cases;
         std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..side_by_side(open, self.threads)).map(|_| scope.spawn(work)).collect();
+            let workers: Vec<_> = (0..at_once).map(|_| scope.spawn(work)).collect();
             workers.into_iter().try_for_each(|worker| worker.join().unwrap_or(Ok(())))
         })
     }
@@ -305,17 +309,6 @@ impl CaseRunner<'_> {
         (self.callbacks.on_case)(name, CaseEvent::Done(&line));
         Ok(true)
     }
-}
-
-/// Cases walked at the same time: as many as keep the threads busy, and fit into the memory.
-fn side_by_side(open: &[&PreparedCase], threads: usize) -> usize {
-    let cases = || open.iter().map(|prepared| &prepared.case);
-    let fewest = cases().map(|case| case.scene.walk.replicates).min().unwrap_or(1);
-    let wanted = cost::cases_at_once(threads as u64, fewest, open.len()) as usize;
-    let largest = cases().map(|case| case.peak_bytes(threads as u64)).max().unwrap_or(0);
-    let allowed = cases().map(|case| case.memory).min().unwrap_or(u64::MAX);
-    let room = allowed.min(Machine::here().available / 2) / largest.max(1);
-    wanted.min(usize::try_from(room).unwrap_or(usize::MAX).max(1))
 }
 
 /// What a panic says.

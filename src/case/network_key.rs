@@ -26,15 +26,18 @@ impl Case {
         Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))
     }
 
-    /// About the bytes of one of its networks, with the exits that its first runs begin with.
-    pub fn shared_network_bytes(&self) -> u64 {
+    /// About the bytes of one of its networks, and of the exits that first runs on it may begin with, be they
+    /// of this case or of another with the network.
+    pub fn shared_network_bytes(&self) -> [u64; 2] {
         let [voids, constrictions, ..] = self.counts;
-        let exits = if self.begins_with_plain_exits() { EXIT_BYTES } else { [0; 2] };
-        let of_voids = voids.saturating_mul(BYTES[0] + exits[0]);
-        of_voids.saturating_add(constrictions.saturating_mul(BYTES[1] + exits[1]))
+        let bytes = |[of_void, of_constriction]: [u64; 2]| {
+            voids.saturating_mul(of_void).saturating_add(constrictions.saturating_mul(of_constriction))
+        };
+        let exits = if self.scene.is_lattice_by_area() { EXIT_BYTES } else { [0; 2] };
+        [bytes(BYTES), bytes(exits)]
     }
 
-    /// Whether its first runs begin with exits that hang on the network alone, and passive particles take
+    /// Whether its first runs begin with exits that depend on the network alone, and passive particles take
     /// them.
     pub fn begins_with_plain_exits(&self) -> bool {
         let scene = &self.scene;

@@ -109,7 +109,8 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
     let _ = writeln!(text, "{}", left_out_in_brief(&ledger::leaves_out(lines)));
     let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();
     let page = shown(&out.join("report.html"));
-    let _ = writeln!(text, "{} cases, {seconds:.1} s of walks; report: {page}", lines.len());
+    let time = format!("{seconds:.1} s from start to end of each, beside other cases");
+    let _ = writeln!(text, "{} cases, {time}; report: {page}", lines.len());
     text
 }
 

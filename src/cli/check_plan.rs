@@ -68,7 +68,13 @@ fn words(check: &PlanCheck) -> String {
     line("to walk", format!("{} runs", count(runs)));
     line(
         "memory",
-        format!("{} for the largest case, of {}", in_words(check.bytes), in_words(check.bytes_allowed)),
+        format!(
+            "{} for the largest case, {} for as many cases as are walked at once ({}), of {}",
+            in_words(check.bytes),
+            in_words(check.bytes_at_once),
+            check.cases_at_once,
+            in_words(check.bytes_allowed)
+        ),
     );
     if check.packings > 0 {
         let made = check.packings - check.packings_to_make;

@@ -122,6 +122,7 @@ impl SizeGuide {
     /// A segment that is no coarser than that of a word, and close to it.
     #[inline(always)]
     fn start(&self, word: u64) -> usize {
+        debug_assert!(word >= self.first, "a word below the first of the guide");
         self.segment[((word - self.first) >> self.shift) as usize] as usize
     }
 }
@@ -201,10 +202,10 @@ impl SizeSampler {
         self.fill_guided(&self.guide, words, out);
     }
 
-    /// The same with a guide of these words.
+    /// The same with a guide of these words; the caller sees to it that none is below the guide's first.
     ///
     /// # Panics
-    /// As [`SizeSampler::fill`], and if a word is below the first of the guide.
+    /// As [`SizeSampler::fill`]; with debug assertions if a word is below the first of the guide.
     #[inline(always)]
     pub(crate) fn fill_guided(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");

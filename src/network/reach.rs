@@ -91,7 +91,7 @@ impl Network {
     }
 
     /// Voids from which constrictions that `passable` admits lead to any of `those`, which are among them.
-    pub fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
+    pub(crate) fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leads = vec![false; self.voids()];
         let mut stack = those;
         stack.iter().for_each(|&void| leads[void as usize] = true);

@@ -136,7 +136,8 @@ pub struct Made {
     pub job: Option<String>,
     /// When the case began (RFC 3339).
     pub started: String,
-    /// Wall time, s.
+    /// Wall time from the start of the case to its end, s. Cases that are walked beside it on the same
+    /// threads take a part of it.
     pub seconds: f64,
 }
 

@@ -169,7 +169,8 @@ fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     html! {
         p {
             "Plan " bdi { (clean(&about.plan)) } ", voidwalk " (versions.join(", ")) ", " (duration(seconds))
-            " of walks. Each case has a folder of its own with its report; " code { "ledger.jsonl" }
+            " from start to end of each case, beside other cases. Each case has a folder of its own with its \
+             report; " code { "ledger.jsonl" }
             " holds one line per case, " code { "cases.csv" } " the table above."
         }
     }

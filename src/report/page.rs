@@ -404,7 +404,7 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("Engine", &outcome.engine))
             (fact("Command", &manifest.command))
             (fact("Started, finished", format!("{}, {}", manifest.started, manifest.finished)))
-            (fact("Wall time", duration(outcome.seconds)))
+            (fact("Wall time, beside what else ran", duration(outcome.seconds)))
             (fact("Machine",
                 format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
             @for input in &manifest.inputs {

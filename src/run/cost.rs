@@ -386,23 +386,6 @@ pub fn seconds_on(case: &Case, threads: u64) -> f64 {
     case.core_seconds() / (threads as f64 * BUSY)
 }
 
-/// Of so many cases, how many a process walks at the same time, memory aside, where each has so many
-/// replicates and more: as many as give each thread a replicate, and one for the threads that wait for the
-/// last replicate or the page of another.
-pub fn cases_at_once(threads: u64, replicates: u64, cases: usize) -> u64 {
-    let other = u64::from(threads > 1);
-    (threads.div_ceil(replicates.max(1)) + other).clamp(1, cases.max(1) as u64)
-}
-
-/// Bytes that a process takes which walks these cases on so many threads, its walks no more than `allowed`.
-pub fn bytes_of_cases(cases: &[&Case], threads: u64, allowed: Option<u64>) -> u64 {
-    let fewest = cases.iter().map(|case| case.scene.walk.replicates).min().unwrap_or(1);
-    let side_by_side = cases_at_once(threads, fewest, cases.len());
-    let largest = cases.iter().map(|case| case.peak_bytes(threads)).max().unwrap_or(0);
-    let walks = largest.saturating_mul(side_by_side).min(allowed.unwrap_or(u64::MAX));
-    cases.iter().map(|case| case.program_bytes(walks)).max().unwrap_or(walks)
-}
-
 /// Seconds and bytes that collecting so many cases takes, `measuring_s` for the packing of each.
 pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
     let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
@@ -442,13 +425,6 @@ mod tests {
         assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
         let here = seconds * pace(small_packing_seconds(), SMALL_PACKING_S);
         assert_eq!(plan.core_seconds_here(), here);
-    }
-
-    #[test]
-    fn one_thread_walks_one_case_and_several_have_one_to_spare() {
-        let of = |threads, replicates, cases| cases_at_once(threads, replicates, cases);
-        assert_eq!([of(1, 5, 9), of(2, 5, 9), of(2, 1, 9), of(64, 10, 99)], [1, 2, 3, 8]);
-        assert_eq!([of(2, 5, 1), of(64, 1, 7), of(2, 0, 0)], [1, 7, 1]);
     }
 
     #[test]

@@ -67,4 +67,29 @@ mod tests {
             }
         }
     }
+
+    /// Where particles arch, or leave openings, who goes where depends on more than the network.
+    #[test]
+    fn known_exits_are_left_alone_where_others_are_needed() {
+        for (other, engines) in [
+            ("walk.arching=zuriguel-2005", ["engine=counts", "engine=expected"]),
+            ("walk.blocked=open", ["engine=auto", "engine=particles"]),
+        ] {
+            for engine in engines {
+                let small = ["network.nx=8", "network.ny=8", "network.nz=10", "base.n_base=30000"];
+                let settings: Vec<String> =
+                    small.iter().chain(&[other, engine]).map(ToString::to_string).collect();
+                let case = Case::new(Scene::built_in(&settings).unwrap()).unwrap();
+                assert!(!case.begins_with_plain_exits());
+                let network = case.network(5).unwrap();
+                let known = UnblockedExits::new(&network);
+                let [a, b] = [None, Some(&known)].map(|open| {
+                    let clogged = Clogged::none(&network);
+                    eroded(&case, (&network, open), (5, 1), clogged, &Callbacks::default()).unwrap()
+                });
+                assert_eq!(a.0.mass_fraction.to_bits(), b.0.mass_fraction.to_bits(), "{other} {engine}");
+                assert_eq!(a.1.blocked, b.1.blocked, "{other} {engine}");
+            }
+        }
+    }
 }

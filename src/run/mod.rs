@@ -12,6 +12,7 @@
 //! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
 
 pub(crate) mod allocation;
+pub(crate) mod at_once;
 pub(crate) mod callbacks;
 mod check;
 pub(crate) mod checkpoints;

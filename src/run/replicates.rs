@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
@@ -47,10 +46,10 @@ impl ReplicateContext<'_> {
         (self.callbacks.on_event)(event);
     }
 
-    fn network(&self, case: &Case, seed: u64) -> Result<Arc<NetworkToWalk>, NetworkError> {
+    fn network(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         match self.networks {
             Some(shared) => shared.get(case, seed),
-            None => Ok(Arc::new(NetworkToWalk { network: case.network(seed)?, open: None })),
+            None => case.network(seed).map(NetworkToWalk::own),
         }
     }
 }
@@ -170,7 +169,7 @@ pub(super) fn walk_replicate(
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
     let to_walk = context.network(case, seed)?;
-    let NetworkToWalk { network, open } = &*to_walk;
+    let network = &*to_walk.network;
     let mut clogged = Clogged::none(network);
     let first = plan(case, network, &clogged.blocked, n_base);
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
@@ -182,6 +181,7 @@ pub(super) fn walk_replicate(
         done.runs.iter().for_each(|_| context.tell(Event::RunDone));
         done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
     }
+    let open = if done.complete { None } else { to_walk.exits(case) };
     while !done.complete {
         let of = RunId {
             replicate,
@@ -190,7 +190,7 @@ pub(super) fn walk_replicate(
             pan_fraction: case.pan_by_mass_only(),
         };
         let begun = Instant::now();
-        let walk = RunContext { case, network, open: open.as_ref(), id, of };
+        let walk = RunContext { case, network, open, id, of };
         let (state, network, flow) = walk.run(clogged, &mut done, saved.take(), context)?;
         let seconds = begun.elapsed().as_secs_f64();
         let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
@@ -424,5 +424,47 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
         blocked_fraction: of(|r| r.blocked_fraction),
         blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
         backbone_fraction: of(|r| r.backbone_fraction),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// The figures and rows of a replicate, times apart.
+    fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
+        let context = ReplicateContext { callbacks: &Callbacks::default(), checkpoints: None, networks };
+        let mut walked = walk_replicate(case, 0, 1, case.n_base, &context).unwrap();
+        walked.replicate.runs.iter_mut().for_each(|run| run.seconds = 0.0);
+        assert_eq!(walked.replicate.runs.len(), 2);
+        format!("{:?} {:?}", walked.replicate, walked.recorded)
+    }
+
+    /// Without kept exits, with those that the case has just worked out, and with those that another case
+    /// left: to the bit.
+    #[test]
+    fn a_replicate_is_the_same_whichever_case_has_left_its_network() {
+        let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
+        for engine in ["engine=counts", "engine=expected"] {
+            let case = |more: &[&str]| {
+                let settings: Vec<String> =
+                    small.iter().chain(&[engine]).chain(more).map(ToString::to_string).collect();
+                Case::new(Scene::built_in(&settings).unwrap()).unwrap()
+            };
+            let (before, of) = (case(&["base.cu=3", "replicates=1"]), case(&["base.n_base=30000"]));
+            let (shared, seed) = (SharedNetworks::new(1 << 27), replicate_seed(of.scene.walk.seed, 1));
+            let exits_of = |case: &Case| {
+                let found = shared.get(case, seed).unwrap();
+                found.exits(case).map(|exits| std::ptr::from_ref(exits) as usize).unwrap()
+            };
+            walked(&before, Some(&shared));
+            let left = exits_of(&before);
+            let alone = walked(&of, None);
+            assert_eq!(walked(&of, Some(&shared)), alone, "{engine}: left by another");
+            assert_eq!(exits_of(&of), left);
+            assert_eq!(walked(&of, Some(&SharedNetworks::new(1 << 27))), alone, "{engine}: its own");
+            assert_eq!(walked(&of, Some(&SharedNetworks::new(0))), alone, "{engine}: no room");
+        }
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! Cases with one seed draw their networks from the same random numbers; where nothing that makes a network
 //! differs, it is the same network, and one of them is enough. The bits are those of networks that each case
-//! builds for itself. With a network stay the exits that its first runs begin with.
+//! builds for itself. With a network stay the exits that first runs begin with, as far as there is room.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::case::Case;
 use crate::network::{Network, NetworkError};
@@ -16,17 +16,57 @@ use crate::walk::UnblockedExits;
 const MOST_BYTES: u64 = 1 << 27;
 const PART: u64 = 16;
 
-/// A network, and where nothing of it is blocked, which exits draws pick, as far as somebody keeps both.
+/// Which exits draws pick on a network of which nothing is blocked, once a case has worked them out.
+type KeptExits = Arc<OnceLock<UnblockedExits>>;
+
+/// A network to walk, and its exits as far as somebody keeps them.
 pub struct NetworkToWalk {
     /// The network.
-    pub network: Network,
-    /// Its exits.
-    pub open: Option<UnblockedExits>,
+    pub network: Arc<Network>,
+    exits: Option<KeptExits>,
+}
+
+impl NetworkToWalk {
+    /// A network that nobody keeps.
+    pub fn own(network: Network) -> Self {
+        Self { network: Arc::new(network), exits: None }
+    }
+
+    /// The exits that the first run of a case begins with: worked out by the first case that asks. `None`
+    /// where nobody keeps them, or the case begins with others.
+    pub fn exits(&self, case: &Case) -> Option<&UnblockedExits> {
+        let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
+        if kept.get().is_none() {
+            // Nobody waits here: two that work them out find the same bits.
+            let _ = kept.set(UnblockedExits::new(&self.network));
+        }
+        kept.get()
+    }
+}
+
+/// A network that is kept.
+struct KeptNetwork {
+    key: u128,
+    network: Arc<Network>,
+    exits: Option<KeptExits>,
+    /// Bytes of the network and of its exits.
+    bytes: [u64; 2],
+}
+
+impl KeptNetwork {
+    fn bytes(&self) -> u64 {
+        let [network, exits] = self.bytes;
+        network.saturating_add(if self.exits.is_some() { exits } else { 0 })
+    }
+
+    fn to_walk(&self) -> NetworkToWalk {
+        NetworkToWalk { network: self.network.clone(), exits: self.exits.clone() }
+    }
 }
 
 /// Networks by what makes them.
 pub struct SharedNetworks {
-    kept: Mutex<VecDeque<(u128, Arc<NetworkToWalk>)>>,
+    kept: Mutex<VecDeque<KeptNetwork>>,
     most_bytes: u64,
 }
 
@@ -36,7 +76,8 @@ impl SharedNetworks {
         MOST_BYTES.min(memory / PART)
     }
 
-    /// Keeps none yet, and never more than so many bytes; the network that was kept first goes first.
+    /// Keeps none yet, and never more than so many bytes. Exits go before networks, and what was kept first
+    /// goes first.
     pub fn new(most_bytes: u64) -> Self {
         Self { kept: Mutex::default(), most_bytes }
     }
@@ -45,32 +86,43 @@ impl SharedNetworks {
     ///
     /// # Errors
     /// As [`Case::network`].
-    pub fn get(&self, case: &Case, seed: u64) -> Result<Arc<NetworkToWalk>, NetworkError> {
+    pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         let Some(key) = case.network_key(seed) else {
-            return Ok(Arc::new(NetworkToWalk { network: case.network(seed)?, open: None }));
+            return Ok(NetworkToWalk::own(case.network(seed)?));
         };
-        if let Some(network) = self.find(key) {
-            return Ok(network);
+        if let Some(found) = self.find(key) {
+            return Ok(found);
         }
         // Others are found meanwhile; two that build the same one build the same bits.
-        let network = case.network(seed)?;
-        let open = case.begins_with_plain_exits().then(|| UnblockedExits::new(&network));
-        let found = Arc::new(NetworkToWalk { network, open });
-        let most = (self.most_bytes / case.shared_network_bytes().max(1)) as usize;
-        if let Ok(mut kept) = self.kept.lock() {
-            if kept.iter().all(|(other, _)| *other != key) {
-                kept.push_back((key, found.clone()));
-            }
-            while kept.len() > most {
-                kept.pop_front();
-            }
-        }
-        Ok(found)
+        let network = Arc::new(case.network(seed)?);
+        let bytes = case.shared_network_bytes();
+        let exits = (bytes[1] > 0).then(KeptExits::default);
+        self.keep(KeptNetwork { key, network: network.clone(), exits, bytes });
+        Ok(self.find(key).unwrap_or(NetworkToWalk { network, exits: None }))
     }
 
-    fn find(&self, key: u128) -> Option<Arc<NetworkToWalk>> {
+    fn keep(&self, new: KeptNetwork) {
+        let Ok(mut kept) = self.kept.lock() else { return };
+        if kept.iter().any(|other| other.key == new.key) {
+            return;
+        }
+        kept.push_back(new);
+        let mut bytes = kept.iter().map(KeptNetwork::bytes).fold(0, u64::saturating_add);
+        for of in kept.iter_mut() {
+            if bytes > self.most_bytes && of.exits.take().is_some() {
+                bytes -= of.bytes[1];
+            }
+        }
+        while bytes > self.most_bytes
+            && let Some(first) = kept.pop_front()
+        {
+            bytes -= first.bytes();
+        }
+    }
+
+    fn find(&self, key: u128) -> Option<NetworkToWalk> {
         let kept = self.kept.lock().ok()?;
-        kept.iter().find(|(other, _)| *other == key).map(|(_, network)| network.clone())
+        kept.iter().find(|other| other.key == key).map(KeptNetwork::to_walk)
     }
 }
 
@@ -89,11 +141,11 @@ mod tests {
     fn what_makes_no_network_shares_it_and_what_makes_one_does_not() {
         let shared = SharedNetworks::new(MOST_BYTES);
         let own = case(&[]);
-        let network = shared.get(&own, 5).unwrap();
-        assert_eq!(network.network.fingerprint(), own.network(5).unwrap().fingerprint());
+        let network = shared.get(&own, 5).unwrap().network;
+        assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
         for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
         {
-            assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap()), "{same:?}");
+            assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap().network), "{same:?}");
         }
         for other in [
             vec!["network.nx=7"],
@@ -103,37 +155,59 @@ mod tests {
             vec!["filter.d0_mm=2"],
         ] {
             let (other, name) = (case(&other), other);
-            let found = shared.get(&other, 5).unwrap();
+            let found = shared.get(&other, 5).unwrap().network;
             assert!(!Arc::ptr_eq(&network, &found), "{name:?}");
-            assert_eq!(found.network.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+            assert_eq!(found.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
         }
-        assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap()));
+        assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap().network));
     }
 
-    /// Exits are worked out only where first runs begin with them.
+    /// Exits are worked out only where first runs begin with them, whichever case the network was built for.
     #[test]
     fn exits_stay_with_the_networks_whose_walks_take_them() {
         let shared = SharedNetworks::new(MOST_BYTES);
-        let has_exits = |set: &[&str]| shared.get(&case(set), 5).unwrap().open.is_some();
-        assert!(has_exits(&["engine=expected"]));
-        for without in [
-            vec!["engine=particles"],
-            vec!["engine=expected", "network.connectivity=table3"],
-            vec!["walk.exit=flux"],
-        ] {
-            let other = SharedNetworks::new(MOST_BYTES);
-            assert!(other.get(&case(&without), 5).unwrap().open.is_none(), "{without:?}");
+        let exits_of = |set: &[&str]| {
+            let (case, mut at) = (case(set), None);
+            let found = shared.get(&case, 5).unwrap();
+            let has_some = found.exits(&case).inspect(|exits| at = Some(std::ptr::from_ref(*exits) as usize));
+            assert_eq!(has_some.is_some(), case.begins_with_plain_exits(), "{set:?}");
+            at
+        };
+        for without in [vec!["engine=particles"], vec!["network.connectivity=table3"], vec!["walk.exit=flux"]]
+        {
+            assert_eq!(exits_of(&without), None, "{without:?}");
         }
+        let first = exits_of(&["engine=expected"]);
+        assert!(first.is_some() && exits_of(&["engine=counts", "base.cu=3"]) == first);
     }
 
     #[test]
-    fn no_more_are_kept_than_there_is_room_for() {
-        let case = case(&[]);
-        let shared = SharedNetworks::new(7 * case.shared_network_bytes());
-        for seed in 0..9 {
-            shared.get(&case, seed).unwrap();
-        }
-        assert_eq!(shared.kept.lock().unwrap().len(), 7);
+    fn exits_go_before_networks_and_the_oldest_first() {
+        let case = case(&["engine=expected"]);
+        let [network, exits] = case.shared_network_bytes();
+        assert!(exits > network && network > 0);
+        let kept = |most: u64, seeds: u64| {
+            let shared = SharedNetworks::new(most);
+            for seed in 0..seeds {
+                let has_room = network + exits <= most && most >= seeds * network + exits;
+                let of = shared.get(&case, seed).unwrap();
+                assert!(!has_room || of.exits(&case).is_some());
+            }
+            let kept = shared.kept.lock().unwrap();
+            let bytes: u64 = kept.iter().map(KeptNetwork::bytes).sum();
+            assert!(bytes <= most);
+            let shown: String = kept.iter().map(|of| if of.exits.is_some() { '+' } else { '-' }).collect();
+            (shown, kept.iter().map(|of| of.key).collect::<Vec<_>>())
+        };
+        assert_eq!(kept(3 * (network + exits), 3).0, "+++");
+        assert_eq!(kept(3 * (network + exits), 4).0, "--++");
+        assert_eq!(kept(7 * network, 7).0, "-------");
+        let (shown, keys) = kept(7 * network, 9);
+        assert_eq!((shown.as_str(), keys[0]), ("-------", case.network_key(2).unwrap()));
+        // None where none has room, and no exits are worked out for nobody.
+        assert_eq!(kept(network - 1, 2).0, "");
+        let none = SharedNetworks::new(0).get(&case, 1).unwrap();
+        assert!(none.exits(&case).is_none());
         assert_eq!((SharedNetworks::bytes(1 << 40), SharedNetworks::bytes(160)), (MOST_BYTES, 10));
     }
 }

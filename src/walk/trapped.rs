@@ -41,7 +41,7 @@ impl Search {
             stack: Vec::new(),
             way_out: vec![false; voids],
             known: None,
-            hint: 0,
+            hint: usize::MAX,
             stops_from: arching.map_or(1.0, Arching::stops_alone),
         }
     }
@@ -51,7 +51,8 @@ impl Search {
         let chunks = state.particles.live.len();
         let mut trapped = HashSet::new();
         // The last that were inserted first: those that are trapped stay, and lie in front.
-        for chunk in (0..=self.hint).rev().chain((self.hint + 1..chunks).rev()).filter(|&c| c < chunks) {
+        let hint = self.hint.min(chunks.saturating_sub(1));
+        for chunk in (0..chunks.min(hint + 1)).rev().chain((hint + 1..chunks).rev()) {
             let (void, diameter) = state.particles.chunk(chunk);
             for (&void, &diameter) in void.iter().zip(diameter).rev() {
                 // Passive particles fit everywhere: what holds for one holds for all.

@@ -9,6 +9,7 @@ use crate::campaign::cases::{CasePart, Drafts, PreparedCase, named, wanted};
 use crate::campaign::plan::CampaignPlan;
 use crate::campaign::run::CampaignOptions;
 use crate::case::{Case, CaseError, PackedFilter};
+use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::Callbacks;
 use crate::run::cost;
 use crate::run::error::RunError;
@@ -91,7 +92,7 @@ pub fn write_job_scripts(
         let of_bundle: Vec<&Case> = bundle.iter().map(|case| &cases[*case].case).collect();
         written.walk = written.walk.or_more(TaskNeeds {
             seconds: bundle.iter().map(|case| seconds[*case] + measuring_s).sum(),
-            bytes: cost::bytes_of_cases(&of_bundle, processors, options.memory).max(packing_needs.bytes),
+            bytes: CasesAtOnce::of_job(&of_bundle, processors).bytes.max(packing_needs.bytes),
         });
     }
     let collecting = cost::collecting(plan.cases.len(), measuring_s);

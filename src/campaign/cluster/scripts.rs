@@ -6,13 +6,14 @@
 use std::path::{Path, PathBuf};
 
 use super::tasks;
+use crate::run::at_once::MEMORY_MARGIN;
 use crate::run::cost::duration;
 
 /// Folder of the scripts and logs, inside the campaign's.
 pub const FOLDER: &str = "slurm";
 
-/// Asked for by this factor more than estimated: memory, time.
-const MARGIN: (f64, f64) = (1.5, 4.0);
+/// Asked for by this factor more than estimated: time.
+const TIME_MARGIN: f64 = 4.0;
 
 /// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt
 /// (minutes).
@@ -38,13 +39,13 @@ impl TaskNeeds {
 
     /// Minutes to ask for.
     pub fn minutes(&self) -> u64 {
-        let minutes = (MARGIN.1 * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
+        let minutes = (TIME_MARGIN * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
         (minutes.div_ceil(5) * 5).min(LONGEST_MIN)
     }
 
     /// Megabytes (2^20 bytes) to ask for.
     pub fn megabytes(&self) -> u64 {
-        let megabytes = MARGIN.0 * self.bytes as f64 / f64::from(1 << 20);
+        let megabytes = MEMORY_MARGIN * self.bytes as f64 / f64::from(1 << 20);
         (megabytes.ceil() as u64).div_ceil(100) * 100
     }
 
@@ -54,8 +55,8 @@ impl TaskNeeds {
              are asked for",
             duration(self.seconds),
             self.bytes as f64 / f64::from(1 << 20),
-            MARGIN.1,
-            MARGIN.0
+            TIME_MARGIN,
+            MEMORY_MARGIN
         )
     }
 }

@@ -151,7 +151,7 @@ pub struct Outcome {
     /// Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub studies_to_come: bool,
-    /// Wall time of everything, s.
+    /// Wall time of everything, s; in a campaign beside other cases on the same threads.
     pub seconds: f64,
 }
 
@@ -282,7 +282,7 @@ pub struct Run {
     /// Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_connectivity: Vec<ByConnectivity>,
-    /// Wall time, s.
+    /// Wall time from start to end, s, beside what else is walked on the same threads.
     pub seconds: f64,
 }
 

@@ -319,7 +319,7 @@ class Run(_Run, total=False):
     by_connectivity
         Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.
     seconds
-        Wall time, s.
+        Wall time from start to end, s, beside what else is walked on the same threads.
     """
 
     retained_in_arches: Optional[int]
@@ -1238,7 +1238,7 @@ class Outcome(_Outcome, total=False):
     studies_to_come
         Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
     seconds
-        Wall time of everything, s.
+        Wall time of everything, s; in a campaign beside other cases on the same threads.
     """
 
     notes: List[str]

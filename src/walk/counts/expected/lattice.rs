@@ -154,7 +154,8 @@ impl Row<'_> {
 /// What leaves a void along x, along y and along z. The last open exit is certain: along z goes what is left.
 #[inline(always)]
 fn leave(here: f64, first: &f64, second: &f64) -> [f64; 3] {
-    let n = if here < NOTHING { 0.0 } else { here };
+    // What is no number is nothing, as in the vectors.
+    let n = if here >= NOTHING { here } else { 0.0 };
     let along_x = n * first;
     let along_y = (n - along_x) * second;
     [along_x, along_y, n - along_x - along_y]

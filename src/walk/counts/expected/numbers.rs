@@ -81,7 +81,7 @@ impl Expected {
         trapped: Option<f64>,
         retained_in_voids: &mut [u64],
     ) -> [Counted; 2] {
-        // No sum is negative, and `floor` is a call where a machine must not have an instruction for it.
+        // No sum is negative, and `floor` is a call where the machine may lack an instruction for it.
         let whole = |x: f64| ((x + 0.5) as u64).min(self.sums.inserted);
         let mut at_rest = whole(self.sums.eroded + stranded);
         let mut eroded = whole(self.sums.eroded);

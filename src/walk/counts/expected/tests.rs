@@ -85,9 +85,29 @@ fn one_row_moves_the_same_to_rounding() {
 
 #[test]
 fn every_instruction_set_sums_to_the_same_bits() {
-    let network = lattice([13, 7, 6]);
-    let portable = walked(&network, false, Isa::Portable);
+    // Whole vectors and what is left over of eight and four, one row, one void across, one layer.
+    for shape in [[13, 7, 6], [1, 1, 5], [4, 1, 4], [12, 1, 3], [16, 2, 3], [31, 1, 4], [7, 3, 2], [3, 3, 1]]
+    {
+        let network = lattice(shape);
+        let portable = walked(&network, false, Isa::Portable);
+        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+            assert_eq!(walked(&network, false, isa), portable, "{shape:?} {isa:?}");
+        }
+    }
+}
+
+/// Nowhere is an expectation no number; if one were, no instruction set would go its own way.
+#[test]
+fn what_is_no_number_leaves_no_void_on_any_instruction_set() {
+    let network = lattice([13, 2, 3]);
+    let blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    let shares = Shares::new(&network, Ways::Unblocked(&blocked));
     for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-        assert_eq!(walked(&network, false, isa), portable, "{isa:?}");
+        let mut expected = Expected::new(network.voids());
+        let mut flow = ExpectedFlow::new(&network, &shares, &expected);
+        flow.set_isa(isa);
+        expected.moving[..26].fill(f64::NAN);
+        flow.step(&network, &shares, &mut expected);
+        assert!(expected.moving.iter().all(|n| *n == 0.0), "{isa:?}");
     }
 }
