@@ -19,15 +19,22 @@ use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
+/// How settings of the sheet begin.
+const SHEET: &str = "about.";
+
 /// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
-        return specification(args, base);
+    if let Some(other) = args.settings.iter().find(|of| args.steps && !of.trim().starts_with(SHEET)) {
+        let problem = "with --steps nothing is walked, and of the settings it takes those of [about] alone";
+        return Err(RunError::Refused(format!("--set {other}: {problem}")));
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
     let [dispersive, _] = of_soils(args.dispersive, None);
     let units = args.units.map(|units| format!("about.units={}", units.name()));
     let settings = with_options(&args.settings, [("--seed", seed), dispersive, ("--units", units)])?;
+    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
+        return specification(args, base, &settings);
+    }
     let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),

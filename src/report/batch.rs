@@ -12,7 +12,7 @@ use super::figures::{
 };
 use super::files::json;
 use super::names::soil_name;
-use super::numbers::{interval_in_percent, significant, threshold};
+use super::numbers::{SizeUnit, interval_in_percent, significant, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -81,6 +81,8 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         code { "batch.csv" } " its table with further columns."
     } };
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
+        .cover(&batch.cover, &clean(&batch.version), Some(batch.seed))
+        .inches(batch.inches)
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
@@ -139,7 +141,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     };
     let table = Table::of(batch.rows.iter().take(LISTED))
         .class("cases")
-        .columns(WalkedRow::columns(), |row| row)
+        .columns(WalkedRow::columns(SizeUnit::of(false, batch.inches)), |row| row)
         .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);

@@ -10,7 +10,7 @@ use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rul
 use super::files::json;
 use super::first_page::colour;
 use super::names::soil_name;
-use super::numbers::threshold;
+use super::numbers::{SizeUnit, threshold};
 use super::run_figures::run_name;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, unbroken};
@@ -136,6 +136,8 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
     } };
     Sections::new(format!("Comparison of {}", clean(&comparison.of)), question, &names)
+        .cover(&comparison.cover, &clean(&comparison.version), Some(comparison.seed))
+        .inches(comparison.inches)
         .words(&first)
         .contents()
         .section("Cases", &table)
@@ -198,7 +200,7 @@ fn doubts(comparison: &Comparison) -> Markup {
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
     Table::of(&comparison.cases)
         .class("cases")
-        .columns(ComparedCase::columns(), |case| case)
+        .columns(ComparedCase::columns(SizeUnit::of(false, comparison.inches)), |case| case)
         .named_by("case", |case| html! { bdi { (name(&case.name)) } })
         .showing("verdict", |case| cases::class(case.verdict, folder, &case.folder))
         .render()

@@ -40,6 +40,7 @@ mod campaign_cases;
 mod cases;
 mod comparison;
 mod connectivity;
+mod cover;
 mod design;
 mod designs;
 mod error;

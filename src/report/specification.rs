@@ -41,6 +41,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
+        .cover(&of.cover, &clean(&of.version), None)
         .inches(of.inches)
         .words(&answer(&of))
         .figures(stated.figure)

@@ -6,6 +6,7 @@
 //! run writes and is known by. Which settings exclude each other stands in `groups`. The names are a
 //! contract.
 
+mod cover;
 mod groups;
 mod init;
 mod keys;

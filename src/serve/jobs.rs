@@ -26,7 +26,7 @@ use crate::store::remove_folder;
 use earlier::{LAST, earlier};
 use job::{Job, JobState, has_scene, how_to_continue};
 use work::WorkContext;
-pub use work::{OnResults, Work};
+pub use work::{OnResults, Work, of_cases};
 
 /// Most jobs that wait.
 const WAITING: usize = 20;

@@ -9,11 +9,12 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::archive::archive;
+use super::batches::{self, AskedBatch};
 use super::designs::AskedDesign;
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
-use super::jobs::{JobQueue, Work};
+use super::jobs::{JobQueue, Work, of_cases};
 use super::samples::SampleTable;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
@@ -25,6 +26,7 @@ use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
+use crate::study::batch::BatchPlan;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
@@ -187,7 +189,7 @@ impl Routes {
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
                 Ok(Answer::json(200, &json!(sheet)))
             }
-            "api/judge" | "api/compare" | "api/design" => {
+            "api/judge" | "api/compare" | "api/design" | "api/batch" => {
                 let request: Value =
                     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
                 let kind = path.trim_start_matches("api/").to_owned();
@@ -249,6 +251,14 @@ impl Routes {
                 design::check(&options).map_err(wrong)?;
                 Ok(Planned { title: kept.title(), asked: sheets, work: Work::Design(kept) })
             }
+            "batch" => {
+                let asked: AskedBatch = read(request)?;
+                let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
+                let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
+                let plan = self.batch(&asked, &samples, &filters)?;
+                let title = self.sheets.as_named(&batches::title(&samples, &filters));
+                Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
+            }
             _ => Err((404, "there is no such work".into())),
         }
     }
@@ -297,6 +307,18 @@ impl Routes {
             _ => return Err(wrong("compare further filters, or further bases")),
         };
         ComparePlan::new(&compared, &options(asked)?).map_err(wrong)
+    }
+
+    fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
+        let joint_mm = joint(Some(asked.joint.clone()).filter(|text| !text.trim().is_empty()))?;
+        let AskedBatch { dispersive, as_given, as_sampled, pack, .. } = *asked;
+        let rules = PairOptions { dispersive, joint_mm, as_given };
+        bounded(&asked.changes)?;
+        let (density, changes) = (density(&asked.density)?, asked.changes.clone());
+        let tables = TableOptions { density, pack, quick: false, as_sampled, as_given, changes };
+        let walks = asked.walks().map_err(wrong)?;
+        let options = of_cases(&self.root, &self.prepare, "");
+        BatchPlan::new(samples, filters, &tables, rules, walks, &options).map_err(wrong)
     }
 
     /// Every rule of practice on two sheets.
@@ -388,11 +410,15 @@ impl Routes {
 
 /// What is said of two soils besides their sheets.
 fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
-    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
-    let joint_mm = request.parameter("joint_mm");
-    let joint_mm = joint_mm.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()?;
+    let joint_mm = joint(request.parameter("joint_mm"))?;
     let is_ticked = |name: &str| request.parameter(name).is_some();
     Ok(PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") })
+}
+
+/// The width of an open joint (mm).
+fn joint(text: Option<String>) -> Result<Option<f64>, Problem> {
+    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
+    text.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()
 }
 
 /// A sheet to try the page with.
@@ -419,12 +445,15 @@ fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
 }
 
+/// A density in a word; `None` where none is said.
+fn density(word: &str) -> Result<Option<Density>, Problem> {
+    let named = || Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)));
+    if word.is_empty() { Ok(None) } else { named().map(Some) }
+}
+
 /// What a scene of tables is given besides them.
 fn options(asked: &Asked) -> Result<TableOptions, Problem> {
-    let density = match asked.density.as_str() {
-        "" => None,
-        word => Some(Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)))?),
-    };
+    let density = density(&asked.density)?;
     bounded(&asked.changes)?;
     let Asked { quick, as_sampled, as_given, .. } = *asked;
     Ok(TableOptions {

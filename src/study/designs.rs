@@ -2,12 +2,14 @@
 
 use std::path::PathBuf;
 
+use super::days::today;
 use super::design::{DesignOptions, identity, is_a_base, run};
 use super::file_names::numbered;
 use super::kept;
 use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
+use crate::outcome::numbers::SizeUnit;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
@@ -69,7 +71,7 @@ pub fn each(options: &SampleDesignOptions, callbacks: &Callbacks) -> Result<Desi
     let work = planned.work.clone();
     let all = kept::study((&folder, kind, overwrite), work, callbacks, |_, _: Option<()>| {
         let all = planned.designed(options, &folder, callbacks)?;
-        folder.write(TABLE, &DesignedSample::columns().csv(&all.rows))?;
+        folder.write(TABLE, &DesignedSample::columns(SizeUnit::Mm).csv(&all.rows))?;
         Ok(all)
     });
     all.map_err(|error| match error.exit() {
@@ -150,7 +152,7 @@ impl Planned {
         folder: &Folder,
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
-        let (mut rows, mut leaves_out, mut walks) = (Vec::new(), Vec::new(), None);
+        let (mut rows, mut leaves_out, mut walks, mut day) = (Vec::new(), Vec::new(), None, None);
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -166,6 +168,8 @@ impl Planned {
                 true => kept::record(&of_sample.out, FolderKind::Design)?,
                 false => run(&of_sample, callbacks)?,
             };
+            // Days are in order as texts.
+            day = day.max(design.cover.date.clone());
             leaves_out.clone_from(&design.model_leaves_out);
             walks = Some(DesignedWalks::of(&design, settings));
             rows.push(row.clone().designed(&design, place));
@@ -176,6 +180,7 @@ impl Planned {
             filter: self.filter.clone(),
             dispersive: self.dispersive,
             inches: options.design.shows_inches(),
+            cover: options.design.cover().dated(day.or_else(today)),
             walks,
             notes: self.notes.clone(),
             model_leaves_out: leaves_out,

@@ -5,7 +5,7 @@ use super::pair::{Mistake, PairOptions, PairRules};
 use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested, tested_words};
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
-use crate::outcome::numbers::rounded_up;
+use crate::outcome::numbers::{SizeUnit, rounded_up};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, authority};
 use crate::outcome::table::Columns;
@@ -199,8 +199,14 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     authority(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
-/// The columns of a batch: its file, and under their headings what a terminal shows.
-pub fn columns<'a>() -> Columns<'a, BatchRow> {
+/// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
+/// unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
+    let size = move |mm: Option<f64>| mm.map(|mm| unit.short(mm));
+    let limit = move |row: &BatchRow| {
+        let at_most = if row.limit_at_most { " at most" } else { "" };
+        row.limit_mm.map(|mm| format!("{}{at_most}", unit.greatest(mm)))
+    };
     Columns::default()
         .column("sample", |row: &BatchRow| row.sample.clone())
         .headed("Sample")
@@ -214,11 +220,11 @@ pub fn columns<'a>() -> Columns<'a, BatchRow> {
         .headed("Fines, %")
         .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
         .digits("d85b_mm", 4, |row| row.d85b_mm)
-        .headed("D85B, mm")
+        .number("D85B, mm", move |row| size(row.d85b_mm))
         .digits("d15f_mm", 4, |row| row.d15f_mm)
-        .headed("D15F, mm")
+        .number("D15F, mm", move |row| size(row.d15f_mm))
         .digits("limit_mm", 4, |row| row.limit_mm)
-        .headed("Limit, mm")
+        .number("Limit, mm", limit)
         .column("limit_at_most", |row: &BatchRow| row.limit_at_most.to_string())
         .column("rule", |row: &BatchRow| row.rule.clone())
         .headed("Whose limit")
@@ -343,7 +349,7 @@ mod tests {
         // Fines that nobody sieved: a limit at most, and no result for a filter within it.
         assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
         assert!(rows[4].met.is_none() && rows[4].note.contains("exchanged"), "{:?}", rows[4]);
-        let csv = String::from_utf8(columns().csv(&rows)).unwrap();
+        let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
         assert!(
             csv.starts_with("sample,filter,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_mm,")
         );

@@ -6,7 +6,10 @@ use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
 use super::conclusion::probabilities;
 use crate::outcome::BaseSize;
-use crate::outcome::record::{Bound, Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::{
+    Bound, Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict,
+};
 use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
 
@@ -47,6 +50,12 @@ pub struct WalkedBatch {
     pub notes: Vec<String>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
+    /// What the sheet says of itself; without a day in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// What no walk contains.
     pub model_leaves_out: Vec<ModelLimit>,
 }
@@ -150,6 +159,8 @@ impl WalkedBatch {
             rows,
             notes: Vec::new(),
             threshold: THRESHOLD,
+            cover: SheetCover::default(),
+            inches: false,
             model_leaves_out: Vec::new(),
         }
     }
@@ -169,8 +180,8 @@ impl WalkedRow {
         self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
     }
 
-    /// The columns of `batch.csv`, and under their headings what a terminal and a page show.
-    pub fn columns<'a>() -> Columns<'a, Self> {
+    /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this unit.
+    pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
         let walk = |row: &Self| row.walk.clone();
         let of_walk = Columns::default()
             .column("governs", |row: &Self| row.governs)
@@ -197,6 +208,6 @@ impl WalkedRow {
             .column("reason", move |row| walk(row)?.reason)
             .column("not_walked", |row: &Self| row.not_walked.clone())
             .column("folder", move |row| walk(row).map(|walk| walk.folder));
-        columns().of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
+        columns(unit).of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
     }
 }

@@ -10,6 +10,7 @@ use voidwalk::run::FolderKind;
 
 use crate::judge::SMALL;
 use crate::program::{call, done, figures_are_listed, refused};
+use crate::sheet::inches_within;
 
 /// Three sands.
 const SAMPLES: &str = "Sieve (mm),Core,Shell,Till\n10,100,100,100\n1,100,100,100\n0.5,100,80,60\n\
@@ -197,21 +198,7 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
 
 /// That no greatest D15F has more inches than mm, and no least fewer.
 fn assert_inches_lie_within(page: &str) {
-    let number = |text: &str| {
-        let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
-        text[start..].parse::<f64>().ok()
-    };
-    let mut found = 0;
-    for (at, words) in page.match_indices("up to ").chain(page.match_indices("at most ")) {
-        let rest = &page[at + words.len()..];
-        let Some((mm, rest)) = rest.split_once(" mm (") else { continue };
-        let (Ok(mm), Some((inches, _))) = (mm.parse::<f64>(), rest.split_once("\u{202f}in")) else {
-            continue;
-        };
-        let Some(inches) = number(inches) else { continue };
-        assert!(inches * 25.4 <= mm * (1.0 + 1e-9), "{mm} mm, {inches} in");
-        found += 1;
-    }
+    let mut found = inches_within(page);
     let bands = page.match_indices("D15F from ").chain(page.match_indices("lie between "));
     for (at, words) in bands {
         let rest = &page[at + words.len()..];

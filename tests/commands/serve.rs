@@ -15,7 +15,7 @@ use crate::judge::{BASE, COARSE, FINE};
 use crate::program::{call, done, refused, voidwalk};
 
 /// A server in a folder of its own.
-struct Served {
+pub struct Served {
     child: Child,
     port: u16,
     /// `/SECRET/`.
@@ -30,7 +30,7 @@ impl Drop for Served {
     }
 }
 
-fn serve() -> Served {
+pub fn serve() -> Served {
     serve_in(tempfile::tempdir().unwrap())
 }
 
@@ -49,7 +49,7 @@ fn serve_in(at: tempfile::TempDir) -> Served {
 }
 
 /// Status, head and body of an answer.
-type Said = (u16, String, Vec<u8>);
+pub type Said = (u16, String, Vec<u8>);
 
 impl Served {
     fn connect(&self) -> TcpStream {
@@ -77,20 +77,20 @@ impl Served {
         self.raw(&[head.as_bytes(), body].concat())
     }
 
-    fn get(&self, path: &str) -> Said {
+    pub fn get(&self, path: &str) -> Said {
         self.ask("GET", &format!("{}{path}", self.path), "", b"")
     }
 
-    fn post(&self, path: &str, body: &[u8]) -> (u16, Value) {
+    pub fn post(&self, path: &str, body: &[u8]) -> (u16, Value) {
         let (status, _, body) = self.ask("POST", &format!("{}{path}", self.path), "", body);
         (status, serde_json::from_slice(&body).unwrap())
     }
 
-    fn json(&self, path: &str) -> Value {
+    pub fn json(&self, path: &str) -> Value {
         serde_json::from_slice(&self.get(path).2).unwrap()
     }
 
-    fn sheet(&self, name: &str, text: &str) -> (u16, Value) {
+    pub fn sheet(&self, name: &str, text: &str) -> (u16, Value) {
         self.post(&format!("api/sheet?name={name}"), text.as_bytes())
     }
 
@@ -108,12 +108,12 @@ impl Served {
         )
     }
 
-    fn job(&self, id: u64) -> Value {
+    pub fn job(&self, id: u64) -> Value {
         let state = self.json("api/state");
         state["jobs"].as_array().unwrap().iter().find(|job| job["id"] == id).unwrap().clone()
     }
 
-    fn until(&self, id: u64, what: impl Fn(&Value) -> bool) -> Value {
+    pub fn until(&self, id: u64, what: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         loop {
             let job = self.job(id);
@@ -135,7 +135,7 @@ impl Served {
         (code, said, std::mem::replace(&mut self.at, tempfile::tempdir().unwrap()))
     }
 
-    fn root(&self) -> &Path {
+    pub fn root(&self) -> &Path {
         self.at.path()
     }
 
@@ -471,7 +471,7 @@ impl Served {
     }
 
     /// The same folder after a kill.
-    fn again(mut self) -> Self {
+    pub fn again(mut self) -> Self {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
         serve_in(std::mem::replace(&mut self.at, tempfile::tempdir().unwrap()))

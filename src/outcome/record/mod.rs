@@ -14,6 +14,7 @@
 //!   second begins.
 
 mod answer;
+mod cover;
 mod evidence;
 mod finding;
 mod inputs;
@@ -26,6 +27,7 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{ShortOf, Statistic, Stopping, Verdict};
+pub use cover::SheetCover;
 pub use evidence::{Bound, Evidence};
 pub use finding::{Direction, FindingRecord, Topic, Weight};
 pub use inputs::{

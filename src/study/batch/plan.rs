@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::super::file_names::{as_folders, names, refuse_twice};
 use crate::campaign::plan::PlannedCase;
 use crate::campaign::{self, CampaignOptions, CampaignPlan};
+use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
@@ -126,6 +127,16 @@ impl BatchPlan {
             return Err(RunError::Refused(problem));
         }
         Ok(())
+    }
+
+    /// What the scenes of the walks say of the sheet: all the same.
+    pub(super) fn cover(&self) -> SheetCover {
+        self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
+    }
+
+    /// Whether page and terminal show inches beside mm.
+    pub fn shows_inches(&self) -> bool {
+        self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
 
     /// What the constrictions of the walks come from, in a sentence.

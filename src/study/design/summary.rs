@@ -19,6 +19,7 @@ use crate::outcome::record::{Confidence, FindingRecord};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::study::days::today;
 use crate::verdict::by_authority::of_design;
 use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
 
@@ -121,6 +122,7 @@ pub(super) fn design(
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
+        cover: first.stated.scene.about.cover().dated(today()),
         inches: first.stated.scene.about.shows_inches(),
         seconds,
         boundaries,

@@ -1,0 +1,192 @@
+//! What belongs to a sheet that is handed in, on every page that has an answer: cover, date, and inches where
+//! they are asked for.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::judge::SMALL;
+use crate::program::{call, done, refused};
+
+/// Three sands.
+const SAMPLES: &str = "Sieve (mm),Core,Shell,Till\n10,100,100,100\n1,100,100,100\n0.5,100,80,60\n\
+    0.25,40,20,10\n0.1,0,0,0\n";
+
+/// What a user states, and the heading that it stands under.
+const STATED: [(&str, &str, &str); 7] = [
+    ("project", "Project", "Main dam <2B>"),
+    ("number", "Number", "D-2031"),
+    ("purpose", "Purpose", "Design of the chimney filter"),
+    ("client", "Client", "Water Board"),
+    ("author", "Author", "N. N."),
+    ("checker", "Checked by", "M. M."),
+    ("revision", "Revision", "A, issued for review"),
+];
+
+fn site() -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        ("samples.csv", SAMPLES),
+        ("fine.csv", "opening_mm,percent_finer\n4,100\n2,50\n1,0\n"),
+        ("coarse.csv", "opening_mm,percent_finer\n8,100\n4,50\n2,0\n"),
+    ] {
+        fs::write(root.path().join(name), text).unwrap();
+    }
+    root
+}
+
+/// Every command with a page that is handed in, its folder and its page.
+const PAGES: [(&str, &str, &str); 7] = [
+    ("judge samples.csv#Core fine.csv --quick --out judge", "judge", "report.html"),
+    ("compare --base samples.csv#Core fine.csv coarse.csv --quick --out compare", "compare", "compare.html"),
+    ("judge samples.csv fine.csv --each --governing --out batch", "batch", "batch.html"),
+    ("design samples.csv#Core --filter cu1.5-loose --bracket 2,12 --out design", "design", "design.html"),
+    (
+        "design samples.csv --each --filter cu1.5-loose --bracket 2,12 --out designs",
+        "designs",
+        "designs.html",
+    ),
+    ("design samples.csv#Core --steps --out steps", "steps", "specification.html"),
+    ("design samples.csv --each --steps --out each-steps", "each-steps", "designs.html"),
+];
+
+/// The pages of all of them with these settings.
+fn pages(at: &Path, more: &[&str]) -> Vec<String> {
+    let page = |(command, folder, page): (&str, &str, &str)| {
+        let mut words: Vec<&str> = command.split(' ').collect();
+        if !command.contains("--steps") {
+            words.extend(SMALL);
+            words.extend(["--set", "replicates=2"]);
+        }
+        if command.contains("judge") || command.contains("compare") {
+            words.extend(["--set", "record.sensitivity=[]"]);
+        }
+        words.extend(more);
+        done(&call(at, &words));
+        fs::read_to_string(at.join(folder).join(page)).unwrap()
+    };
+    PAGES.map(page).to_vec()
+}
+
+fn has(page: &str, name: &str, value: &str) -> bool {
+    page.contains(&format!("<dt>{name}</dt> <dd><bdi>{value}</bdi></dd>"))
+}
+
+#[test]
+fn every_page_has_the_cover_that_was_stated() {
+    let root = site();
+    let said: Vec<String> = STATED.iter().map(|(key, _, value)| format!("about.{key}={value}")).collect();
+    let mut more: Vec<&str> = said.iter().flat_map(|said| ["--set", said.as_str()]).collect();
+    more.extend(["--set", "about.date=1 April 2026"]);
+    for (page, (command, folder, file)) in pages(root.path(), &more).iter().zip(PAGES) {
+        for (_, name, value) in STATED {
+            let value = value.replace('<', "&lt;").replace('>', "&gt;");
+            assert!(has(page, name, &value), "{command}: {name}");
+        }
+        assert!(has(page, "Date", "1 April 2026"), "{command}");
+        assert!(page.contains("<dt>Program</dt> <dd><bdi>voidwalk "), "{command}");
+        assert_eq!(page.contains("<dt>Seed</dt>"), !command.contains("--steps"), "{command}");
+        // The page that is made again from the folder alone is the same.
+        done(&call(root.path(), &["report", folder]));
+        assert!(fs::read_to_string(root.path().join(folder).join(file)).unwrap() == *page, "{command}");
+    }
+    // Another cover is another sheet, which replaces none unasked.
+    let other = |name: &str, client: &str| {
+        let each = ["judge", "samples.csv", "fine.csv", "--each", "--governing", "--out", name];
+        let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]", "--set", client];
+        call(root.path(), &[&each[..], &SMALL, &few].concat())
+    };
+    refused(&other("batch", "about.client=Other"), "holds another batch");
+    let steps = ["design", "samples.csv", "--steps", "--out", "x", "--set", "base.cu=3"];
+    refused(&call(root.path(), &steps), "of the settings it takes those of [about] alone");
+}
+
+#[test]
+fn a_page_has_the_day_of_its_results_where_no_date_is_stated() {
+    let root = site();
+    let begun = day(root.path());
+    let all = pages(root.path(), &[]);
+    let ended = day(root.path());
+    for (page, (command, ..)) in all.iter().zip(PAGES) {
+        assert!(has(page, "Date", &begun) || has(page, "Date", &ended), "{command}");
+        assert!(!page.contains("<dt>Project</dt>"), "{command}");
+    }
+    // The day of the walks that a table rests on, not of the table.
+    let at = root.path().join("compare");
+    for case in fs::read_dir(at.join("walks/cases")).unwrap() {
+        let manifest = case.unwrap().path().join("manifest.json");
+        let text = fs::read_to_string(&manifest).unwrap().replace(&begun, "2001-02-03");
+        fs::write(&manifest, text.replace(&ended, "2001-02-03")).unwrap();
+    }
+    fs::remove_file(at.join("compare.json")).unwrap();
+    assert!(has(&pages_of_compare(root.path()), "Date", "2001-02-03"));
+}
+
+/// Goes on with the comparison, whose walks are done.
+fn pages_of_compare(at: &Path) -> String {
+    let (command, folder, page) = PAGES[1];
+    let words: Vec<&str> = command.split(' ').collect();
+    let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]"];
+    done(&call(at, &[&words[..], &SMALL, &few].concat()));
+    fs::read_to_string(at.join(folder).join(page)).unwrap()
+}
+
+/// The day on which a file is written now, as the program names days.
+fn day(at: &Path) -> String {
+    let file = at.join("now");
+    fs::write(&file, "").unwrap();
+    let moment = fs::metadata(&file).unwrap().modified().unwrap();
+    humantime::format_rfc3339_seconds(moment).to_string().split('T').next().unwrap().to_owned()
+}
+
+/// That no greatest D15F has more inches than mm, and no least fewer; how many were looked at.
+pub fn inches_within(page: &str) -> usize {
+    let number = |text: &str| {
+        let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+        text[start..].parse::<f64>().ok()
+    };
+    let mut found = 0;
+    for (at, words) in page.match_indices("up to ").chain(page.match_indices("at most ")) {
+        let rest = &page[at + words.len()..];
+        let Some((mm, rest)) = rest.split_once(" mm (") else { continue };
+        let (Ok(mm), Some((inches, _))) = (mm.parse::<f64>(), rest.split_once("\u{202f}in")) else {
+            continue;
+        };
+        let Some(inches) = number(inches) else { continue };
+        assert!(inches * 25.4 <= mm * (1.0 + 1e-9), "{mm} mm, {inches} in");
+        found += 1;
+    }
+    found
+}
+
+#[test]
+fn a_batch_and_a_comparison_show_inches_beside_mm() {
+    let root = site();
+    let all = pages(root.path(), &["--set", "about.units=us"]);
+    for (page, (command, folder, _)) in all.iter().zip(PAGES) {
+        assert!(page.matches("\u{202f}in)").count() > 4, "{command}: {page}");
+        if ["batch", "compare"].contains(&folder) {
+            let record = format!("{folder}/{folder}.json");
+            let record: Value = serde_json::from_slice(&fs::read(root.path().join(record)).unwrap()).unwrap();
+            assert!(record["inches"] == true, "{command}");
+        }
+    }
+    let [compare, batch] = [&all[1], &all[2]];
+    assert!(inches_within(compare) + inches_within(batch) > 3);
+    // The limit of a sample in the table has the inches of the sentence above it.
+    let limit = batch.split("D15F up to ").nth(1).unwrap();
+    let (mm, inches) = limit.split_once("\u{202f}in)").unwrap().0.split_once(" mm (").unwrap();
+    assert!(batch.contains(&format!(">{mm} ({inches}\u{202f}in)<")), "{limit}");
+    // Files stay in mm, and what is printed has inches, too.
+    let csv = fs::read_to_string(root.path().join("batch/batch.csv")).unwrap();
+    assert!(!csv.contains("in)"), "{csv}");
+    for command in [PAGES[1].0, PAGES[2].0] {
+        let words: Vec<&str> = command.split(' ').collect();
+        let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]", "--set", "about.units=us"];
+        let overwrite = if command.starts_with("compare") { &["--overwrite"][..] } else { &[] };
+        let said = call(root.path(), &[&words[..], &SMALL, &few, overwrite].concat());
+        done(&said);
+        assert!(String::from_utf8(said.stdout).unwrap().contains("\u{202f}in)"), "{command}");
+    }
+}
