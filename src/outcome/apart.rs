@@ -20,7 +20,9 @@ pub(crate) fn value_and_limit(value: f64, limit: f64, at_least: bool, digits: i3
         _ => shown != of,
     };
     let alike = || [value, limit].map(|number| digits_within(number, digits, at_least));
-    (digits..MOST).map(pair).find(is_order).unwrap_or_else(alike)
+    // A limit that is just reached is kept.
+    let apart = (digits..MOST).filter(|_| value != limit).map(pair).find(is_order);
+    apart.unwrap_or_else(alike)
 }
 
 /// A number with so many digits that mean something.

@@ -438,7 +438,7 @@ mod tests {
         assert!(page.contains(" 0.806 mm.</figcaption>") && page.contains(">0.706 mm<"), "{page}");
         assert!(!page.contains("0.807") && !page.contains("0.705"), "{page}");
         design.inches = true;
-        let page = written(&design, &csv);
+        let page = written(&design, &csv).replace("\u{202f}mm", " mm");
         // 0.806 mm are 0.03173 in, and 0.706 mm 0.02780 in.
         let inches = |mm: &str| page.match_indices(&format!("{mm} mm (")).count();
         assert!(inches("0.806") > 3 && inches("0.706") > 0);

@@ -69,6 +69,7 @@ __all__ = [
     "SameShape",
     "SampledBase",
     "Sensitivity",
+    "SheetCover",
     "SieveLimit",
     "SizeBand",
     "SizeThreshold",
@@ -1650,6 +1651,39 @@ class Fit(_Fit, total=False):
     may_drain: bool
 
 
+class SheetCover(TypedDict, total=False):
+    """The cover of a sheet, as its author states it.
+
+    Keys
+    ----
+    project
+        The project.
+    number
+        The number of the project.
+    purpose
+        What the sheet is for.
+    client
+        The client.
+    author
+        The author.
+    checker
+        Who checked it.
+    revision
+        The revision of the sheet.
+    date
+        The date on the sheet: the one that is stated, else the day of its results.
+    """
+
+    project: Optional[str]
+    number: Optional[str]
+    purpose: Optional[str]
+    client: Optional[str]
+    author: Optional[str]
+    checker: Optional[str]
+    revision: Optional[str]
+    date: Optional[str]
+
+
 class _SpecifiedCurve(TypedDict):
     curve: str
     gradation: List[List[float]]
@@ -1860,6 +1894,8 @@ class Specification(_Specification, total=False):
         Whether it was said to be dispersive.
     sieves
         The sieves at which the limits are stated.
+    cover
+        What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     curves
@@ -1882,6 +1918,7 @@ class Specification(_Specification, total=False):
         Standard products beside it; empty where neither limit of D15F is known.
     """
 
+    cover: SheetCover
     inches: bool
     d15f_min_at_most: bool
     no_band: Optional[str]
@@ -1982,6 +2019,8 @@ class Design(_Design, total=False):
         What the model does not contain.
     settings
         Settings that were given, as on the command line.
+    cover
+        What the sheet says of itself; without a day in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     seconds
@@ -1992,6 +2031,7 @@ class Design(_Design, total=False):
     findings: List[DesignFinding]
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
+    cover: SheetCover
     inches: bool
 
 
@@ -2130,7 +2170,20 @@ class ComparedPair(TypedDict):
     differ: Optional[bool]
 
 
-class Comparison(TypedDict):
+class _Comparison(TypedDict):
+    format: Literal["voidwalk-comparison/1"]
+    voidwalk: str
+    of: str
+    common: str
+    seed: int
+    version: str
+    cases: List[ComparedCase]
+    pairs: List[ComparedPair]
+    threshold: float
+    model_leaves_out: List[str]
+
+
+class Comparison(_Comparison, total=False):
     """The whole of `compare.json`.
 
     Keys
@@ -2153,20 +2206,16 @@ class Comparison(TypedDict):
         Every two cases, in that order, for each run that both have.
     threshold
         Eroded mass fraction that divides the classes: 0.075.
+    cover
+        What the sheet says of itself; without a day in files of earlier versions.
+    inches
+        Whether inches stand beside mm on page and terminal.
     model_leaves_out
         What no case contains; records of earlier versions do not say.
     """
 
-    format: Literal["voidwalk-comparison/1"]
-    voidwalk: str
-    of: str
-    common: str
-    seed: int
-    version: str
-    cases: List[ComparedCase]
-    pairs: List[ComparedPair]
-    threshold: float
-    model_leaves_out: List[str]
+    cover: SheetCover
+    inches: bool
 
 
 class SizeThreshold(TypedDict):
