@@ -86,7 +86,7 @@ fn the_table_is_that_of_the_command_line_and_grows_while_it_is_walked() {
 #[test]
 fn a_batch_that_is_stopped_goes_on_and_keeps_what_is_walked() {
     let served = with_samples();
-    let (status, said) = ask(&served, &["2"], "look", &["replicates=60", "network.nx=12", "network.ny=12"]);
+    let (status, said) = ask(&served, &["2"], "look", &["replicates=30", "network.nx=8", "network.ny=8"]);
     assert_eq!(status, 200, "{said}");
     let id = said["id"].as_u64().unwrap();
     let looks = |job: &Value| {
@@ -118,7 +118,7 @@ fn a_batch_is_refused_before_anything_is_walked() {
         (&["2"; 7], "look", &[], "name one to 6 filters"),
         (&["2"], "all", &[], "governing, look or alone"),
         (&["2", "2"], "look", &[], "is named twice"),
-        (&["9"], "look", &[], "9"),
+        (&["9"], "look", &[], "no such sheet"),
         (&["2"], "look", &["network.nx=0"], "network.nx"),
     ] {
         let (status, said) = ask(&served, filters, walks, changes);

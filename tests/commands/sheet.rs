@@ -51,22 +51,22 @@ const PAGES: [(&str, &str, &str); 7] = [
     ("design samples.csv --each --steps --out each-steps", "each-steps", "designs.html"),
 ];
 
-/// The pages of all of them with these settings.
-fn pages(at: &Path, more: &[&str]) -> Vec<String> {
-    let page = |(command, folder, page): (&str, &str, &str)| {
-        let mut words: Vec<&str> = command.split(' ').collect();
-        if !command.contains("--steps") {
-            words.extend(SMALL);
-            words.extend(["--set", "replicates=2"]);
+/// Walks that take moments.
+const FEW: [&str; 4] = ["--set", "replicates=2", "--set", "record.sensitivity=[]"];
+
+/// The page of one of them with these settings.
+fn page(at: &Path, (command, folder, page): (&str, &str, &str), more: &[&str]) -> String {
+    let mut words: Vec<&str> = command.split(' ').collect();
+    match command {
+        steps if steps.contains("--steps") => {}
+        design if design.starts_with("design") => {
+            words.extend([&SMALL[..], &["--set", "replicates=1"]].concat())
         }
-        if command.contains("judge") || command.contains("compare") {
-            words.extend(["--set", "record.sensitivity=[]"]);
-        }
-        words.extend(more);
-        done(&call(at, &words));
-        fs::read_to_string(at.join(folder).join(page)).unwrap()
-    };
-    PAGES.map(page).to_vec()
+        _ => words.extend([&SMALL[..], &FEW].concat()),
+    }
+    words.extend(more);
+    done(&call(at, &words));
+    fs::read_to_string(at.join(folder).join(page)).unwrap()
 }
 
 fn has(page: &str, name: &str, value: &str) -> bool {
@@ -79,7 +79,9 @@ fn every_page_has_the_cover_that_was_stated() {
     let said: Vec<String> = STATED.iter().map(|(key, _, value)| format!("about.{key}={value}")).collect();
     let mut more: Vec<&str> = said.iter().flat_map(|said| ["--set", said.as_str()]).collect();
     more.extend(["--set", "about.date=1 April 2026"]);
-    for (page, (command, folder, file)) in pages(root.path(), &more).iter().zip(PAGES) {
+    for of in PAGES {
+        let (command, folder, file) = of;
+        let page = &page(root.path(), of, &more);
         for (_, name, value) in STATED {
             let value = value.replace('<', "&lt;").replace('>', "&gt;");
             assert!(has(page, name, &value), "{command}: {name}");
@@ -94,8 +96,7 @@ fn every_page_has_the_cover_that_was_stated() {
     // Another cover is another sheet, which replaces none unasked.
     let other = |name: &str, client: &str| {
         let each = ["judge", "samples.csv", "fine.csv", "--each", "--governing", "--out", name];
-        let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]", "--set", client];
-        call(root.path(), &[&each[..], &SMALL, &few].concat())
+        call(root.path(), &[&each[..], &SMALL, &FEW, &["--set", client]].concat())
     };
     refused(&other("batch", "about.client=Other"), "holds another batch");
     let steps = ["design", "samples.csv", "--steps", "--out", "x", "--set", "base.cu=3"];
@@ -106,9 +107,10 @@ fn every_page_has_the_cover_that_was_stated() {
 fn a_page_has_the_day_of_its_results_where_no_date_is_stated() {
     let root = site();
     let begun = day(root.path());
-    let all = pages(root.path(), &[]);
+    let some = [PAGES[1], PAGES[3], PAGES[5]];
+    let all = some.map(|of| page(root.path(), of, &[]));
     let ended = day(root.path());
-    for (page, (command, ..)) in all.iter().zip(PAGES) {
+    for (page, (command, ..)) in all.iter().zip(some) {
         assert!(has(page, "Date", &begun) || has(page, "Date", &ended), "{command}");
         assert!(!page.contains("<dt>Project</dt>"), "{command}");
     }
@@ -120,16 +122,8 @@ fn a_page_has_the_day_of_its_results_where_no_date_is_stated() {
         fs::write(&manifest, text.replace(&ended, "2001-02-03")).unwrap();
     }
     fs::remove_file(at.join("compare.json")).unwrap();
-    assert!(has(&pages_of_compare(root.path()), "Date", "2001-02-03"));
-}
-
-/// Goes on with the comparison, whose walks are done.
-fn pages_of_compare(at: &Path) -> String {
-    let (command, folder, page) = PAGES[1];
-    let words: Vec<&str> = command.split(' ').collect();
-    let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]"];
-    done(&call(at, &[&words[..], &SMALL, &few].concat()));
-    fs::read_to_string(at.join(folder).join(page)).unwrap()
+    // It goes on with the comparison, whose walks are done.
+    assert!(has(&page(root.path(), PAGES[1], &[]), "Date", "2001-02-03"));
 }
 
 /// The day on which a file is written now, as the program names days.
@@ -146,6 +140,7 @@ pub fn inches_within(page: &str) -> usize {
         let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
         text[start..].parse::<f64>().ok()
     };
+    let page = page.replace("\u{202f}mm (", " mm (");
     let mut found = 0;
     for (at, words) in page.match_indices("up to ").chain(page.match_indices("at most ")) {
         let rest = &page[at + words.len()..];
@@ -163,16 +158,15 @@ pub fn inches_within(page: &str) -> usize {
 #[test]
 fn a_batch_and_a_comparison_show_inches_beside_mm() {
     let root = site();
-    let all = pages(root.path(), &["--set", "about.units=us"]);
-    for (page, (command, folder, _)) in all.iter().zip(PAGES) {
+    let both = [PAGES[1], PAGES[2]];
+    let pages = both.map(|of| page(root.path(), of, &["--set", "about.units=us"]));
+    for (page, (command, folder, _)) in pages.iter().zip(both) {
         assert!(page.matches("\u{202f}in)").count() > 4, "{command}: {page}");
-        if ["batch", "compare"].contains(&folder) {
-            let record = format!("{folder}/{folder}.json");
-            let record: Value = serde_json::from_slice(&fs::read(root.path().join(record)).unwrap()).unwrap();
-            assert!(record["inches"] == true, "{command}");
-        }
+        let record = format!("{folder}/{folder}.json");
+        let record: Value = serde_json::from_slice(&fs::read(root.path().join(record)).unwrap()).unwrap();
+        assert!(record["inches"] == true, "{command}");
     }
-    let [compare, batch] = [&all[1], &all[2]];
+    let [compare, batch] = &pages;
     assert!(inches_within(compare) + inches_within(batch) > 3);
     // The limit of a sample in the table has the inches of the sentence above it.
     let limit = batch.split("D15F up to ").nth(1).unwrap();
@@ -181,11 +175,11 @@ fn a_batch_and_a_comparison_show_inches_beside_mm() {
     // Files stay in mm, and what is printed has inches, too.
     let csv = fs::read_to_string(root.path().join("batch/batch.csv")).unwrap();
     assert!(!csv.contains("in)"), "{csv}");
-    for command in [PAGES[1].0, PAGES[2].0] {
+    for (command, ..) in both {
         let words: Vec<&str> = command.split(' ').collect();
-        let few = ["--set", "replicates=2", "--set", "record.sensitivity=[]", "--set", "about.units=us"];
         let overwrite = if command.starts_with("compare") { &["--overwrite"][..] } else { &[] };
-        let said = call(root.path(), &[&words[..], &SMALL, &few, overwrite].concat());
+        let units = ["--set", "about.units=us"];
+        let said = call(root.path(), &[&words[..], &SMALL, &FEW, &units, overwrite].concat());
         done(&said);
         assert!(String::from_utf8(said.stdout).unwrap().contains("\u{202f}in)"), "{command}");
     }
