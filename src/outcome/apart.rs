@@ -1,5 +1,5 @@
-//! A value beside its limit, with as many digits as tell them apart: what exceeds a limit never reads as within
-//! it, nor the other way round.
+//! A value beside its limit, with as many digits as tell them apart: what exceeds a limit never reads as
+//! within it, nor the other way round.
 
 /// Most digits that are tried to tell two numbers apart.
 const MOST: i32 = 9;
@@ -11,8 +11,8 @@ pub fn whole_within(limit: f64, at_least: bool) -> f64 {
     if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
-/// A value and its limit with as many digits as tell them apart, and this many at the least. The limit is never
-/// more generous than it is.
+/// A value and its limit with as many digits as tell them apart, and this many at the least. The limit is
+/// never more generous than it is.
 pub(crate) fn value_and_limit(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
     let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {

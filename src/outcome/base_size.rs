@@ -84,7 +84,8 @@ mod tests {
         let us = till.words_in(SizeUnit::MmAndInches);
         assert_eq!(
             us,
-            "D85B 1.80 mm (0.0709\u{202f}in), regraded on No. 4, 4.75 mm (as sampled 12.8 mm (0.504\u{202f}in))"
+            "D85B 1.80 mm (0.0709\u{202f}in), regraded on No. 4, 4.75 mm (as sampled 12.8 mm \
+             (0.504\u{202f}in))"
         );
         let sand = BaseSize { d85_mm: 0.4123, regraded_at_mm: None, as_sampled_mm: None };
         assert_eq!(sand.words(), "D85B 0.412 mm as sampled");

@@ -197,8 +197,8 @@ impl SizeUnit {
         self.bracket(rounded_up(shown(rounded_up(mm), mm) / INCH_MM))
     }
 
-    /// What stands behind a size and its limit, a least or a greatest, both in mm: inches that are as far apart,
-    /// and those of the limit within it.
+    /// What stands behind a size and its limit, a least or a greatest, both in mm: inches that are as far
+    /// apart, and those of the limit within it.
     pub(crate) fn beside_both(self, mm: f64, limit: f64, at_least: bool) -> [String; 2] {
         value_and_limit(mm / INCH_MM, limit / INCH_MM, at_least, 3).map(|inches| self.bracket(inches))
     }

@@ -1,5 +1,5 @@
-//! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown, which
-//! grows as the walks are done.
+//! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown,
+//! which grows as the walks are done.
 
 use std::path::{Path, PathBuf};
 

@@ -295,8 +295,8 @@ function rowsOf(table, doubted) {
       table.headings[at] === "Result" ? marked(text, line) : text)))))];
 }
 
-/** The samples of a sheet with their walks. */
-const samplesTable = (table) => scrolling("the samples with their walks", el("table", { class: "samples" }, ...rowsOf(table, table.against)));
+/** The samples of a sheet with their walks; no two of the page have one name. */
+const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table, table.against)));
 
 /** Puts the drawing into the page itself, so that it can be asked for its values. */
 async function showCurves(query) {
@@ -588,7 +588,7 @@ function soFar(job) {
   } else if (!live.lines.length) {
     parts.push(el("p", {}, "Begins."));
   }
-  if (live.table) parts.push(samplesTable(live.table));
+  if (live.table) parts.push(samplesTable(job, live.table));
   if (live.lines.length) parts.push(list(live.lines));
   if (live.so_far) {
     const { replicates, runs, few } = live.so_far;
@@ -614,7 +614,8 @@ function boundary(of, note) {
     note ? el("span", { class: "small" }, el("br"), note) : null];
 }
 
-function boundariesOf(done) {
+function boundariesOf(job) {
+  const done = job.result;
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
@@ -624,7 +625,7 @@ function boundariesOf(done) {
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
-    scrolling("the boundaries", el("table", { class: "boundaries" },
+    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
       : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
@@ -649,13 +650,13 @@ const findings = (all) => [list(all.slice(0, 3)),
 
 function verdictOf(job) {
   const done = job.result;
-  if (job.kind === "design") return boundariesOf(done);
+  if (job.kind === "design") return boundariesOf(job);
   if (job.kind === "batch") {
-    return [...done.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")), samplesTable(done),
+    return [...done.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")), samplesTable(job, done),
       list(done.notes), el("p", { class: "small" }, done.leaves_out)];
   }
   if (job.kind === "compare") {
-    return [scrolling("the cases", el("table", {}, el("thead", {}, el("tr", {},
+    return [scrolling(`the cases of job ${job.id}`, el("table", {}, el("thead", {}, el("tr", {},
       ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
       el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),

@@ -180,7 +180,8 @@ impl WalkedRow {
         self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
     }
 
-    /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this unit.
+    /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
+    /// unit.
     pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
         let walk = |row: &Self| row.walk.clone();
         let of_walk = Columns::default()

@@ -1,5 +1,5 @@
-//! The specification of a filter for a base: the steps that lead to it, its band, and standard products beside
-//! it.
+//! The specification of a filter for a base: the steps that lead to it, its band, and standard products
+//! beside it.
 //!
 //! `verdict` makes it from the rules of practice, with its words.
 

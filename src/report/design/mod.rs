@@ -125,8 +125,8 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
         {
             "none"
         }
-        // Never in green where the model was not checked, practice does not agree or has a limit of which only
-        // the most is known, or a row has no answer.
+        // Never in green where the model was not checked, practice does not agree or has a limit of which
+        // only the most is known, or a row has no answer.
         (_, Some(_)) => "doubted",
     };
     html! {

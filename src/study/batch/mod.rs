@@ -62,7 +62,7 @@ pub fn found(plan: &BatchPlan, options: &CampaignOptions) -> Result<Option<Walke
 }
 
 impl BatchPlan {
-    /// The rows, with the walk of each pair that is done in this folder of the batch; while it is walked, too.
+    /// The rows, with the walk of each pair that is done in this folder of the batch, to whatever end.
     pub fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
         let walked = |case: &String| {
             let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;

@@ -107,7 +107,7 @@ fn a_real_thickness_is_compared_in_mm_alone() {
     }
 }
 
-/// 30 % of the base pass its finest sieve: whatever its size, of the limit of practice only the most is known.
+/// 30 % of the base pass its finest sieve: of the limit of practice only the most is known.
 #[test]
 fn a_base_of_whose_limit_only_the_most_is_known_is_not_said_to_be_kept() {
     let folder = tempfile::tempdir().unwrap();

@@ -86,8 +86,8 @@ impl DesignOptions {
         self.scene_of("about").map(|scene| scene.about.cover()).unwrap_or_default()
     }
 
-    /// What the scene reads of the settings of one key or section; what it refuses is refused where the whole of it is
-    /// read.
+    /// What the scene reads of the settings of one key or section; what it refuses is refused where the whole
+    /// of it is read.
     fn scene_of(&self, key: &str) -> Option<Scene> {
         let is_of = |setting: &&String| {
             let name = setting.split('=').next().unwrap_or_default().trim();
