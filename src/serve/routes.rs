@@ -240,7 +240,7 @@ impl Routes {
                 let asked: Asked = read(request)?;
                 let plan = self.comparison(&asked)?;
                 let title = plan.names().collect::<Vec<_>>().join(", ");
-                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(plan) })
+                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(Box::new(plan)) })
             }
             "design" => {
                 let asked: AskedDesign = read(request)?;

@@ -29,7 +29,7 @@ pub enum Work {
     /// Walks a scene.
     Judge(Box<Scene>),
     /// Walks several cases.
-    Compare(ComparePlan),
+    Compare(Box<ComparePlan>),
     /// Walks every sample against filters.
     Batch(Box<BatchPlan>),
     /// Finds how coarse a filter may be; the networks that are done in its folder are kept.
