@@ -11,18 +11,19 @@ pub fn whole_within(limit: f64, at_least: bool) -> f64 {
     if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
-/// A value and its limit with as many digits as tell them apart, and this many at the least. The limit is
-/// never more generous than it is.
+/// A value and its limit with as many digits as tell them apart, and this many at the least; of two that are
+/// the same, with as many as give both one text. The limit is never more generous than it is.
 pub(crate) fn value_and_limit(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
     let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {
         (Ok(shown), Ok(of)) => shown != of && (shown < of) == (value < limit),
         _ => shown != of,
     };
-    let alike = || [value, limit].map(|number| digits_within(number, digits, at_least));
-    // A limit that is just reached is kept.
+    // A limit that is just reached is kept, and the value reads as it does elsewhere.
+    let alike = || (digits..MOST).map(pair).find(|[shown, of]| shown == of);
+    let cut = || [value, limit].map(|number| digits_within(number, digits, at_least));
     let apart = (digits..MOST).filter(|_| value != limit).map(pair).find(is_order);
-    apart.unwrap_or_else(alike)
+    apart.or_else(alike).unwrap_or_else(cut)
 }
 
 /// A number with so many digits that mean something.
@@ -34,7 +35,7 @@ pub(crate) fn digits_of(value: f64, digits: i32) -> String {
 }
 
 fn decimals_of(value: f64, digits: i32) -> usize {
-    (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4) as usize
+    (digits - 1 - libm::floor(libm::log10(value.abs())) as i32).clamp(0, digits + 4) as usize
 }
 
 /// The same of a limit: a greatest rounded down, a least rounded up.
@@ -59,7 +60,11 @@ mod tests {
         assert_eq!(pair(3.52, 4.0), ["3.52", "4.00"]);
         // Rounded to the nearest the limit would be 2.86, too.
         assert_eq!(pair(2.8572, 2.857), ["2.86", "2.85"]);
-        assert_eq!([pair(2.8571, 2.8571), pair(2.8579, 2.8579)], [["2.85", "2.85"]; 2]);
+        // Of a limit that is just reached both have the digits with which neither is rounded up.
+        assert_eq!(pair(2.8571, 2.8571), ["2.857", "2.857"]);
+        assert_eq!(pair(2.8579, 2.8579), ["2.8579", "2.8579"]);
+        assert_eq!(pair(20.0 / 7.0 - 1e-9, 20.0 / 7.0 - 1e-9), ["2.857", "2.857"]);
+        assert_eq!(pair(2.0 / 3.0, 2.0 / 3.0), ["0.666", "0.666"]);
         assert_eq!(value_and_limit(0.1399, 0.14, true, 3), ["0.1399", "0.1400"]);
         for step in 0..2000 {
             let limit = 0.05 * libm::pow(1.005, f64::from(step % 700));

@@ -31,7 +31,7 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
 
 /// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
 /// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
-pub(super) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
+pub(crate) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
     let numbers = match (rule.value, rule.limit) {
         (Some(value), Some(limit)) => apart::value_and_limit(value, limit, rule.at_least, DIGITS).map(Some),
         (value, limit) => [

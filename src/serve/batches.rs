@@ -1,7 +1,7 @@
 //! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown,
 //! which grows as the walks are done.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -11,6 +11,7 @@ use crate::outcome::numbers::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
 use crate::outcome::with_inches;
 use crate::study::batch::BatchWalks;
+use crate::study::numbered;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::{BatchRow, WalkedBatch, WalkedRow};
 
@@ -41,8 +42,24 @@ pub struct AskedBatch {
     pub changes: Vec<String>,
 }
 
-/// Filters of a table.
+/// Most filters of a table.
 const FILTERS: usize = 6;
+
+/// The paths of the filters that the page names.
+///
+/// # Errors
+/// There is no such sheet; no filter, or too many of them.
+pub fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBuf>, String> {
+    match (1..=FILTERS).contains(&named.len()) {
+        true => named.iter().map(|name| sheets.path(name.as_ref())).collect(),
+        false => Err(format!("name one to {FILTERS} filters")),
+    }
+}
+
+/// What the page calls these filters: by their own names, numbered where two have the same.
+pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
+    numbered(paths.iter().map(|path| sheets.as_named(&path.display().to_string())).collect())
+}
 
 impl AskedBatch {
     /// Which pairs are walked.
@@ -63,10 +80,7 @@ impl AskedBatch {
     /// # Errors
     /// There is no such sheet; no filter, or too many of them.
     pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
-        if !(1..=FILTERS).contains(&self.filters.len()) {
-            return Err(format!("name one to {FILTERS} filters"));
-        }
-        let filters = self.filters.iter().map(|name| sheets.path(name)).collect::<Result<_, _>>()?;
+        let filters = filter_paths(sheets, &self.filters)?;
         Ok((sheets.path(whole_sheet(&self.base))?, filters))
     }
 }
@@ -89,9 +103,11 @@ pub fn table<T>(columns: Columns<T>, rows: &[T]) -> Value {
     })
 }
 
-/// The rows of a batch as far as they are walked.
+/// The rows of a batch as far as they are walked, and which of them are in doubt though a rule is met.
 pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
-    table(WalkedRow::columns(SizeUnit::of(false, inches)), rows)
+    let mut value = table(WalkedRow::columns(SizeUnit::of(false, inches)), rows);
+    value["doubted"] = json!(rows.iter().map(WalkedRow::is_doubted).collect::<Vec<_>>());
+    value
 }
 
 /// What the page shows of a batch that is done: its table, and what a client asks of each filter.
@@ -105,7 +121,6 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
         filter.in_words(&rules).into_iter().chain(walks).chain(answers).map(sized).collect()
     };
     let mut value = so_far(&batch.rows, batch.inches);
-    value["against"] = json!(batch.rows.iter().map(WalkedRow::is_against_practice).collect::<Vec<_>>());
     value["filters"] = json!(batch.filters.iter().map(of_filter).collect::<Vec<_>>());
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
@@ -113,7 +128,6 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
 }
 
 /// What a job is called whose samples and filters these are.
-pub fn title(samples: &Path, filters: &[PathBuf]) -> String {
-    let names: Vec<String> = filters.iter().map(|path| path.display().to_string()).collect();
-    format!("Every sample of {} on {}", samples.display(), names.join(", "))
+pub fn title(samples: &str, filters: &[String]) -> String {
+    format!("Every sample of {samples} on {}", filters.join(", "))
 }

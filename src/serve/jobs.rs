@@ -235,6 +235,9 @@ impl JobQueue {
             }
             let mut all = self.locked();
             let Some(job) = all.iter_mut().find(|job| job.id == id) else { continue };
+            if state == JobState::Done {
+                job.live.lock().unwrap_or_else(PoisonError::into_inner).end_batch();
+            }
             (job.state, job.message, job.result) = (state, message, result);
             // A scene is large, and needed no more.
             if file.is_some() {

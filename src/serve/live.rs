@@ -107,6 +107,13 @@ impl Live {
         self.batch = Some((rows, inches));
     }
 
+    /// A batch is done: its result has the table.
+    pub fn end_batch(&mut self) {
+        if let Some((rows, _)) = &mut self.batch {
+            *rows = Vec::new();
+        }
+    }
+
     /// A pair of a batch is walked.
     pub fn walked_pair(&mut self, at: usize, row: WalkedRow) {
         if let Some(there) = self.batch.as_mut().and_then(|(rows, _)| rows.get_mut(at)) {
@@ -123,6 +130,7 @@ impl Live {
 
     /// All of it, for a case that is walked in `runs` runs.
     pub fn snapshot(&self, runs: u64) -> Value {
+        let table = self.batch.as_ref().filter(|(rows, _)| !rows.is_empty());
         json!({
             "packing": self.packing.map(|[grains, steps, usual]| json!({
                 "grains": grains, "steps": steps, "usual": usual
@@ -138,7 +146,7 @@ impl Live {
             })).collect::<Vec<_>>(),
             // The table of a batch says it.
             "done": if self.batch.is_some() { json!([]) } else { json!(self.done) },
-            "table": self.batch.as_ref().map(|(rows, inches)| so_far(rows, *inches)),
+            "table": table.map(|(rows, inches)| so_far(rows, *inches)),
             "lines": self.lines,
             "warnings": self.warnings,
             "so_far": self.so_far(runs),

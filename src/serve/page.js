@@ -29,24 +29,6 @@ const number = (value) => {
   return value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3) ? value.toExponential(2)
     : String(Number(value.toPrecision(3)));
 };
-/** A value and its limit, with as many digits as tell them apart; the limit is never more generous than it is. */
-function valueAndLimit(value, limit, atLeast) {
-  if (value === null || limit === null) return [value === null ? "–" : number(value), limit === null ? "–" : within(limit, 3, atLeast)];
-  for (let digits = 3; digits < 9; digits++) {
-    const shown = [String(Number(value.toPrecision(digits))), within(limit, digits, atLeast)];
-    const [a, b] = shown.map(Number);
-    if (a !== b && (a < b) === (value < limit)) return shown;
-  }
-  return [within(value, 3, atLeast), within(limit, 3, atLeast)];
-}
-
-/** A limit of so many digits: a greatest rounded down, a least rounded up. */
-function within(limit, digits, atLeast) {
-  if (!(limit > 0)) return String(limit);
-  const parts = 10 ** (digits - 1 - Math.floor(Math.log10(limit)));
-  const steps = atLeast ? Math.ceil(limit * parts * (1 - 1e-9)) : Math.floor(limit * parts * (1 + 1e-9));
-  return String(Number((steps / parts).toPrecision(digits)));
-}
 
 const whole = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 const percent = (share) => {
@@ -296,7 +278,7 @@ function rowsOf(table, doubted) {
 }
 
 /** The samples of a sheet with their walks; no two of the page have one name. */
-const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table, table.against)));
+const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table, table.doubted)));
 
 /** Puts the drawing into the page itself, so that it can be asked for its values. */
 async function showCurves(query) {
@@ -372,13 +354,11 @@ function showRules(pair) {
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
   el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rows = (role) => pair.rules.filter((rule) => rule.role === role).map((rule) => {
-    const unit = rule.unit ? ` ${rule.unit}` : "";
-    const [value, limit] = valueAndLimit(rule.value, rule.limit, rule.at_least);
+  const rows = (role) => pair.rules.map((rule, at) => [rule, pair.shown[at]]).filter(([rule]) => rule.role === role).map(([rule, [value, limit]]) => {
     const sign = rule.at_least && rule.limit_at_most ? "not known; at most" : rule.at_least ? "≥" : "≤";
     return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
-      el("td", {}, rule.quantity), el("td", { class: "n" }, rule.value === null ? "–" : value + unit),
-      el("td", { class: "n" }, rule.limit === null ? "–" : `${sign} ${limit}${unit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}`),
+      el("td", {}, rule.quantity), el("td", { class: "n" }, value || "–"),
+      el("td", { class: "n" }, limit ? `${sign} ${limit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}` : "–"),
       el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},

@@ -20,6 +20,7 @@ use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{Gradation, curves_in_file, soils_in_file};
+use crate::outcome::numbers::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
@@ -255,8 +256,12 @@ impl Routes {
                 let asked: AskedBatch = read(request)?;
                 let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
                 let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
+                // Sheets have their own names here, of which two can be the same, and no folder.
+                let names = batches::filter_names(&self.sheets, &filters);
+                let of_samples = self.sheets.as_named(&samples.display().to_string());
                 let plan = self.batch(&asked, &samples, &filters)?;
-                let title = self.sheets.as_named(&batches::title(&samples, &filters));
+                let plan = plan.named(&of_samples, &names, |said| self.sheets.as_named(said));
+                let title = batches::title(&of_samples, &names);
                 Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
             }
             _ => Err((404, "there is no such work".into())),
@@ -330,7 +335,12 @@ impl Routes {
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
-        Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
+        // The page shows value and limit as every sheet does, and works nothing out.
+        let shown: Vec<_> =
+            pair.rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
+        let mut value = serde_json::to_value(pair).map_err(wrong)?;
+        value["shown"] = json!(shown);
+        Ok(Answer::json(200, &value))
     }
 
     /// The rules of practice on every sample of a sheet.

@@ -112,7 +112,9 @@ impl WorkContext {
                 Ok(serde_json::to_value(compare::run(plan, &options, false, &callbacks)?)?)
             }
             Work::Batch(plan) => {
-                live().batch(plan.so_far(folder), plan.shows_inches());
+                // Outcomes are read before the page is kept waiting.
+                let rows = plan.so_far(folder);
+                live().batch(rows, plan.shows_inches());
                 let options = of_cases(folder, &self.prepare, &self.command);
                 let callbacks = CampaignCallbacks {
                     run: callbacks,
