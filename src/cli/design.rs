@@ -13,19 +13,23 @@ use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError};
+use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
-/// How settings of the sheet begin.
-const SHEET: &str = "about.";
+/// The setting of the sheet besides its cover that a specification takes.
+const UNITS: &str = "about.units";
 
 /// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    if let Some(other) = args.settings.iter().find(|of| args.steps && !of.trim().starts_with(SHEET)) {
-        let problem = "with --steps nothing is walked, and of the settings it takes those of [about] alone";
+    let of_steps = [About::texts(), vec![UNITS.into()]].concat();
+    let is_taken = |set: &str| of_steps.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
+    if let Some(other) = args.settings.iter().find(|set| args.steps && !is_taken(set)) {
+        let takes = of_steps.join(", ");
+        let problem = format!("--steps walks nothing, and takes no other settings than {takes}");
         return Err(RunError::Refused(format!("--set {other}: {problem}")));
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));

@@ -91,7 +91,9 @@ impl StudyOfCases<'_> {
         let folder = claim(&options.out, kind, true)?;
         let other = || {
             let name = kind.name();
-            let problem = format!("holds another {name}; name another folder, or remove that one");
+            // The command that makes a comparison of its samples has no such option.
+            let or = if kind == FolderKind::Batch { "add --overwrite" } else { "remove that one" };
+            let problem = format!("holds another {name}; name another folder, or {or}");
             Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
         };
         if kind.is_finished(folder.path())? {

@@ -173,7 +173,8 @@ impl<'a> Case<'a> {
                 of_walk_alone(sizes, *held)
             ),
             Self::OpenBase(rule, held) => format!(
-                "The finest D85B is not known: of the limit of practice only the most is known ({}; {}){}",
+                "The finest D85B is not known: only an upper bound of the limit of practice is known ({}; \
+                 {}){}",
                 cited_rule(rule),
                 rule.needs,
                 of_walk_alone(sizes, *held)

@@ -159,6 +159,37 @@ fn killed_at_any_time_and_continued_the_table_is_the_same() {
     assert_eq!(text("killed"), text("whole"));
 }
 
+/// Another cover walks no sample again, and stands on the pages of the samples, too.
+#[test]
+fn a_cover_is_added_to_designs_that_are_done() {
+    let root = site();
+    let at = root.path();
+    designed(at, &words("samples.csv", "d"));
+    let samples = || -> Vec<PathBuf> {
+        let mut all: Vec<PathBuf> =
+            fs::read_dir(at.join("d/samples")).unwrap().map(|of| of.unwrap().path()).collect();
+        all.sort();
+        all
+    };
+    let of_walks = |folder: &PathBuf| {
+        let file = folder.join("design.csv");
+        (fs::read(&file).unwrap(), fs::metadata(&file).unwrap().modified().unwrap())
+    };
+    let before: Vec<_> = samples().iter().map(of_walks).collect();
+    let covered = ["--set", "about.client=Water Board", "--set", "about.revision=2", "--overwrite"];
+    designed(at, &[&words("samples.csv", "d")[..], &covered].concat());
+    assert_eq!(samples().iter().map(of_walks).collect::<Vec<_>>(), before);
+    let page = |file: PathBuf| fs::read_to_string(file).unwrap();
+    let pages = samples().into_iter().map(|of| page(of.join("design.html")));
+    for page in pages.chain([page(at.join("d/designs.html"))]) {
+        assert!(page.contains("<dt>Client</dt> <dd><bdi>Water Board</bdi></dd>"));
+        assert!(page.contains("<dt>Revision</dt> <dd><bdi>2</bdi></dd>") && page.contains("<dt>Date</dt>"));
+    }
+    // What the walks follow from is walked.
+    designed(at, &[&words("samples.csv", "d")[..], &["--set", "seed=7", "--overwrite"]].concat());
+    assert!(samples().len() > before.len());
+}
+
 #[test]
 fn by_practice_alone_nothing_is_walked_and_a_folder_of_sheets_is_taken() {
     let root = site();

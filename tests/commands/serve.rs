@@ -577,6 +577,33 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
     assert_eq!(served.get("api/rules?base=2&filter=1&as_given=1").0, 200);
     let pair = served.json("api/rules?base=1&filter=2");
     assert_eq!(pair["base"]["d85_mm"], pair["base"]["d85_as_sampled_mm"]);
+    // A limit that is just reached reads as kept, in the texts of the program.
+    let base = "size_mm,percent_finer\n0.08,0\n0.299,85\n0.4,100\n";
+    let filter = "size_mm,percent_finer\n0.9,0\n1.196,15\n3,100\n";
+    let [base, filter] = [("b.csv", base), ("f.csv", filter)].map(|(name, text)| {
+        let (status, sheet) = served.sheet(name, text);
+        assert_eq!(status, 200, "{sheet}");
+        sheet["id"].clone()
+    });
+    let pair = served.json(&format!("api/rules?base={base}&filter={filter}"));
+    let rules = pair["rules"].as_array().unwrap().iter().zip(pair["shown"].as_array().unwrap());
+    let number =
+        |text: &Value| -> f64 { text.as_str().unwrap().split('\u{202f}').next().unwrap().parse().unwrap() };
+    let mut reached = 0;
+    for (rule, shown) in rules {
+        assert_eq!(
+            (rule["value"].is_null(), rule["limit"].is_null()),
+            (shown[0].is_null(), shown[1].is_null())
+        );
+        let (Some(value), Some(limit)) = (rule["value"].as_f64(), rule["limit"].as_f64()) else { continue };
+        reached += usize::from(value == limit);
+        assert_eq!(
+            number(&shown[0]).total_cmp(&number(&shown[1])),
+            value.total_cmp(&limit),
+            "{rule} {shown}"
+        );
+    }
+    assert!(reached > 0, "{pair}");
     // A path is no shape, a soil that is none no base, and nothing is left of either.
     for shape in ["narrow.csv", "./narrow.csv", "/etc/passwd", "../x", "sheets/1/narrow.csv"] {
         let (status, said) = served.design(&[], json!({ "shape": shape }));

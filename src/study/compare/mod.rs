@@ -62,8 +62,13 @@ pub fn run(
 /// A case that is wrong, and a folder that holds anything else, another comparison too.
 pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Comparison>, RunError> {
     campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
-    let is_this = |there: &Comparison, _: &[PreparedCase]| {
-        let cover = plan.cover.clone().dated(there.cover.date.clone());
+    let walks = options.out.join(WALKS);
+    let is_this = |there: &Comparison, cases: &[PreparedCase]| {
+        let folders = cases.iter().filter_map(|case| Some(walks.join(case.line(&walks)?.folder)));
+        let folders: Vec<PathBuf> = folders.collect();
+        let day = last_day(folders.iter().map(PathBuf::as_path));
+        // Earlier versions wrote no date.
+        let cover = plan.cover.clone().dated(day.filter(|_| there.cover.date.is_some()));
         there.of == plan.of
             && (&there.cover, there.inches) == (&cover, plan.inches)
             && there.cases.iter().map(|case| case.name.as_str()).eq(plan.names())
