@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::numbers::SizeUnit;
-use super::record::{Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict};
+use super::record::{Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 
@@ -27,6 +27,9 @@ pub struct Comparison {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// The cases, in the order in which they were named.
     pub cases: Vec<ComparedCase>,
     /// Every two cases, in that order, for each run that both have.
@@ -171,6 +174,7 @@ impl Comparison {
             common: common.into(),
             seed,
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             cases: cases.collect(),
             pairs: compared,
             threshold: super::verdict::THRESHOLD,

@@ -5,6 +5,7 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::cases;
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, ORANGE, PURPLE, Point, Rule, Shape, VERMILLION,
@@ -80,7 +81,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         code { "batch.csv" } " its table with further columns."
     } };
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
-        .cover(&batch.cover, &clean(&batch.version), Some(batch.seed))
+        .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
         .inches(batch.inches)
         .words(&first)
         .contents()

@@ -5,6 +5,7 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::cases;
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
@@ -136,7 +137,11 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
     } };
     Sections::new(format!("Comparison of {}", clean(&comparison.of)), question, &names)
-        .cover(&comparison.cover, &clean(&comparison.version), Some(comparison.seed))
+        .cover(
+            &comparison.cover,
+            &program(&comparison.version, comparison.commit.as_deref()),
+            Some(comparison.seed),
+        )
         .inches(comparison.inches)
         .words(&first)
         .contents()

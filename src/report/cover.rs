@@ -10,6 +10,14 @@ use crate::outcome::record::SheetCover;
 /// Characters of a text of the user's that are shown.
 pub(super) const LINE: usize = 120;
 
+/// Version and commit of the program, in short.
+pub(super) fn program(version: &str, commit: Option<&str>) -> String {
+    match commit {
+        Some(commit) => format!("{version} ({})", shorten(commit, 12)),
+        None => version.to_owned(),
+    }
+}
+
 /// What was stated, the date, the program and, where something was walked, its seed.
 pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
     let facts = [
@@ -34,6 +42,15 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_program_is_named_with_the_commit_that_it_was_built_from() {
+        assert_eq!(
+            program("1.0", Some("0123456789abcdef")),
+            format!("1.0 ({})", shorten("0123456789abcdef", 12))
+        );
+        assert_eq!(program("1.0", None), "1.0");
+    }
 
     #[test]
     fn every_field_stands_once_and_what_is_not_said_is_left_out() {

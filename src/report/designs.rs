@@ -4,6 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
@@ -65,7 +66,11 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         citation()
     };
     Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
-        .cover(&all.cover, &clean(&all.version), all.walks.as_ref().map(|of| of.seed))
+        .cover(
+            &all.cover,
+            &program(&all.version, all.commit.as_deref()),
+            all.walks.as_ref().map(|of| of.seed),
+        )
         .inches(all.inches)
         .words(&first)
         .contents()

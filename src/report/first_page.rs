@@ -4,7 +4,7 @@
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::cover::{LINE, cover};
+use super::cover::{LINE, cover, program};
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
@@ -71,10 +71,7 @@ pub(super) fn header(folder: &RunFolder) -> Markup {
 fn about(folder: &RunFolder) -> Markup {
     let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about;
     let manifest = &folder.manifest;
-    let program = match manifest.commit.as_deref() {
-        Some(commit) => format!("{} ({})", manifest.version, shorten(commit, 12)),
-        None => manifest.version.clone(),
-    };
+    let program = program(&manifest.version, manifest.commit.as_deref());
     let day = manifest.finished.split('T').next().map(String::from);
     cover(&said.cover.dated(day), &program, Some(folder.outcome.seed))
 }

@@ -11,7 +11,7 @@ use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{Confidence, ModelLimit, SheetCover};
+use crate::outcome::record::{Confidence, ModelLimit, SheetCover, commit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -35,6 +35,9 @@ const SHOWN: [&str; 11] = [
 pub struct DesignedSamples {
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Hash of everything that the rows follow from: samples, shape of the filter and settings.
     pub work: String,
     /// The samples, as they were named.
@@ -302,6 +305,7 @@ impl DesignedSamples {
         }
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             work: String::new(),
             samples,
             filter: String::new(),

@@ -8,7 +8,7 @@ use super::conclusion::probabilities;
 use crate::outcome::BaseSize;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{
-    Bound, Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict,
+    Bound, Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit,
 };
 use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
@@ -36,6 +36,9 @@ const SHOWN: [&str; 13] = [
 pub struct WalkedBatch {
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Hash of everything that the rows follow from: samples, filters and settings.
     pub work: String,
     /// Seed of every walk.
@@ -152,6 +155,7 @@ impl WalkedBatch {
     pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             work: String::new(),
             seed: 0,
             samples,

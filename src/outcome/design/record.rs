@@ -19,6 +19,9 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
     /// versions, of which [`Design::answer()`] works it out.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -17,6 +17,9 @@ use crate::outcome::record::SheetCover;
 pub struct Specification {
     /// Version of voidwalk.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Name of the base.
     pub base: String,
     /// Whether it was said to be dispersive.

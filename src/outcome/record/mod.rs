@@ -34,7 +34,7 @@ pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,
 };
-pub use manifest::{InputFile, Manifest};
+pub use manifest::{InputFile, Manifest, commit};
 pub use practice::{LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};

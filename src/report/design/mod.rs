@@ -8,6 +8,7 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
+use super::cover::program;
 use super::error::ReportError;
 use super::files::{json, rows};
 use super::names::soil_name;
@@ -58,7 +59,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
-        .cover(&design.cover, &clean(&design.version), Some(design.seed))
+        .cover(&design.cover, &program(&design.version, design.commit.as_deref()), Some(design.seed))
         .inches(design.inches)
         .words(&sheet)
         .figures(figure::erosion(&design, &walks))
@@ -251,6 +252,7 @@ mod tests {
         Design {
             specification: None,
             version: "1".into(),
+            commit: None,
             answer: None,
             boundaries: vec![DesignRow {
                 density: "<loose>".into(),

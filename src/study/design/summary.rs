@@ -15,7 +15,7 @@ use crate::outcome::design::{
     NetworkBoundaries, Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{Confidence, FindingRecord};
+use crate::outcome::record::{Confidence, FindingRecord, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
@@ -100,6 +100,7 @@ pub(super) fn design(
         answer: None,
         specification: None,
         version: env!("CARGO_PKG_VERSION").into(),
+        commit: commit(),
         inverse: options.inverse,
         base: base(first, &judged.base_name),
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
