@@ -78,8 +78,8 @@ impl BatchRow {
         self.limit_mm.is_none() || self.limit_at_most
     }
 
-    /// D15F of the filter and its limit as they stand beside each other, each with this name of its unit: with
-    /// as many digits as tell them apart.
+    /// D15F of the filter and its limit as they stand beside each other, each with this name of its unit:
+    /// with as many digits as tell them apart.
     pub(crate) fn d15f_and_limit(&self, unit: SizeUnit, name: &str) -> [Option<String>; 2] {
         unit.within([self.d15f_mm, self.limit_mm], name)
     }

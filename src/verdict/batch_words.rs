@@ -57,8 +57,8 @@ impl WalkedRow {
         matches!(class, Some(Verdict::Some | Verdict::Continuing))
     }
 
-    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not kept,
-    /// or its walk erodes.
+    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not
+    /// kept, or its walk erodes.
     pub fn is_doubted(&self) -> bool {
         self.is_against_practice() || self.erodes()
     }

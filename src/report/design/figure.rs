@@ -133,8 +133,8 @@ impl Allowed {
     fn words(&self) -> &'static str {
         match self {
             Self::NotKnown => {
-                "Grey: no erosion in the model. Nothing is green, because only an upper bound of the limit of \
-                 practice is known"
+                "Grey: no erosion in the model. Nothing is green, because only an upper bound of the limit \
+                 of practice is known"
             }
             _ => "Green: no erosion, as far as practice allows it; grey: no erosion beyond that",
         }

@@ -1888,6 +1888,8 @@ class Specification(_Specification, total=False):
     ----
     version
         Version of voidwalk.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     base
         Name of the base.
     dispersive
@@ -1918,6 +1920,7 @@ class Specification(_Specification, total=False):
         Standard products beside it; empty where neither limit of D15F is known.
     """
 
+    commit: Optional[str]
     cover: SheetCover
     inches: bool
     d15f_min_at_most: bool
@@ -1963,6 +1966,8 @@ class Design(_Design, total=False):
         Version of the program that wrote it.
     version
         Version of voidwalk.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     answer
         How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
         versions, of which `Design::answer()` works it out.
@@ -2027,6 +2032,7 @@ class Design(_Design, total=False):
         Wall time (s).
     """
 
+    commit: Optional[str]
     answer: Optional[DesignAnswer]
     findings: List[DesignFinding]
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
@@ -2200,6 +2206,8 @@ class Comparison(_Comparison, total=False):
         Seed of every case.
     version
         Version of the program.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     cases
         The cases, in the order in which they were named.
     pairs
@@ -2214,6 +2222,7 @@ class Comparison(_Comparison, total=False):
         What no case contains; records of earlier versions do not say.
     """
 
+    commit: Optional[str]
     cover: SheetCover
     inches: bool
 
