@@ -256,7 +256,6 @@ impl Routes {
                 let asked: AskedBatch = read(request)?;
                 let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
                 let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
-                // Sheets have their own names here, of which two can be the same, and no folder.
                 let names = batches::filter_names(&self.sheets, &filters);
                 let of_samples = self.sheets.as_named(&samples.display().to_string());
                 let plan = self.batch(&asked, &samples, &filters)?;
