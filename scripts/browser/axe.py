@@ -15,6 +15,9 @@ UNREACHED = """[...document.querySelectorAll('a[href], button, input, select, te
   .filter((one) => !one.disabled && one.getClientRects().length && !one.reached && !(one.type === 'radio' && !one.checked))
   .map((one) => one.outerHTML.slice(0, 80))"""
 
+# A walk that takes moments.
+SMALL = "network.nx=6\nnetwork.ny=6\nnetwork.nz=8\nrecord.sensitivity=[]"
+
 EXAMPLES = ["a-base-and-a-filter", "two-filters", "samples"]
 
 
@@ -60,7 +63,26 @@ def pages(browser, url, pictures, looked, width):
         looked.look(tab, name)
     looked.keys(tab, "samples")
     tab.printed(f"samples-{width}")
+    batch(tab, looked)
     return tab
+
+
+def batch(tab, looked):
+    """Walks the samples by keys alone; the table is looked at while it grows, and when all is walked."""
+    tab.settings(SMALL + "\nreplicates=40")
+    jobs = tab.run("document.querySelectorAll('.job').length")
+    tab.run("document.querySelector('#walk-samples').focus()")
+    for kind in ("keyDown", "keyUp"):
+        tab.browser.ask("Input.dispatchKeyEvent", tab.tab, type=kind, key="Enter", code="Enter", text="\r" if kind == "keyDown" else "", windowsVirtualKeyCode=13)
+    tab.until(f"document.querySelectorAll('.job').length > {jobs} && document.querySelector('.job .samples') !== null", 60)
+    looked.look(tab, "batch-growing")
+    tab.job(0, "done", 300)
+    tab.until("document.querySelectorAll('.job .samples tbody tr').length >= 6")
+    wide = tab.run("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    if wide > 0:
+        looked.found.append(f"batch, {tab.width} px: the page is {wide} px too wide")
+    looked.look(tab, "batch")
+    looked.keys(tab, "batch")
 
 
 def main(binary, axe, pictures):
@@ -73,7 +95,7 @@ def main(binary, axe, pictures):
             for width in (1280, 390):
                 tab = pages(browser, url, pictures, looked, width)
             tab.run("document.querySelectorAll('#try button')[0].click()")
-            tab.settings("network.nx=6\nnetwork.ny=6\nnetwork.nz=8\nrecord.sensitivity=[]\nreplicates=4")
+            tab.settings(SMALL + "\nreplicates=4")
             tab.click("#judge")
             tab.job(0, "done", 120)
             looked.look(tab, "result")

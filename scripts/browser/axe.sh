@@ -1,6 +1,6 @@
 #!/bin/sh
-# Looks for barriers on the page of `voidwalk serve` with axe-core: empty, with each example, with a result, at 1280 and at 390 px, in
-# the light and in the dark; and goes through it by the Tab key at 390 px.
+# Looks for barriers on the page of `voidwalk serve` with axe-core: empty, with each example, with a batch that is walked (begun by
+# keys) and one that is done, with a result, at 1280 and at 390 px, in the light and in the dark; and goes through it by the Tab key.
 #
 #   scripts/browser/axe.sh [BINARY]      target/release/voidwalk unless given
 #

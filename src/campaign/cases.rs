@@ -19,7 +19,7 @@ use crate::store::{Folder, StoreError, read_regular, read_whole};
 pub(super) const LINE: &str = "case.json";
 
 /// Folder of the cases, inside the campaign's.
-pub(super) const CASES: &str = "cases";
+pub(crate) const CASES: &str = "cases";
 
 /// Why a case could not be walked, where it was tried last.
 pub(super) const PROBLEM: &str = "problem.txt";

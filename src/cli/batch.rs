@@ -11,7 +11,9 @@ use super::values::{of_soils, with_options};
 use crate::campaign::CampaignOptions;
 use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::outcome::comparison::Comparison;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
+use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;
 use crate::study::compare::{self, ComparePlan, Compared};
@@ -40,19 +42,19 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
     let rows = &table.rows;
     let walks = walks(args, rows)?;
     if let Some(path) = &args.csv {
-        let csv = columns().csv(rows);
+        let csv = columns(SizeUnit::Mm).csv(rows);
         // A call that continues finds the table that it wrote.
         if std::fs::read(path).ok().as_ref() != Some(&csv) {
             write_new(path, &csv)?;
         }
     }
-    let mut text = aligned(columns(), rows);
+    let mut text = aligned(columns(SizeUnit::Mm), rows);
     let notes: Vec<String> =
         table.notes.iter().map(|(file, note)| format!("{}: {note}", shown(file))).collect();
     text += &in_notes(&notes);
     for filter in &table.filters {
         text.push('\n');
-        text += &of_filter(rows, filter);
+        text += &of_filter(rows, filter, false);
         text += &to_walk(rows, Path::new(&filter.name), args.walk.is_some());
     }
     if let Some(path) = &args.csv {
@@ -136,8 +138,9 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
 }
 
 /// How many samples a filter retains, and which govern.
-pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter) -> String {
-    filter.in_words(rows).iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
+pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
+    let line = |said: String| plain(&if inches { with_inches(&said) } else { said });
+    filter.in_words(rows).into_iter().map(line).collect::<Vec<_>>().join("\n  ") + "\n"
 }
 
 /// The command that walks the samples that govern, or that nothing was walked.

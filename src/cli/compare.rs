@@ -10,6 +10,7 @@ use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_std
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::Comparison;
+use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
@@ -81,6 +82,7 @@ fn words(comparison: &Comparison) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |said: String| {
+        let said = if comparison.inches { with_inches(&said) } else { said };
         let _ = writeln!(text, "{}", plain(&said));
     };
     for case in &comparison.cases {

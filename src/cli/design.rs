@@ -13,21 +13,32 @@ use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError};
+use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
+/// The setting of the sheet besides its cover that a specification takes.
+const UNITS: &str = "about.units";
+
 /// Finds the boundaries and writes them into a folder; or the specification by practice alone.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
-        return specification(args, base);
+    let of_steps = [About::texts(), vec![UNITS.into()]].concat();
+    let is_taken = |set: &str| of_steps.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
+    if let Some(other) = args.settings.iter().find(|set| args.steps && !is_taken(set)) {
+        let takes = of_steps.join(", ");
+        let problem = format!("--steps walks nothing, and takes no other settings than {takes}");
+        return Err(RunError::Refused(format!("--set {other}: {problem}")));
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
     let [dispersive, _] = of_soils(args.dispersive, None);
     let units = args.units.map(|units| format!("about.units={}", units.name()));
     let settings = with_options(&args.settings, [("--seed", seed), dispersive, ("--units", units)])?;
+    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
+        return specification(args, base, &settings);
+    }
     let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
         base: args.base.clone(),

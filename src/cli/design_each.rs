@@ -7,6 +7,7 @@ use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
@@ -36,7 +37,9 @@ pub(super) fn design_each(args: &DesignArgs, samples: &Path, design: DesignOptio
 }
 
 fn words(all: &DesignedSamples, out: &Path) -> String {
-    let mut text = aligned(DesignedSample::columns(), &all.rows) + &in_notes(&all.notes) + "\n";
+    let mut text = aligned(DesignedSample::columns(SizeUnit::of(false, all.inches)), &all.rows)
+        + &in_notes(&all.notes)
+        + "\n";
     for said in all.in_words() {
         let said = if all.inches { with_inches(&said) } else { said };
         // Writing to a string cannot fail.

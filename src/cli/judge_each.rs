@@ -9,6 +9,8 @@ use super::case_progress::CaseProgress;
 use super::compare::campaign_options;
 use super::exit::accept_walked;
 use super::print::{json, plain, shown, to_stdout};
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
@@ -62,17 +64,19 @@ fn name(row: &WalkedRow) -> String {
 }
 
 fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
-    let mut text = aligned(WalkedRow::columns(), &batch.rows) + &in_notes(&batch.notes);
+    let unit = SizeUnit::of(false, batch.inches);
+    let mut text = aligned(WalkedRow::columns(unit), &batch.rows) + &in_notes(&batch.notes);
+    let sized = |said: String| plain(&if batch.inches { with_inches(&said) } else { said });
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     for filter in &batch.filters {
         // Writing to a string cannot fail.
-        let _ = write!(text, "\n{}", of_filter(&rules, filter));
+        let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
         for said in batch.walks_in_words(&filter.name) {
-            let _ = writeln!(text, "  {}", plain(&said));
+            let _ = writeln!(text, "  {}", sized(said));
         }
         for row in batch.governing(&filter.name) {
             let said = format!("{}: {}", row.rules.sample, row.answer_in_words());
-            let _ = writeln!(text, "  {}", plain(&said));
+            let _ = writeln!(text, "  {}", sized(said));
         }
     }
     if batch.rows.iter().any(|row| row.rules.is_refused) {

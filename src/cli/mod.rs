@@ -33,10 +33,12 @@ mod run;
 mod schemas;
 #[cfg(feature = "serve")]
 mod serve;
+mod shared_args;
 mod shell;
 mod soil;
 mod specification;
 mod start;
+mod study_args;
 mod values;
 mod write_examples;
 

@@ -4,12 +4,12 @@ use super::args::RulesArgs;
 use super::batch::{SEVERAL_FILTERS, each};
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
+use crate::outcome::apart::{digits_within, value_and_limit};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
-use crate::verdict::practice::digits_within;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -148,10 +148,13 @@ fn row(rule: &AppliedRule) -> String {
         (false, false) => ("<=", ""),
     };
     let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
-    let limit = rule.limit.map_or(String::new(), |limit| {
-        format!(", {sign} {}{unit}{at_most}", digits_within(limit, 3, rule.at_least))
-    });
-    format!("  {result:<11}{}: {} = {}{unit}{limit}", rule.name, rule.quantity, number(rule.value))
+    let (value, limit) = match (rule.value, rule.limit) {
+        (Some(value), Some(limit)) => value_and_limit(value, limit, rule.at_least, 3).map(Some).into(),
+        (value, limit) => (Some(number(value)), limit.map(|limit| digits_within(limit, 3, rule.at_least))),
+    };
+    let value = value.unwrap_or_default();
+    let limit = limit.map_or(String::new(), |limit| format!(", {sign} {limit}{unit}{at_most}"));
+    format!("  {result:<11}{}: {} = {value}{unit}{limit}", rule.name, rule.quantity)
 }
 
 /// Four digits that mean something.

@@ -11,21 +11,23 @@ use crate::outcome::design::specification::{ProductMargin, Specification};
 use crate::outcome::numbers::{significant, trimmed};
 use crate::outcome::with_inches;
 use crate::run::RunError;
-use crate::scene::SheetUnits;
+use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
 
-/// Makes the specification for a base and writes it into a folder.
-pub(super) fn specification(args: &DesignArgs, base: &Path) -> Result<(), RunError> {
+/// Makes the specification for a base and writes it into a folder; of the settings those of the sheet count.
+pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String]) -> Result<(), RunError> {
+    let about = Scene::built_in(settings)?.about;
     let out = args.out.clone().unwrap_or_else(|| FOLDER.into());
     let options = SpecifyOptions {
         base: base.to_owned(),
         dispersive: args.dispersive,
         sieves: args.sieves,
-        inches: args.units == Some(SheetUnits::Us),
+        cover: about.cover(),
+        inches: about.shows_inches(),
         out: out.clone(),
         overwrite: args.overwrite,
     };

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::numbers::SizeUnit;
 use super::record::{BaseRecord, Inputs};
+use crate::gradation::us_sieve;
 
 /// D85 of a base (mm), of the base as it is walked.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,13 +31,18 @@ impl BaseSize {
         self.words_in(SizeUnit::Mm)
     }
 
-    /// The same, with inches behind each D85 where they are shown.
+    /// The same, with inches behind each D85 and the name of a US sieve where those are shown.
     pub fn words_in(&self, unit: SizeUnit) -> String {
         let size = |mm: f64| format!("{} mm{}", three(mm), unit.beside(mm));
         let before = self.as_sampled_mm.filter(|_| self.regraded_at_mm.is_some());
         let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
         let comma = if self.regraded_at_mm.is_some() { "," } else { "" };
-        format!("D85B {}{comma} {}{before}", size(self.d85_mm), self.grading())
+        let sieve = self.regraded_at_mm.filter(|_| unit == SizeUnit::MmAndInches);
+        let grading = match sieve.and_then(|at| Some((us_sieve(at)?, at))) {
+            Some((name, at)) => format!("regraded on {name}, {} mm", three(at)),
+            None => self.grading(),
+        };
+        format!("D85B {}{comma} {grading}{before}", size(self.d85_mm))
     }
 }
 
@@ -75,6 +81,12 @@ mod tests {
     fn a_d85_says_which_base_it_is_of() {
         let till = BaseSize { d85_mm: 1.8, regraded_at_mm: Some(4.75), as_sampled_mm: Some(12.8) };
         assert_eq!(till.words(), "D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)");
+        let us = till.words_in(SizeUnit::MmAndInches);
+        assert_eq!(
+            us,
+            "D85B 1.80 mm (0.0709\u{202f}in), regraded on No. 4, 4.75 mm (as sampled 12.8 mm \
+             (0.504\u{202f}in))"
+        );
         let sand = BaseSize { d85_mm: 0.4123, regraded_at_mm: None, as_sampled_mm: None };
         assert_eq!(sand.words(), "D85B 0.412 mm as sampled");
         let old = BaseSize { as_sampled_mm: None, ..till };

@@ -1,7 +1,7 @@
 //! The columns that the tables of campaigns and of comparisons share.
 
 use super::BaseSize;
-use super::numbers::{percent, significant, size, whole};
+use super::numbers::{SizeUnit, percent, significant, whole};
 use super::record::{Confidence, Ratios, Statistic};
 use super::table::{Columns, TableCell};
 
@@ -37,10 +37,15 @@ impl<'a, T: 'a> Columns<'a, T> {
     }
 
     /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
-    pub(crate) fn ratios(self, decimals: usize, of: fn(&T) -> (Ratios, Option<BaseSize>)) -> Self {
+    pub(crate) fn ratios(
+        self,
+        decimals: usize,
+        unit: SizeUnit,
+        of: fn(&T) -> (Ratios, Option<BaseSize>),
+    ) -> Self {
         let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
         self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
-            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words())))
+            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words_in(unit))))
             .place(1)
             .digits("d15f_over_d95b", decimals, move |row| Some(of(row).0.d15f_over_d95b))
             .headed("D15F/ D95B")
@@ -63,12 +68,13 @@ impl<'a, T: 'a> Columns<'a, T> {
     }
 
     /// The thickness of the filter: in a file in mm alone, on a page with its unit and, where given, layers.
-    pub(super) fn thickness(self, decimals: usize, of: fn(&T) -> Thickness) -> Self {
+    pub(super) fn thickness(self, decimals: usize, unit: SizeUnit, of: fn(&T) -> Thickness) -> Self {
         let in_mm = move |row: &T| of(row).0.filter(|_| !of(row).1);
         self.digits("thickness_mm", decimals, in_mm).number("Thickness", move |row| {
             let (thickness, scale_free, layers) = of(row);
             let layers = layers.map(|layers| format!("{} layers", whole(layers)));
-            thickness.map(|thickness| size(thickness, scale_free)).shown().below(layers)
+            let unit = if scale_free { SizeUnit::D0f } else { unit };
+            thickness.map(|thickness| unit.size(thickness)).shown().below(layers)
         })
     }
 }

@@ -7,7 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{Confidence, ModelLimit, Outcome, Ratios, Statistic, Verdict};
+use super::numbers::SizeUnit;
+use super::record::{Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 
@@ -26,12 +27,21 @@ pub struct Comparison {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// The cases, in the order in which they were named.
     pub cases: Vec<ComparedCase>,
     /// Every two cases, in that order, for each run that both have.
     pub pairs: Vec<ComparedPair>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
+    /// What the sheet says of itself; without a day in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// What no case contains; records of earlier versions do not say.
     #[serde(default)]
     pub model_leaves_out: Vec<ModelLimit>,
@@ -164,9 +174,12 @@ impl Comparison {
             common: common.into(),
             seed,
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             cases: cases.collect(),
             pairs: compared,
             threshold: super::verdict::THRESHOLD,
+            cover: SheetCover::default(),
+            inches: false,
             model_leaves_out: leaves_out_of_all(outcomes.iter().map(|(.., outcome)| outcome.modelled())),
         }
     }
@@ -190,8 +203,8 @@ fn differences(one: &Outcome, other: &Outcome) -> Vec<Vec<f64>> {
 }
 
 impl ComparedCase {
-    /// The columns of `compare.csv` and of the page's table.
-    pub fn columns() -> Columns<'static, Self> {
+    /// The columns of `compare.csv` and of the page's table, whose sizes are shown in this unit.
+    pub fn columns(unit: SizeUnit) -> Columns<'static, Self> {
         Columns::default()
             .column("case", |case: &Self| case.name.clone())
             .headed("Case")
@@ -205,12 +218,12 @@ impl ComparedCase {
             .column("n_base", |case| case.n_base)
             .headed("Base particles")
             .place(3)
-            .ratios(6, |case| (case.ratios, case.base))
+            .ratios(6, unit, |case| (case.ratios, case.base))
             .eroded(|case, run| (case.runs.get(run).copied(), case.curve_range.get(run).copied()))
             .digits("grains_per_void", 5, |case| case.grains_per_void)
             .headed("Grains per void")
             .place(2)
-            .thickness(5, |case| (case.thickness_mm, case.scale_free, None))
+            .thickness(5, unit, |case| (case.thickness_mm, case.scale_free, None))
             .place(2)
             .column("folder", |case| case.folder.clone())
     }

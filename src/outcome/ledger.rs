@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::digits::count;
-use super::numbers::whole;
+use super::numbers::{SizeUnit, whole};
 use super::record::{Confidence, ModelLimit, Outcome, Ratios, RunSummary, Verdict};
 use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
@@ -170,7 +170,7 @@ impl LedgerLine {
             .column("warnings", |line| line.warnings.len())
             .headed("Warnings")
             .column("layers", |line| line.thickness.map(|thickness| thickness.layers))
-            .thickness(3, |line| {
+            .thickness(3, SizeUnit::Mm, |line| {
                 let of = line.thickness;
                 (of.and_then(|of| of.mm), of.is_some_and(|of| of.scale_free), of.map(|of| of.layers))
             })
@@ -185,7 +185,7 @@ impl LedgerLine {
             .digits("grains_per_void", 5, |line| line.grains_per_void)
             .headed("Grains per void")
             .place(2)
-            .ratios(5, |line| (line.ratios, line.base))
+            .ratios(5, SizeUnit::Mm, |line| (line.ratios, line.base))
             .eroded(|line, run| (line.runs.get(run).map(|run| run.eroded_mass_fraction), None))
             .digits("first_largest_eroded_over_d15f", 5, move |line| largest(line, 0))
             .headed("Largest eroded/ D15F")

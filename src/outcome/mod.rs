@@ -19,8 +19,10 @@
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`numbers`] is how a page writes a number; [`with_inches`] has inches behind lengths.
+//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit; [`with_inches`] has inches
+//!   behind lengths.
 
+pub(crate) mod apart;
 mod applied;
 mod base_size;
 pub mod by_connectivity;

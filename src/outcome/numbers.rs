@@ -7,6 +7,8 @@
 //! assert_eq!([duration(12.34), duration(600.0)], ["12.3\u{202f}s", "10.0\u{202f}min"]);
 //! ```
 
+use super::apart::value_and_limit;
+pub use super::apart::whole_within;
 use super::record::Statistic;
 
 /// A narrow space that no line breaks at: it groups thousands and stands before units.
@@ -41,13 +43,6 @@ pub fn rounded_down(value: f64) -> String {
 /// A least value: three significant digits, rounded up.
 pub fn rounded_up(value: f64) -> String {
     in_steps(value, |steps| whole_within(steps, true))
-}
-
-/// The whole number that a limit is rounded to: a least upwards, a greatest downwards; one that is whole but
-/// for what arithmetic leaves stays.
-pub fn whole_within(limit: f64, at_least: bool) -> f64 {
-    const HAIR: f64 = 1e-9;
-    if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
 /// A number rounded in steps of its third digit.
@@ -193,13 +188,38 @@ impl SizeUnit {
     /// What stands behind a greatest size, of which [`rounded_down`] shows the mm: inches of no more than
     /// those mm.
     pub fn beside_greatest(self, mm: f64) -> String {
-        self.bracket(rounded_down(shown(rounded_down(mm), mm) / INCH_MM))
+        self.bracket(rounded_down(shown(&rounded_down(mm), mm) / INCH_MM))
     }
 
     /// What stands behind a least size, of which [`rounded_up`] shows the mm: inches of no less than those
     /// mm.
     pub fn beside_least(self, mm: f64) -> String {
-        self.bracket(rounded_up(shown(rounded_up(mm), mm) / INCH_MM))
+        self.bracket(rounded_up(shown(&rounded_up(mm), mm) / INCH_MM))
+    }
+
+    /// What stands behind a size and its limit, a least or a greatest, both in mm: inches that are as far
+    /// apart, and those of the limit within it.
+    pub(crate) fn beside_both(self, mm: f64, limit: f64, at_least: bool) -> [String; 2] {
+        value_and_limit(mm / INCH_MM, limit / INCH_MM, at_least, 3).map(|inches| self.bracket(inches))
+    }
+
+    /// A size in mm and the greatest that it may be, as far as they are known, each with this name of the
+    /// unit: with as many digits as tell them apart, and inches that follow from those mm.
+    pub(crate) fn within(self, [mm, limit]: [Option<f64>; 2], name: &str) -> [Option<String>; 2] {
+        let (Some(size), Some(most)) = (mm, limit) else {
+            let alone = mm.map(|mm| format!("{}{name}{}", significant(mm), self.beside(mm)));
+            let limit = limit.map(|mm| format!("{}{name}{}", rounded_down(mm), self.beside_greatest(mm)));
+            return [alone, limit];
+        };
+        let texts = value_and_limit(size, most, false, 3);
+        let [size, most] = [shown(&texts[0], size), shown(&texts[1], most)];
+        let mut both = texts.into_iter().zip(self.beside_both(size, most, false));
+        std::array::from_fn(|_| both.next().map(|(mm, inches)| format!("{mm}{name}{inches}")))
+    }
+
+    /// A size without its unit, and its inches.
+    pub fn short(self, mm: f64) -> String {
+        significant(mm) + &self.beside(mm)
     }
 
     /// A greatest size without its unit, and its inches.
@@ -229,7 +249,7 @@ impl SizeUnit {
 }
 
 /// A number as its text has it, so that inches follow from the mm beside them, wherever both stand.
-fn shown(text: String, value: f64) -> f64 {
+fn shown(text: &str, value: f64) -> f64 {
     text.parse().unwrap_or(value)
 }
 

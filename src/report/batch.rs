@@ -5,6 +5,7 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::cases;
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, ORANGE, PURPLE, Point, Rule, Shape, VERMILLION,
@@ -12,12 +13,11 @@ use super::figures::{
 };
 use super::files::json;
 use super::names::soil_name;
-use super::numbers::{interval_in_percent, significant, threshold};
+use super::numbers::{SizeUnit, interval_in_percent, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::numbers::rounded_down;
 use crate::verdict::batch::{counts_in_words, governs_drainage, open_in_words};
 use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
@@ -81,6 +81,8 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         code { "batch.csv" } " its table with further columns."
     } };
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
+        .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
+        .inches(batch.inches)
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
@@ -98,7 +100,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
     let besides = besides.chain(open_in_words(&rules, &filter.name));
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
-            (filter.d15f_mm.map_or("not known".into(), |mm| format!("{} mm", significant(mm)))) }
+            (d15f(&rules).unwrap_or("not known".into())) }
         ul {
             li { b { "Practice" } ": " (counts_in_words(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
@@ -106,7 +108,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                     @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
                 }
             }
-            @for row in batch.governing(&filter.name) { li { (governs(folder, row)) } }
+            @for row in batch.governing(&filter.name) { li { (governs(folder, row, batch.inches)) } }
             @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
@@ -116,14 +118,25 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
     }
 }
 
-/// A sample that governs: its limit, and what its walk says.
-fn governs(folder: &Path, row: &WalkedRow) -> Markup {
+/// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
+fn d15f(rules: &[BatchRow]) -> Option<String> {
+    let beside = rules.iter().filter_map(|row| {
+        let [d15f, _] = row.d15f_and_limit(SizeUnit::Mm, " mm");
+        d15f
+    });
+    beside.max_by_key(String::len)
+}
+
+/// A sample that governs: its limit, D15F beside it, and what its walk says.
+fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
-    let limit = rules.limit_mm.map_or("not known".into(), |mm| format!("{} mm", rounded_down(mm)));
+    let unit = SizeUnit::of(false, inches);
+    let [d15f, limit] = rules.d15f_and_limit(unit, " mm").map(|size| size.unwrap_or("not known".into()));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
+        ", here " (d15f)
         ": " (clean(&row.answer_in_words()))
         @if let Some(walk) = &row.walk {
             ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
@@ -139,7 +152,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     };
     let table = Table::of(batch.rows.iter().take(LISTED))
         .class("cases")
-        .columns(WalkedRow::columns(), |row| row)
+        .columns(WalkedRow::columns(SizeUnit::of(false, batch.inches)), |row| row)
         .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);

@@ -5,12 +5,13 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::cases;
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
 use super::first_page::colour;
 use super::names::soil_name;
-use super::numbers::threshold;
+use super::numbers::{SizeUnit, threshold};
 use super::run_figures::run_name;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, unbroken};
@@ -136,6 +137,12 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
     } };
     Sections::new(format!("Comparison of {}", clean(&comparison.of)), question, &names)
+        .cover(
+            &comparison.cover,
+            &program(&comparison.version, comparison.commit.as_deref()),
+            Some(comparison.seed),
+        )
+        .inches(comparison.inches)
         .words(&first)
         .contents()
         .section("Cases", &table)
@@ -198,7 +205,7 @@ fn doubts(comparison: &Comparison) -> Markup {
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
     Table::of(&comparison.cases)
         .class("cases")
-        .columns(ComparedCase::columns(), |case| case)
+        .columns(ComparedCase::columns(SizeUnit::of(false, comparison.inches)), |case| case)
         .named_by("case", |case| html! { bdi { (name(&case.name)) } })
         .showing("verdict", |case| cases::class(case.verdict, folder, &case.folder))
         .render()

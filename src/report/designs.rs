@@ -4,11 +4,12 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
 use super::names::soil_name;
-use super::numbers::whole;
+use super::numbers::{SizeUnit, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::table::Table;
@@ -65,6 +66,11 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         citation()
     };
     Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
+        .cover(
+            &all.cover,
+            &program(&all.version, all.commit.as_deref()),
+            all.walks.as_ref().map(|of| of.seed),
+        )
         .inches(all.inches)
         .words(&first)
         .contents()
@@ -106,7 +112,7 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
     };
     let table = Table::of(all.rows.iter().take(LISTED))
         .class("cases")
-        .columns(DesignedSample::columns(), |row| row)
+        .columns(DesignedSample::columns(SizeUnit::of(false, all.inches)), |row| row)
         .named_by("sample", sample);
     html! {
         (table.render())

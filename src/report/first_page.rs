@@ -4,23 +4,21 @@
 use maud::{Markup, html};
 use serde::Deserialize;
 
+use super::cover::{LINE, cover, program};
 use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
-use super::numbers::{SizeUnit, in_digits, whole};
-use super::rules::{inches, inches_of_limit};
+use super::numbers::{SizeUnit, whole};
+use super::rules::value_and_limit;
 use super::shell::{clean, unbroken};
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Confidence, Outcome, Verdict};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, SheetCover, Verdict};
 use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{Standing, digits_within, standing};
+use crate::verdict::practice::{Standing, standing};
 use crate::verdict::words::capital;
-
-/// Characters of a text of the user's that are shown.
-const LINE: usize = 120;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
 #[derive(Default, Deserialize)]
@@ -32,14 +30,8 @@ struct Said {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct About {
-    project: Option<String>,
-    number: Option<String>,
-    purpose: Option<String>,
-    client: Option<String>,
-    author: Option<String>,
-    checker: Option<String>,
-    revision: Option<String>,
-    date: Option<String>,
+    #[serde(flatten)]
+    cover: SheetCover,
     coarse_left: bool,
     units: Option<String>,
     authority: Option<String>,
@@ -79,27 +71,9 @@ pub(super) fn header(folder: &RunFolder) -> Markup {
 fn about(folder: &RunFolder) -> Markup {
     let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about;
     let manifest = &folder.manifest;
-    let program = match manifest.commit.as_deref() {
-        Some(commit) => format!("voidwalk {} ({})", manifest.version, shorten(commit, 12)),
-        None => format!("voidwalk {}", manifest.version),
-    };
-    let facts = [
-        ("Project", said.project),
-        ("Number", said.number),
-        ("Purpose", said.purpose),
-        ("Client", said.client),
-        ("Author", said.author),
-        ("Checked by", said.checker),
-        ("Revision", said.revision),
-        ("Date", said.date.or_else(|| manifest.finished.split('T').next().map(String::from))),
-        ("Program", Some(program)),
-        ("Seed", Some(folder.outcome.seed.to_string())),
-    ];
-    html! {
-        dl.about { @for (name, value) in facts { @if let Some(value) = value {
-            div { dt { (name) } " " dd { bdi { (clean(&shorten(&value, LINE))) } } }
-        } } }
-    }
+    let program = program(&manifest.version, manifest.commit.as_deref());
+    let day = manifest.finished.split('T').next().map(String::from);
+    cover(&said.cover.dated(day), &program, Some(folder.outcome.seed))
 }
 
 /// The answer: four lines, and the findings that matter most.
@@ -179,33 +153,21 @@ fn result(rule: &AppliedRule) -> Option<bool> {
     rule.met.filter(|_| rule.applies)
 }
 
-/// A value or a limit of a rule with its unit, in inches, too, where those are shown.
-fn of_rule(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
-    let shown = format!("{}\u{202f}{}", in_digits(value, 3), rule.unit);
-    shown.trim_end().to_owned() + &inches(rule, value, unit)
-}
-
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| clean(&rule.name))
-        .text("here", |rule| match rule.value {
-            Some(value) => html! {
-                (clean(rule.quantity.name())) " " span.q { "= " (clean(&of_rule(rule, value, unit))) }
-            },
+        .text("here", |rule| match &value_and_limit(rule, unit)[0] {
+            Some(value) => html! { (clean(rule.quantity.name())) " " span.q { "= " (clean(value)) } },
             None => html! { "–" },
         })
         .text("limit", |rule| {
-            let shown = |limit| {
-                let number = digits_within(limit, 3, rule.at_least);
-                let with_unit = format!("{number}\u{202f}{}", rule.unit);
-                clean(&(with_unit.trim_end().to_owned() + &inches_of_limit(rule, limit, unit)))
-            };
-            match rule.limit {
+            let [_, limit] = value_and_limit(rule, unit);
+            match limit.as_deref().map(clean) {
                 Some(limit) if rule.at_least && rule.limit_at_most => {
-                    html! { "not known; at most " span.q { (shown(limit)) } }
+                    html! { "not known; at most " span.q { (limit) } }
                 }
                 Some(limit) => html! {
-                    span.q { (if rule.at_least { "≥ " } else { "≤ " }) (shown(limit)) }
+                    span.q { (if rule.at_least { "≥ " } else { "≤ " }) (limit) }
                     @if rule.limit_at_most { " or less" }
                 },
                 None => html! { "–" },

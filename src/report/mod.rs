@@ -40,6 +40,7 @@ mod campaign_cases;
 mod cases;
 mod comparison;
 mod connectivity;
+mod cover;
 mod design;
 mod designs;
 mod error;
@@ -85,6 +86,7 @@ pub use packing::write_packing;
 pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
+pub(crate) use rules::value_and_limit;
 pub use soils::soils_figure;
 pub use specification::write_specification;
 #[cfg(feature = "xlsx")]

@@ -2,11 +2,14 @@
 
 use maud::{Markup, html};
 
-use super::numbers::{SizeUnit, significant, trimmed};
+use super::numbers::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole};
-use crate::verdict::practice::digits_within;
+use crate::outcome::apart::{self, digits_of, digits_within};
+use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+
+/// Digits of a value and a limit, where more are not needed to tell them apart.
+const DIGITS: i32 = 3;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
@@ -26,18 +29,47 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     }
 }
 
-/// What stands behind a value or a limit of a rule: inches, where it is a length and they are shown.
-pub(super) fn inches(rule: &AppliedRule, value: f64, unit: SizeUnit) -> String {
-    if rule.unit == "mm" { unit.beside(value) } else { String::new() }
+/// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
+/// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
+pub(crate) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
+    let numbers = match (rule.value, rule.limit) {
+        (Some(value), Some(limit)) => apart::value_and_limit(value, limit, rule.at_least, DIGITS).map(Some),
+        (value, limit) => [
+            value.map(|value| digits_of(value, DIGITS)),
+            limit.map(|limit| digits_within(limit, DIGITS, rule.at_least)),
+        ],
+    };
+    let inches = inches_of(rule, &numbers, unit);
+    let mut both = numbers.into_iter().zip(inches).map(|(number, inches)| {
+        let number = number?;
+        // The digits of a length say how closely it was worked out; 4.00 times D85B is four times.
+        let is_ratio = rule.unit.is_empty() || rule.unit == "%";
+        let number = if is_ratio { without_zeros(&number) } else { &number };
+        let with_unit = format!("{number}\u{202f}{}", rule.unit);
+        Some(with_unit.trim_end().to_owned() + &inches)
+    });
+    std::array::from_fn(|_| both.next().flatten())
 }
 
-/// What stands behind a limit of a rule, so that inches do not go beyond it either.
-pub(super) fn inches_of_limit(rule: &AppliedRule, limit: f64, unit: SizeUnit) -> String {
-    match (rule.unit == "mm", rule.at_least) {
-        (true, true) => unit.beside_least(limit),
-        (true, false) => unit.beside_greatest(limit),
-        (false, _) => String::new(),
+/// What stands behind both: inches that follow from the mm beside them, as far apart as those, where they are
+/// shown.
+fn inches_of(rule: &AppliedRule, numbers: &[Option<String>; 2], unit: SizeUnit) -> [String; 2] {
+    if rule.unit != "mm" {
+        return Default::default();
     }
+    let [value, limit] = [0, 1].map(|at| numbers[at].as_ref().and_then(|mm| mm.parse::<f64>().ok()));
+    match (value, limit) {
+        (Some(value), Some(limit)) => unit.beside_both(value, limit, rule.at_least),
+        (Some(value), None) => [unit.beside(value), String::new()],
+        (None, Some(limit)) if rule.at_least => [String::new(), unit.beside_least(limit)],
+        (None, Some(limit)) => [String::new(), unit.beside_greatest(limit)],
+        (None, None) => Default::default(),
+    }
+}
+
+/// A number without zeros at its end.
+fn without_zeros(number: &str) -> &str {
+    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
 
 /// Rules as a table.
@@ -58,26 +90,16 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             }
         })
         .number("Here", |rule| {
-            let value = |value| {
-                let shown = format!("= {} {}", significant(value), rule.unit);
-                shown.trim_end().to_owned() + &inches(rule, value, unit)
-            };
-            let value = rule.value.map_or_else(|| "–".to_owned(), value);
+            let [value, _] = value_and_limit(rule, unit);
+            let value = value.map_or_else(|| "–".to_owned(), |value| format!("= {value}"));
             html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
         })
         .number("Limit", |rule| {
             let sign = if rule.at_least { "≥" } else { "≤" };
             let is_open = rule.at_least && rule.limit_at_most;
             let sign = if is_open { "not known; at most" } else { sign };
-            let limit = |limit: f64| {
-                let number = match rule.quantity {
-                    RuleQuantity::D15F => digits_within(limit, 3, rule.at_least),
-                    _ => trimmed((limit * 1e4).round() / 1e4),
-                };
-                let shown = format!("{sign} {number} {}", rule.unit);
-                shown.trim_end().to_owned() + &inches_of_limit(rule, limit, unit)
-            };
-            let limit = clean(&rule.limit.map_or_else(|| "–".to_owned(), limit));
+            let [_, limit] = value_and_limit(rule, unit);
+            let limit = clean(&limit.map_or_else(|| "–".to_owned(), |limit| format!("{sign} {limit}")));
             html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }
         })
         .text("", |rule| match (rule.role, rule.met) {
@@ -92,4 +114,39 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             (_, None) => html! { "no result" },
         });
     html! { (table) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::rules::{DESIGN, TERZAGHI};
+    use crate::verdict::PairRules;
+
+    fn rule(id: &str, value: f64, limit: f64) -> AppliedRule {
+        let of = |d15, size| Gradation::linear_from_dx(d15, size, 1.5).unwrap();
+        let rules = PairRules::of(&of(85.0, 0.2), &of(15.0, 0.8)).rules;
+        let rule = rules.into_iter().find(|rule| rule.id == id).unwrap();
+        AppliedRule { value: Some(value), limit: Some(limit), met: Some(value <= limit), ..rule }
+    }
+
+    fn shown(rule: &AppliedRule, unit: SizeUnit) -> [String; 2] {
+        value_and_limit(rule, unit).map(Option::unwrap)
+    }
+
+    #[test]
+    fn a_value_that_exceeds_its_limit_never_reads_as_within_it() {
+        let terzaghi = |value| shown(&rule(TERZAGHI, value, 4.0), SizeUnit::Mm);
+        assert_eq!(terzaghi(4.0003), ["4.0003", "4"]);
+        assert_eq!(terzaghi(3.9998), ["3.9998", "4"]);
+        assert_eq!(terzaghi(3.52), ["3.52", "4"]);
+        let page = table(&[&rule(TERZAGHI, 4.0003, 4.0)], SizeUnit::Mm).into_string();
+        assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
+        // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
+        let of = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);
+        assert_eq!(of[0], "0.70003\u{202f}mm (0.0276\u{202f}in)");
+        assert_eq!(of[1], "0.70000\u{202f}mm (0.0275\u{202f}in)");
+        let within = shown(&rule(DESIGN, 0.699, 0.7), SizeUnit::MmAndInches);
+        assert_eq!(within, ["0.699\u{202f}mm (0.02752\u{202f}in)", "0.700\u{202f}mm (0.02755\u{202f}in)"]);
+    }
 }

@@ -5,10 +5,12 @@ use std::path::Path;
 
 use maud::{Markup, PreEscaped, html};
 
+use super::cover::cover;
 use super::error::ReportError;
 use super::shell::{Drawn, contents, figure, whole_page};
 use super::written::{Written, write_page_as};
 use crate::outcome::page_with_inches;
+use crate::outcome::record::SheetCover;
 
 /// A page that is put together from above.
 pub(super) struct Sections {
@@ -24,6 +26,12 @@ impl Sections {
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
         Self { title: title.into(), header, main: String::new(), drawn: Vec::new(), inches: false }
+    }
+
+    /// With the cover of a sheet below its first heading.
+    pub(super) fn cover(mut self, of: &SheetCover, program: &str, seed: Option<u64>) -> Self {
+        self.header = html! { (self.header) (cover(of, program, seed)) };
+        self
     }
 
     /// With inches behind every length in mm, or without.

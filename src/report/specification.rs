@@ -5,6 +5,7 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
@@ -41,6 +42,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let stated = Stated::of(&of);
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
+        .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
         .words(&answer(&of))
         .figures(stated.figure)

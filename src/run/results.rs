@@ -13,7 +13,7 @@ use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
     Classed, Confidence, ConstrictionsRecord, IfDispersive, Manifest, Outcome, PanBounds, PanReading,
-    Statistic, Verdict, VoidRow,
+    Statistic, Verdict, VoidRow, commit,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -160,7 +160,7 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
     let machine = Machine::here();
     Manifest {
         version: env!("CARGO_PKG_VERSION").into(),
-        commit: option_env!("VOIDWALK_COMMIT").map(String::from),
+        commit: commit(),
         seed: case.scene.walk.seed,
         inputs: case.input_files(),
         threads,

@@ -6,6 +6,7 @@
 //! run writes and is known by. Which settings exclude each other stands in `groups`. The names are a
 //! contract.
 
+mod cover;
 mod groups;
 mod init;
 mod keys;
@@ -81,6 +82,7 @@ pub struct Scene {
 /// The names of all settings, and which exclude each other.
 static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
     known: Scene::keys().iter().map(KeyInfo::full_name).collect(),
+    lines: About::texts(),
     groups: groups::GROUPS,
 });
 
@@ -502,6 +504,18 @@ mod tests {
         }
     }
 
+    /// A shell removes the quotes of what looks like a number or a date.
+    #[test]
+    fn what_a_cover_says_is_a_text_on_the_command_line_and_in_quotes_in_a_file() {
+        let cover = |set: &[&str]| built_in(set).unwrap().about.cover();
+        let stated = cover(&["about.date=2020-01-01", "about.revision=1", "about.number=true"]);
+        let said = [stated.date, stated.revision, stated.number];
+        assert_eq!(said.map(Option::unwrap), ["2020-01-01", "1", "true"]);
+        assert_eq!(cover(&["about.revision=\"1\""]).revision.as_deref(), Some("1"));
+        let of_file = Scene::parse(b"[about]\nrevision = 1\n", "s.toml", &[]).unwrap_err().to_string();
+        assert!(of_file.contains("a text in quotes"), "{of_file}");
+    }
+
     #[test]
     fn a_distribution_of_connectivity_is_given_by_name_or_as_a_table() {
         let of = |network: &str| {
@@ -564,7 +578,8 @@ mod tests {
             ("base.regrade=yes", "\"practice\" or \"no\""),
             ("filter.thickness_mm=0", "above 0"),
             ("base.d0_mm=1", "goes with base.sieve"),
-            ("about.client=3", "a text in quotes, one line of at most 120 characters"),
+            ("about.client=[3]", "a text in quotes, one line of at most 120 characters"),
+            ("about.units=1", "\"us\""),
             ("about.client=\" \"", "a text in quotes, one line"),
             ("about.author=\"a\\nb\"", "a text in quotes, one line"),
             ("about.project=turned \u{202e}", "characters that are seen"),

@@ -130,6 +130,8 @@ impl Alternative {
 pub struct Names {
     /// Every valid name.
     pub known: Vec<String>,
+    /// Those whose value is a text even where it looks like a number or a date.
+    pub lines: Vec<String>,
     /// Settings that exclude each other.
     pub groups: &'static [Group],
 }
@@ -244,7 +246,13 @@ impl GivenSettings {
             };
             let (name, value) = (name.trim(), value.trim());
             names.check(name, origin)?;
-            stated.push((name.to_owned(), Value::of_assignment(value)));
+            let of_line = names.lines.iter().any(|line| line == name);
+            // A shell removes quotes.
+            let read = match Value::of_assignment(value) {
+                Value::Number(_) | Value::Other(_) if of_line => Value::Text(value.into()),
+                read => read,
+            };
+            stated.push((name.to_owned(), read));
         }
         for (name, _) in &stated {
             for replaced in names.replaced_by(name) {
@@ -379,7 +387,7 @@ mod tests {
 
     fn names() -> Names {
         let known = ["seed", "base.cu", "base.d85_mm", "base.sieve", "base.d0_mm"];
-        Names { known: known.map(String::from).to_vec(), groups: GROUPS }
+        Names { known: known.map(String::from).to_vec(), lines: Vec::new(), groups: GROUPS }
     }
 
     fn parse(text: &str) -> Result<GivenSettings, SceneError> {

@@ -26,7 +26,7 @@ use crate::store::remove_folder;
 use earlier::{LAST, earlier};
 use job::{Job, JobState, has_scene, how_to_continue};
 use work::WorkContext;
-pub use work::{OnResults, Work};
+pub use work::{OnResults, Work, of_cases};
 
 /// Most jobs that wait.
 const WAITING: usize = 20;
@@ -235,6 +235,9 @@ impl JobQueue {
             }
             let mut all = self.locked();
             let Some(job) = all.iter_mut().find(|job| job.id == id) else { continue };
+            if state == JobState::Done {
+                job.live.lock().unwrap_or_else(PoisonError::into_inner).end_batch();
+            }
             (job.state, job.message, job.result) = (state, message, result);
             // A scene is large, and needed no more.
             if file.is_some() {

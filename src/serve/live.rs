@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
+use super::batches::so_far;
 use crate::campaign::CaseEvent;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
+use crate::verdict::WalkedRow;
 
 /// Fewer replicates have no class while more are to come.
 const FEW: usize = 4;
@@ -34,6 +36,8 @@ pub struct Live {
     /// Cases that are walked, with their runs that are done and that are to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
+    /// The rows of a batch, as far as they are walked, and whether inches stand in them.
+    batch: Option<(Vec<WalkedRow>, bool)>,
     /// What a study has said, the newest last.
     lines: Vec<String>,
     /// What a user must know.
@@ -98,6 +102,25 @@ impl Live {
         }
     }
 
+    /// A batch begins, or goes on.
+    pub fn batch(&mut self, rows: Vec<WalkedRow>, inches: bool) {
+        self.batch = Some((rows, inches));
+    }
+
+    /// A batch is done: its result has the table.
+    pub fn end_batch(&mut self) {
+        if let Some((rows, _)) = &mut self.batch {
+            *rows = Vec::new();
+        }
+    }
+
+    /// A pair of a batch is walked.
+    pub fn walked_pair(&mut self, at: usize, row: WalkedRow) {
+        if let Some(there) = self.batch.as_mut().and_then(|(rows, _)| rows.get_mut(at)) {
+            *there = row;
+        }
+    }
+
     /// What a user must know.
     pub fn warn(&mut self, warning: &str) {
         if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|said| said == warning) {
@@ -107,6 +130,7 @@ impl Live {
 
     /// All of it, for a case that is walked in `runs` runs.
     pub fn snapshot(&self, runs: u64) -> Value {
+        let table = self.batch.as_ref().filter(|(rows, _)| !rows.is_empty());
         json!({
             "packing": self.packing.map(|[grains, steps, usual]| json!({
                 "grains": grains, "steps": steps, "usual": usual
@@ -120,7 +144,9 @@ impl Live {
             "walking": self.walking.iter().map(|(case, [done, runs])| json!({
                 "case": case, "done": done, "runs": runs
             })).collect::<Vec<_>>(),
-            "done": self.done,
+            // The table of a batch says it.
+            "done": if self.batch.is_some() { json!([]) } else { json!(self.done) },
+            "table": table.map(|(rows, inches)| so_far(rows, *inches)),
             "lines": self.lines,
             "warnings": self.warnings,
             "so_far": self.so_far(runs),

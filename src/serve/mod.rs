@@ -10,6 +10,7 @@
 //! run that has begun to walk.
 
 mod archive;
+mod batches;
 mod connections;
 mod designs;
 mod guard;

@@ -29,6 +29,7 @@ const number = (value) => {
   return value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3) ? value.toExponential(2)
     : String(Number(value.toPrecision(3)));
 };
+
 const whole = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 const percent = (share) => {
   const value = 100 * share;
@@ -239,6 +240,9 @@ async function showPair() {
   }
 }
 
+/** The filter, and every further filter. */
+const filters = () => [state.filter, ...($("input[name=as]:checked").value === "filters" ? state.more : [])];
+
 /** The rules on every soil of the sheet of the base, where it has several. */
 async function showSamples(query) {
   const sheet = state.sheets.find((one) => state.base.startsWith(`${one.id}#`));
@@ -246,9 +250,8 @@ async function showSamples(query) {
   into.hidden = !(sheet && state.filter);
   const asked = new URLSearchParams(query);
   asked.delete("more");
-  const more = $("input[name=as]:checked").value === "filters" ? state.more : [];
   asked.set("base", sheet ? String(sheet.id) : "");
-  asked.set("filter", [state.filter, ...more].join("\n"));
+  asked.set("filter", filters().join("\n"));
   if (into.hidden || state.samples === String(asked)) return;
   state.samples = String(asked);
   show($("#samples-problem"), "");
@@ -258,17 +261,24 @@ async function showSamples(query) {
     if (state.samples !== String(asked)) return;
     $("#samples-said").replaceChildren(...table.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")),
       ...(table.notes.length ? [list(table.notes)] : []));
-    const kind = (at) => ({ class: table.numbers[at] ? "n" : null });
-    const marked = (text, row) => (text === "met" && table.unstable[row] ? text : text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
-    $("#samples-table").replaceChildren(
-      el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", kind(at), text)))),
-      el("tbody", {}, ...table.rows.map((row, line) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
-        table.headings[at] === "Result" ? marked(text, line) : text))))));
+    $("#samples-table").replaceChildren(...rowsOf(table, table.unstable));
   } catch (error) {
     for (const part of ["#samples-said", "#samples-table"]) $(part).replaceChildren();
     show($("#samples-problem"), error.message);
   }
 }
+
+/** Head and body of a table; what is met stands in green but in the rows that are doubted. */
+function rowsOf(table, doubted) {
+  const kind = (at) => ({ class: table.numbers[at] ? "n" : null });
+  const marked = (text, row) => (text === "met" && doubted && doubted[row] ? text : text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
+  return [el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", kind(at), text)))),
+    el("tbody", {}, ...table.rows.map((row, line) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
+      table.headings[at] === "Result" ? marked(text, line) : text)))))];
+}
+
+/** The samples of a sheet with their walks; no two of the page have one name. */
+const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table, table.doubted)));
 
 /** Puts the drawing into the page itself, so that it can be asked for its values. */
 async function showCurves(query) {
@@ -344,11 +354,11 @@ function showRules(pair) {
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
   el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rows = (role) => pair.rules.filter((rule) => rule.role === role).map((rule) => {
-    const unit = rule.unit ? ` ${rule.unit}` : "";
+  const rows = (role) => pair.rules.map((rule, at) => [rule, pair.shown[at]]).filter(([rule]) => rule.role === role).map(([rule, [value, limit]]) => {
+    const sign = rule.at_least && rule.limit_at_most ? "not known; at most" : rule.at_least ? "≥" : "≤";
     return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
-      el("td", {}, rule.quantity), el("td", { class: "n" }, rule.value === null ? "–" : number(rule.value) + unit),
-      el("td", { class: "n" }, rule.limit === null ? "–" : `${rule.at_least ? "≥" : "≤"} ${number(rule.limit)}${unit}${rule.limit_at_most ? " at most" : ""}`),
+      el("td", {}, rule.quantity), el("td", { class: "n" }, value || "–"),
+      el("td", { class: "n" }, limit ? `${sign} ${limit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}` : "–"),
       el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
@@ -386,6 +396,7 @@ async function setUpForm() {
   }).filter(Boolean));
   $("#form").addEventListener("submit", (event) => { event.preventDefault(); start("judge"); });
   $("#compare").addEventListener("click", () => start("compare"));
+  $("#walk-samples").addEventListener("click", walkSamples);
   $("#check").addEventListener("click", check);
 }
 
@@ -406,6 +417,21 @@ function asked(compare) {
   const what = { base: state.base, filter: state.filter, density: $("#density").value, pack: $("#pack").checked, quick: $("#quick").checked, ...taken(), changes };
   if (compare) what[$("input[name=as]:checked").value] = state.more;
   return what;
+}
+
+/** Walks every sample of the sheet of the base, with what the form says. */
+async function walkSamples() {
+  show($("#walk-problem"), "");
+  const { density, pack, as_sampled, as_given, changes } = asked(false);
+  // What is ticked beside the rules goes with the rules, too.
+  const [dispersive, joint] = [$("#dispersion").value === "true", $("#joint").value.trim()];
+  try {
+    await ask("api/batch", { base: state.base, filters: filters(), walks: $("#samples-walks").value, dispersive, joint, density, pack, as_sampled, as_given, changes });
+    await poll();
+    $("#results").scrollIntoView({ block: "start" });
+  } catch (error) {
+    show($("#walk-problem"), error.message);
+  }
 }
 
 async function start(kind) {
@@ -542,6 +568,7 @@ function soFar(job) {
   } else if (!live.lines.length) {
     parts.push(el("p", {}, "Begins."));
   }
+  if (live.table) parts.push(samplesTable(job, live.table));
   if (live.lines.length) parts.push(list(live.lines));
   if (live.so_far) {
     const { replicates, runs, few } = live.so_far;
@@ -567,7 +594,8 @@ function boundary(of, note) {
     note ? el("span", { class: "small" }, el("br"), note) : null];
 }
 
-function boundariesOf(done) {
+function boundariesOf(job) {
+  const done = job.result;
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
@@ -577,7 +605,7 @@ function boundariesOf(done) {
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
-    scrolling("the boundaries", el("table", { class: "boundaries" },
+    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
       : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
@@ -586,8 +614,8 @@ function boundariesOf(done) {
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
 }
 
-/** No green where no boundary is known, where it cannot be relied on, or where no filter drains and holds. */
-const colourOfDesign = (done) => (done.confidence !== "within checked range"
+/** No green where no boundary is known, where it cannot be relied on, where practice has no answer, or where no filter drains and holds. */
+const colourOfDesign = (done) => (done.confidence !== "within checked range" || (done.answer && done.answer.d15f_over_d85b === null)
   || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
   : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
 
@@ -602,9 +630,13 @@ const findings = (all) => [list(all.slice(0, 3)),
 
 function verdictOf(job) {
   const done = job.result;
-  if (job.kind === "design") return boundariesOf(done);
+  if (job.kind === "design") return boundariesOf(job);
+  if (job.kind === "batch") {
+    return [...done.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")), samplesTable(job, done),
+      list(done.notes), el("p", { class: "small" }, done.leaves_out)];
+  }
   if (job.kind === "compare") {
-    return [scrolling("the cases", el("table", {}, el("thead", {}, el("tr", {},
+    return [scrolling(`the cases of job ${job.id}`, el("table", {}, el("thead", {}, el("tr", {},
       ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
       el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
         el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),

@@ -9,22 +9,25 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::archive::archive;
+use super::batches::{self, AskedBatch};
 use super::designs::AskedDesign;
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
-use super::jobs::{JobQueue, Work};
+use super::jobs::{JobQueue, Work, of_cases};
 use super::samples::SampleTable;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{Gradation, curves_in_file, soils_in_file};
+use crate::outcome::numbers::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
+use crate::study::batch::BatchPlan;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
@@ -187,7 +190,7 @@ impl Routes {
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
                 Ok(Answer::json(200, &json!(sheet)))
             }
-            "api/judge" | "api/compare" | "api/design" => {
+            "api/judge" | "api/compare" | "api/design" | "api/batch" => {
                 let request: Value =
                     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
                 let kind = path.trim_start_matches("api/").to_owned();
@@ -238,7 +241,7 @@ impl Routes {
                 let asked: Asked = read(request)?;
                 let plan = self.comparison(&asked)?;
                 let title = plan.names().collect::<Vec<_>>().join(", ");
-                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(plan) })
+                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(Box::new(plan)) })
             }
             "design" => {
                 let asked: AskedDesign = read(request)?;
@@ -248,6 +251,17 @@ impl Routes {
                 let options = kept.options(&self.root, &self.root, &self.prepare).map_err(wrong)?;
                 design::check(&options).map_err(wrong)?;
                 Ok(Planned { title: kept.title(), asked: sheets, work: Work::Design(kept) })
+            }
+            "batch" => {
+                let asked: AskedBatch = read(request)?;
+                let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
+                let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
+                let names = batches::filter_names(&self.sheets, &filters);
+                let of_samples = self.sheets.as_named(&samples.display().to_string());
+                let plan = self.batch(&asked, &samples, &filters)?;
+                let plan = plan.named(&of_samples, &names, |said| self.sheets.as_named(said));
+                let title = batches::title(&of_samples, &names);
+                Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
             }
             _ => Err((404, "there is no such work".into())),
         }
@@ -299,6 +313,18 @@ impl Routes {
         ComparePlan::new(&compared, &options(asked)?).map_err(wrong)
     }
 
+    fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
+        let joint_mm = joint(Some(asked.joint.clone()).filter(|text| !text.trim().is_empty()))?;
+        let AskedBatch { dispersive, as_given, as_sampled, pack, .. } = *asked;
+        let rules = PairOptions { dispersive, joint_mm, as_given };
+        bounded(&asked.changes)?;
+        let (density, changes) = (density(&asked.density)?, asked.changes.clone());
+        let tables = TableOptions { density, pack, quick: false, as_sampled, as_given, changes };
+        let walks = asked.walks().map_err(wrong)?;
+        let options = of_cases(&self.root, &self.prepare, "");
+        BatchPlan::new(samples, filters, &tables, rules, walks, &options).map_err(wrong)
+    }
+
     /// Every rule of practice on two sheets.
     fn rules(&self, request: &Request) -> Result<Answer, Problem> {
         let curves = |name: &str| {
@@ -308,7 +334,12 @@ impl Routes {
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
-        Ok(Answer::json(200, &serde_json::to_value(pair).map_err(wrong)?))
+        // The page shows value and limit as every sheet does, and works nothing out.
+        let shown: Vec<_> =
+            pair.rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
+        let mut value = serde_json::to_value(pair).map_err(wrong)?;
+        value["shown"] = json!(shown);
+        Ok(Answer::json(200, &value))
     }
 
     /// The rules of practice on every sample of a sheet.
@@ -388,11 +419,15 @@ impl Routes {
 
 /// What is said of two soils besides their sheets.
 fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
-    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
-    let joint_mm = request.parameter("joint_mm");
-    let joint_mm = joint_mm.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()?;
+    let joint_mm = joint(request.parameter("joint_mm"))?;
     let is_ticked = |name: &str| request.parameter(name).is_some();
     Ok(PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") })
+}
+
+/// The width of an open joint (mm).
+fn joint(text: Option<String>) -> Result<Option<f64>, Problem> {
+    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
+    text.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()
 }
 
 /// A sheet to try the page with.
@@ -419,12 +454,15 @@ fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
 }
 
+/// A density in a word; `None` where none is said.
+fn density(word: &str) -> Result<Option<Density>, Problem> {
+    let named = || Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)));
+    if word.is_empty() { Ok(None) } else { named().map(Some) }
+}
+
 /// What a scene of tables is given besides them.
 fn options(asked: &Asked) -> Result<TableOptions, Problem> {
-    let density = match asked.density.as_str() {
-        "" => None,
-        word => Some(Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)))?),
-    };
+    let density = density(&asked.density)?;
     bounded(&asked.changes)?;
     let Asked { quick, as_sampled, as_given, .. } = *asked;
     Ok(TableOptions {

@@ -1,17 +1,13 @@
 //! Every sample of a sheet against filters: the table of rules, for the page and as a file.
 
-use std::path::PathBuf;
-
 use serde_json::{Value, json};
 
+use super::batches::{filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
-use crate::outcome::table::Shown;
-use crate::study::{numbered, refuse_twice};
+use crate::outcome::numbers::SizeUnit;
+use crate::study::refuse_twice;
 use crate::verdict::batch::columns;
 use crate::verdict::{BatchTable, PairOptions};
-
-/// Filters of a table.
-const FILTERS: usize = 6;
 
 /// The table of all samples of the sheet in which a base is, against filters.
 pub struct SampleTable(BatchTable);
@@ -22,16 +18,12 @@ impl SampleTable {
     /// # Errors
     /// There is no such sheet; a sheet that cannot be read; no filter, or too many of them.
     pub fn new(sheets: &Sheets, base: &str, filters: &[&str], options: PairOptions) -> Result<Self, String> {
-        if !(1..=FILTERS).contains(&filters.len()) {
-            return Err(format!("name one to {FILTERS} filters"));
-        }
-        let whole = base.split_once('#').map_or(base, |(sheet, _)| sheet);
-        let paths: Vec<PathBuf> = filters.iter().map(|name| sheets.path(name)).collect::<Result<_, _>>()?;
+        let paths = filter_paths(sheets, filters)?;
         refuse_twice(&paths).map_err(|problem| sheets.as_named(&problem.to_string()))?;
-        let mut table = BatchTable::read(&sheets.path(whole)?, &paths, options).map_err(|e| e.to_string())?;
+        let mut table =
+            BatchTable::read(&sheets.path(whole_sheet(base))?, &paths, options).map_err(|e| e.to_string())?;
         // Sheets have their own names here, of which two can be the same, and no folder.
-        let names = table.filters.iter().map(|filter| sheets.as_named(&filter.name));
-        let names = numbered(names.collect());
+        let names = filter_names(sheets, &paths);
         let of_filter = (table.rows.len() / table.filters.len()).max(1);
         for (at, row) in table.rows.iter_mut().enumerate() {
             row.filter.clone_from(&names[at / of_filter]);
@@ -46,27 +38,17 @@ impl SampleTable {
 
     /// As the page shows it: headings, which of them stand over numbers, cells, and sentences on each filter.
     pub fn json(&self) -> Value {
-        let columns: Vec<_> = columns().of_page().collect();
-        let text = |shown: Shown| shown.text;
-        let cells: Vec<Vec<String>> = self
-            .0
-            .rows
-            .iter()
-            .map(|row| columns.iter().map(|column| text((column.cell)(row))).collect())
-            .collect();
         let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display()));
-        json!({
-            "headings": columns.iter().map(|column| &column.heading).collect::<Vec<_>>(),
-            "numbers": columns.iter().map(|column| column.is_number).collect::<Vec<_>>(),
-            "rows": cells,
-            "unstable": self.0.rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>(),
-            "filters": self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows)).collect::<Vec<_>>(),
-            "notes": notes.collect::<Vec<_>>(),
-        })
+        let mut value = table(columns(SizeUnit::Mm), &self.0.rows);
+        value["unstable"] = json!(self.0.rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
+        let of_filters = self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows));
+        value["filters"] = json!(of_filters.collect::<Vec<_>>());
+        value["notes"] = json!(notes.collect::<Vec<_>>());
+        value
     }
 
     /// As a file.
     pub fn csv(&self) -> Vec<u8> {
-        columns().csv(&self.0.rows)
+        columns(SizeUnit::Mm).csv(&self.0.rows)
     }
 }

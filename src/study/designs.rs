@@ -2,16 +2,20 @@
 
 use std::path::PathBuf;
 
+use super::days::{day_of, is_day, today};
 use super::design::{DesignOptions, identity, is_a_base, run};
 use super::file_names::numbered;
 use super::kept;
 use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
+use crate::outcome::numbers::SizeUnit;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::machine::on_threads;
+use crate::run::results::json;
+use crate::scene::About;
 use crate::store::Folder;
 use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks, SpecificationOptions};
 
@@ -20,6 +24,9 @@ const SAMPLES: &str = "samples";
 
 /// One row a sample.
 const TABLE: &str = "designs.csv";
+
+/// The table of a sample's walks, in the folder of its design.
+const OF_DESIGN: &str = "design.csv";
 
 /// Their page.
 const PAGE: &str = "designs.html";
@@ -69,7 +76,7 @@ pub fn each(options: &SampleDesignOptions, callbacks: &Callbacks) -> Result<Desi
     let work = planned.work.clone();
     let all = kept::study((&folder, kind, overwrite), work, callbacks, |_, _: Option<()>| {
         let all = planned.designed(options, &folder, callbacks)?;
-        folder.write(TABLE, &DesignedSample::columns().csv(&all.rows))?;
+        folder.write(TABLE, &DesignedSample::columns(SizeUnit::Mm).csv(&all.rows))?;
         Ok(all)
     });
     all.map_err(|error| match error.exit() {
@@ -94,13 +101,15 @@ impl Planned {
         let mut rows: Vec<DesignedSample> = samples.iter().map(row).collect();
         let names = numbered(rows.iter().map(|row| row.sample.clone()).collect());
         let stated = options.stated();
+        // A sample is not walked again for another cover.
+        let walked = options.stated_of_walks();
         let (mut folders, mut filter) = (Vec::new(), String::new());
         for (row, name) in rows.iter_mut().zip(names).filter(|_| !options.by_practice_alone) {
             let of_sample = options.of_sample(row, PathBuf::new());
             let work_of = match identity(&of_sample) {
                 Ok(of) => {
                     filter = of.filter;
-                    hash(&format!("{} {stated}", of.work))
+                    hash(&format!("{} {walked}", of.work))
                 }
                 Err(problem) => {
                     row.not_walked = problem.to_string();
@@ -151,7 +160,7 @@ impl Planned {
         folder: &Folder,
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
-        let (mut rows, mut leaves_out, mut walks) = (Vec::new(), Vec::new(), None);
+        let (mut rows, mut leaves_out, mut walks, mut day) = (Vec::new(), Vec::new(), None, None);
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -164,9 +173,11 @@ impl Planned {
             let of_sample = options.of_sample(row, folder.path().join(&place));
             let is_done = of_sample.out.is_dir() && FolderKind::Design.is_finished(&of_sample.out)?;
             let design: Design = match is_done {
-                true => kept::record(&of_sample.out, FolderKind::Design)?,
+                true => covered(&of_sample, callbacks)?,
                 false => run(&of_sample, callbacks)?,
             };
+            // Days are in order as texts.
+            day = day.max(design.cover.date.clone());
             leaves_out.clone_from(&design.model_leaves_out);
             walks = Some(DesignedWalks::of(&design, settings));
             rows.push(row.clone().designed(&design, place));
@@ -177,6 +188,7 @@ impl Planned {
             filter: self.filter.clone(),
             dispersive: self.dispersive,
             inches: options.design.shows_inches(),
+            cover: options.design.cover().dated(day.or_else(today)),
             walks,
             notes: self.notes.clone(),
             model_leaves_out: leaves_out,
@@ -188,14 +200,44 @@ impl Planned {
 impl SampleDesignOptions {
     /// What of the options stands in table, page or designs beside what is walked.
     fn stated(&self) -> String {
+        self.stated_with(&self.design.settings)
+    }
+
+    /// The same without the cover.
+    fn stated_of_walks(&self) -> String {
+        let cover = About::texts();
+        let name = |setting: &String| setting.split('=').next().unwrap_or_default().trim().to_owned();
+        let settings = self.design.settings.iter().filter(|setting| !cover.contains(&name(setting)));
+        self.stated_with(&settings.cloned().collect::<Vec<_>>())
+    }
+
+    fn stated_with(&self, settings: &[String]) -> String {
         let of = &self.design;
         let authority = of.authority.word();
-        format!("{} {authority} {:?} {} {}", of.sieves, of.settings, of.as_sampled, of.as_given)
+        format!("{} {authority} {settings:?} {} {}", of.sieves, of.as_sampled, of.as_given)
     }
 
     fn of_sample(&self, row: &DesignedSample, out: PathBuf) -> DesignOptions {
         DesignOptions { base: Some(row.path.clone()), out, overwrite: false, ..self.design.clone() }
     }
+}
+
+/// The design of a sample that is done, whose record and page get the cover that is stated now.
+fn covered(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, RunError> {
+    let kind = FolderKind::Design;
+    let design: Design = kept::record(&options.out, kind)?;
+    // A date that is no day was stated earlier; the table of the walks tells their day.
+    let day = design.cover.date.clone().filter(|date| is_day(date));
+    let day = day.or_else(|| design.cover.date.as_ref().and(day_of(&options.out.join(OF_DESIGN))));
+    let cover = options.cover().dated(day);
+    if design.cover == cover {
+        return Ok(design);
+    }
+    let folder = claim(&options.out, kind, true)?;
+    let design = Design { cover, ..design };
+    folder.write(kind.record(), &json(kind.format(), &design)?)?;
+    callbacks.results(kind, folder.path())?;
+    Ok(design)
 }
 
 fn hash(text: &str) -> String {

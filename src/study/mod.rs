@@ -3,6 +3,7 @@
 
 pub mod batch;
 pub mod compare;
+mod days;
 pub mod design;
 pub mod designs;
 mod file_names;

@@ -10,11 +10,16 @@ use super::kept;
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CampaignPlan};
 use crate::campaign::{FinishedCampaign, ReadyCases, Walk};
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{Outcome, SheetCover};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
 use crate::store::Folder;
+
+/// What a sheet says of itself, as a part of what its study follows from; nothing where nothing is said.
+pub(super) fn of_sheet(cover: &SheetCover, inches: bool) -> String {
+    if cover.is_unset() && !inches { String::new() } else { format!(" {cover:?} {inches}") }
+}
 
 /// A study of cases.
 pub(super) struct StudyOfCases<'a> {
@@ -86,7 +91,9 @@ impl StudyOfCases<'_> {
         let folder = claim(&options.out, kind, true)?;
         let other = || {
             let name = kind.name();
-            let problem = format!("holds another {name}; name another folder, or remove that one");
+            // The command that makes a comparison of its samples has no such option.
+            let or = if kind == FolderKind::Batch { "add --overwrite" } else { "remove that one" };
+            let problem = format!("holds another {name}; name another folder, or {or}");
             Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
         };
         if kind.is_finished(folder.path())? {

@@ -5,7 +5,7 @@ use super::pair::{Mistake, PairOptions, PairRules};
 use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested, tested_words};
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
-use crate::outcome::numbers::rounded_up;
+use crate::outcome::numbers::{SizeUnit, rounded_up};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, authority};
 use crate::outcome::table::Columns;
@@ -76,6 +76,12 @@ impl BatchRow {
     /// Whether the limit is not known, or is at most a number.
     pub fn limit_is_open(&self) -> bool {
         self.limit_mm.is_none() || self.limit_at_most
+    }
+
+    /// D15F of the filter and its limit as they stand beside each other, each with this name of its unit:
+    /// with as many digits as tell them apart.
+    pub(crate) fn d15f_and_limit(&self, unit: SizeUnit, name: &str) -> [Option<String>; 2] {
+        unit.within([self.d15f_mm, self.limit_mm], name)
     }
 
     /// What practice says of one sample and one filter. Two that look exchanged have no result, unless
@@ -199,8 +205,15 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     authority(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
-/// The columns of a batch: its file, and under their headings what a terminal shows.
-pub fn columns<'a>() -> Columns<'a, BatchRow> {
+/// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
+/// unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
+    let size = move |mm: Option<f64>| mm.map(|mm| unit.short(mm));
+    let limit = move |row: &BatchRow| {
+        let at_most = if row.limit_at_most { " at most" } else { "" };
+        let [_, limit] = row.d15f_and_limit(unit, "");
+        limit.map(|limit| limit + at_most)
+    };
     Columns::default()
         .column("sample", |row: &BatchRow| row.sample.clone())
         .headed("Sample")
@@ -214,11 +227,14 @@ pub fn columns<'a>() -> Columns<'a, BatchRow> {
         .headed("Fines, %")
         .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
         .digits("d85b_mm", 4, |row| row.d85b_mm)
-        .headed("D85B, mm")
+        .number("D85B, mm", move |row| size(row.d85b_mm))
         .digits("d15f_mm", 4, |row| row.d15f_mm)
-        .headed("D15F, mm")
+        .number("D15F, mm", move |row: &BatchRow| {
+            let [d15f, _] = row.d15f_and_limit(unit, "");
+            d15f
+        })
         .digits("limit_mm", 4, |row| row.limit_mm)
-        .headed("Limit, mm")
+        .number("Limit, mm", limit)
         .column("limit_at_most", |row: &BatchRow| row.limit_at_most.to_string())
         .column("rule", |row: &BatchRow| row.rule.clone())
         .headed("Whose limit")
@@ -307,6 +323,7 @@ pub fn open_in_words(rows: &[BatchRow], filter: &str) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::verdict::BatchFilter;
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
         Gradation::from_points(points, None).unwrap()
@@ -343,11 +360,39 @@ mod tests {
         // Fines that nobody sieved: a limit at most, and no result for a filter within it.
         assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
         assert!(rows[4].met.is_none() && rows[4].note.contains("exchanged"), "{:?}", rows[4]);
-        let csv = String::from_utf8(columns().csv(&rows)).unwrap();
+        let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
         assert!(
             csv.starts_with("sample,filter,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_mm,")
         );
         assert_eq!(csv.lines().count(), 6);
+    }
+
+    /// A limit that is kept reads as kept, and one that is exceeded as exceeded; inches as well.
+    #[test]
+    fn a_d15f_stands_on_its_side_of_the_limit() {
+        let of = |d15f: f64, limit: f64| {
+            let row = BatchRow { d15f_mm: Some(d15f), limit_mm: Some(limit), ..rows().remove(0) };
+            let shown = |unit| {
+                let columns = columns(unit);
+                let columns: Vec<_> = columns.of_page().collect();
+                let cell = |heading: &str| {
+                    let column = columns.iter().find(|column| column.heading == heading).unwrap();
+                    (column.cell)(&row).text
+                };
+                [cell("D15F, mm"), cell("Limit, mm")]
+            };
+            let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: Some(d15f) };
+            (shown(SizeUnit::Mm), shown(SizeUnit::MmAndInches), filter.in_words(&[row.clone()]))
+        };
+        let (mm, inches, said) = of(2.376, 2.3784);
+        assert_eq!(mm, ["2.376", "2.378"]);
+        assert_eq!(inches, ["2.376 (0.0935\u{202f}in)", "2.378 (0.0936\u{202f}in)"]);
+        assert!(said[1].contains("D15F up to 2.378 mm"), "{said:?}");
+        let (mm, inches, said) = of(1.683, 1.6818);
+        assert_eq!(mm, ["1.683", "1.681"]);
+        assert_eq!(inches, ["1.683 (0.0663\u{202f}in)", "1.681 (0.0661\u{202f}in)"]);
+        assert!(said[1].contains("D15F up to 1.681 mm"), "{said:?}");
+        assert_eq!(of(1.196, 1.196).0, ["1.196", "1.196"]);
     }
 
     #[test]

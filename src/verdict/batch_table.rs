@@ -10,7 +10,7 @@ use super::batch::{
 };
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
-use crate::outcome::numbers::rounded_down;
+use crate::outcome::numbers::SizeUnit;
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,8 +40,9 @@ impl BatchFilter {
         for (at, row) in strictest.iter().enumerate() {
             let what = if at == 0 { "governing sample" } else { "then" };
             let at_most = if row.limit_at_most { " at most" } else { "" };
-            let limit = rounded_down(row.limit_mm.unwrap_or(0.0));
-            said.push(format!("{what} {}: D15F up to {limit} mm{at_most} ({})", row.sample, row.rule));
+            let [_, limit] = row.d15f_and_limit(SizeUnit::Mm, " mm");
+            let limit = limit.unwrap_or_default();
+            said.push(format!("{what} {}: D15F up to {limit}{at_most} ({})", row.sample, row.rule));
         }
         let more = more_with_that_limit(rows, name, &strictest);
         if more > 0 {

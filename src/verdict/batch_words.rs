@@ -21,10 +21,7 @@ impl WalkedBatch {
         if not_walked > 0 {
             said += &format!("; {not_walked} not walked");
         }
-        let erodes = |row: &&&WalkedRow| {
-            let erodes = |walk: &SampleWalk| matches!(walk.verdict, Verdict::Some | Verdict::Continuing);
-            row.rules.met == Some(true) && row.walk.as_ref().is_some_and(erodes)
-        };
+        let erodes = |row: &&&WalkedRow| row.rules.met == Some(true) && row.erodes();
         let stricter: Vec<&str> = rows.iter().filter(erodes).map(|row| row.rules.sample.as_str()).collect();
         let mut all = vec![said];
         if !stricter.is_empty() {
@@ -54,6 +51,18 @@ impl WalkedRow {
             said += &format!(". Probability of no erosion in a test: {of}");
         }
         said
+    }
+
+    /// Whether its walk erodes.
+    fn erodes(&self) -> bool {
+        let class = self.walk.as_ref().map(|walk| walk.verdict);
+        matches!(class, Some(Verdict::Some | Verdict::Continuing))
+    }
+
+    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not
+    /// kept, or its walk erodes.
+    pub fn is_doubted(&self) -> bool {
+        self.is_against_practice() || self.erodes()
     }
 
     /// Whether a rule of retention or of the filter's own stability is not kept.
@@ -152,6 +161,8 @@ mod tests {
         ];
         let against: Vec<bool> = rows.iter().map(WalkedRow::is_against_practice).collect();
         assert_eq!(against, [false, true, false, false]);
+        let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
+        assert_eq!(doubted, [false, true, true, false]);
         assert_eq!(rows[3].answer_in_words(), "not walked: no table");
         assert_eq!(
             rows[0].answer_in_words(),

@@ -16,11 +16,13 @@ use crate::outcome::rules::DESIGN;
 /// The finest base that practice allows with a filter, for the inverse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinestBase {
-    /// D15F/D85B up to which every rule of retention is kept; `None` where one is broken at all that was
-    /// searched.
+    /// D15F/D85B up to which every rule of retention is known to be kept; `None` where that is so of no base
+    /// that was searched.
     pub ratio: Option<f64>,
-    /// The rule that a finer base breaks.
+    /// The rule that a finer base breaks, or may break.
     pub rule: AppliedRule,
+    /// Whether it may break it: of the limit only the most is known.
+    pub is_open: bool,
 }
 
 /// A limit of D15F/D85B, and the rule that sets it.
@@ -28,6 +30,8 @@ pub struct FinestBase {
 struct Limit<'a> {
     ratio: f64,
     rule: &'a AppliedRule,
+    /// Whether it is only not known if practice allows more.
+    may_be_more: bool,
 }
 
 /// Which of the cases holds, each with its numbers; ratios are D15F/D85B.
@@ -36,6 +40,8 @@ enum Case<'a> {
     Forbidden(&'a AppliedRule),
     /// Of the limit of practice only the most is known, for want of this; the walk may hold a ratio.
     Open(Limit<'a>, &'a AppliedRule, Option<f64>),
+    /// The same of every base that was searched, for the inverse.
+    OpenBase(&'a AppliedRule, Option<f64>),
     /// Neither walk nor practice knows a ratio.
     Unknown,
     /// The walk has no answer: the finest tail of the base, this share of its mass, may be anything.
@@ -94,14 +100,22 @@ impl<'a> Case<'a> {
         // Files of an earlier version know only whether the base that the walk holds breaks a rule.
         let broken = design.rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.is_broken());
         let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
-        if let Some(rule) = known.or(finest.filter(|of| of.ratio.is_none()).map(|of| &of.rule)) {
+        let none = finest.filter(|of| of.ratio.is_none());
+        if let Some(of) = none.filter(|of| of.is_open) {
+            return Self::OpenBase(&of.rule, design.least_held().map(|(_, held)| held));
+        }
+        if let Some(rule) = known.or(none.map(|of| &of.rule)) {
             return Self::Forbidden(rule);
         }
         let limit = match design.inverse {
-            true => finest.and_then(|of| Some(Limit { ratio: of.ratio?, rule: &of.rule })),
+            true => finest
+                .and_then(|of| Some(Limit { ratio: of.ratio?, rule: &of.rule, may_be_more: of.is_open })),
             // Sizes without a unit are taken as a sand without fines: no limit is known of the base itself.
             false if !sizes.has_unit => None,
-            false => design.strictest(sizes).map(|(rule, limit)| Limit { ratio: limit / sizes.d85, rule }),
+            false => {
+                let limit = |(rule, limit)| Limit { ratio: limit / sizes.d85, rule, may_be_more: false };
+                design.strictest(sizes).map(limit)
+            }
         };
         let open = open_retention(&design.rules).filter(|_| sizes.has_unit && !design.inverse);
         if let Some((limit, rule)) = limit.zip(open) {
@@ -128,6 +142,7 @@ impl<'a> Case<'a> {
             Self::Walk(_, held, _) | Self::ModelAlone(_, held) => Some(*held),
             Self::Forbidden(_)
             | Self::Open(..)
+            | Self::OpenBase(..)
             | Self::Unknown
             | Self::BelowSearch(..)
             | Self::NotHeld(_) => None,
@@ -155,10 +170,14 @@ impl<'a> Case<'a> {
                 sizes.size(limit.ratio),
                 cited_rule(limit.rule),
                 if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() },
-                match held {
-                    Some(held) => format!("; the walk alone holds {}", sizes.words(*held)),
-                    None => "; the walk has no answer either".into(),
-                }
+                of_walk_alone(sizes, *held)
+            ),
+            Self::OpenBase(rule, held) => format!(
+                "The finest D85B is not known: only an upper bound of the limit of practice is known ({}; \
+                 {}){}",
+                cited_rule(rule),
+                rule.needs,
+                of_walk_alone(sizes, *held)
             ),
             Self::Unknown => "No ratio is known that nearly all networks hold".into(),
             Self::TailOpen(limit, tail) => format!(
@@ -183,10 +202,15 @@ impl<'a> Case<'a> {
                 cited_rule(limit.rule)
             ),
             Self::Practice(limit) => format!(
-                "{}, by practice ({}{}); the walk sets no tighter limit",
+                "{}, by practice ({}{}{}); the walk sets no tighter limit",
                 sizes.words(limit.ratio),
                 cited_rule(limit.rule),
-                sizes.other(design, limit.rule)
+                sizes.other(design, limit.rule),
+                if limit.may_be_more {
+                    format!(", whose limit for a finer base is not known: {}", limit.rule.needs)
+                } else {
+                    String::new()
+                }
             ),
             Self::Walk(row, held, limit) => format!(
                 "{}{}, by the walk; practice allows {} ({})",
@@ -202,6 +226,14 @@ impl<'a> Case<'a> {
                 sizes.without_limit(design.strictest(sizes))
             ),
         }
+    }
+}
+
+/// What the walk holds where practice gives no answer.
+fn of_walk_alone(sizes: &Sizes, held: Option<f64>) -> String {
+    match held {
+        Some(held) => format!("; the walk alone holds {}", sizes.words(held)),
+        None => "; the walk has no answer either".into(),
     }
 }
 
@@ -433,11 +465,19 @@ mod tests {
         let mut inverse = design(&sand(), Some(7.0));
         (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
         let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
-        let finest = FinestBase { ratio: Some(4.0), rule };
+        let finest = FinestBase { ratio: Some(4.0), rule, is_open: false };
         let answer = design_answer(&inverse, Some(&finest));
         assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
         assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
-        let none = design_answer(&inverse, Some(&FinestBase { ratio: None, ..finest }));
+        let none = design_answer(&inverse, Some(&FinestBase { ratio: None, ..finest.clone() }));
         assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
+        let open =
+            |ratio| design_answer(&inverse, Some(&FinestBase { ratio, is_open: true, ..finest.clone() }));
+        let unknown = open(None);
+        assert_eq!((unknown.d85b_min_mm, unknown.d15f_over_d85b, &unknown.rule), (None, None, &None));
+        assert!(unknown.said.starts_with("The finest D85B is not known: of the limit"), "{}", unknown.said);
+        assert!(unknown.said.ends_with("; the walk alone holds D85B down to 0.286 mm"), "{}", unknown.said);
+        assert_eq!(open(Some(4.0)).d85b_min_mm, Some(0.5));
+        assert!(open(Some(4.0)).said.contains("whose limit for a finer base is not known"));
     }
 }

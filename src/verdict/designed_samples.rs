@@ -10,8 +10,8 @@ use super::words::capital;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
-use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::{Confidence, IfDispersive, ModelLimit};
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::{Confidence, IfDispersive, ModelLimit, SheetCover, commit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -35,6 +35,9 @@ const SHOWN: [&str; 11] = [
 pub struct DesignedSamples {
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Hash of everything that the rows follow from: samples, shape of the filter and settings.
     pub work: String,
     /// The samples, as they were named.
@@ -46,6 +49,9 @@ pub struct DesignedSamples {
     /// Whether inches stand beside mm on page and terminal.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
+    /// What the sheet says of itself; without a day in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
     /// What was walked for every sample; `None` where nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walks: Option<DesignedWalks>,
@@ -235,13 +241,14 @@ impl DesignedSample {
         of_design.unwrap_or(&self.rule)
     }
 
-    /// The columns of `designs.csv`, and under their headings what a terminal and a page show.
-    pub fn columns<'a>() -> Columns<'a, Self> {
+    /// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
+    /// unit.
+    pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
         let design = |row: &Self| row.design.clone();
         let why_not = |row: &Self| Some(row.not_walked.clone()).filter(|why| !why.is_empty());
-        let drains = |row: &Self| {
+        let drains = move |row: &Self| {
             let at_most = if row.d15f_min_at_most { " at most" } else { "" };
-            row.d15f_min_mm.map(|least| format!("{}{at_most}", rounded_up(least)))
+            row.d15f_min_mm.map(|least| format!("{}{at_most}", unit.least(least)))
         };
         Columns::default()
             .column("sample", |row: &Self| row.sample.clone())
@@ -252,9 +259,9 @@ impl DesignedSample {
             .digits("fines_percent", 1, |row| row.fines_percent)
             .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
             .digits("d85b_mm", 4, |row| row.d85b_mm)
-            .headed("D85B, regraded, mm")
+            .number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| unit.short(mm)))
             .digits("limit_mm", 4, |row| row.limit_mm)
-            .number("Limit of practice, mm", |row| row.limit_mm.map(rounded_down))
+            .number("Limit of practice, mm", move |row| row.limit_mm.map(|mm| unit.greatest(mm)))
             .column("rule", |row: &Self| row.rule.clone())
             .headed("Whose limit")
             .digits("d15f_min_mm", 4, |row| row.d15f_min_mm)
@@ -262,14 +269,15 @@ impl DesignedSample {
             .column("d15f_min_at_most", |row: &Self| row.d15f_min_at_most.to_string())
             .digits("no_erosion_d15f_mm", 4, move |row| design(row)?.no_erosion_d15f_mm)
             .number("No erosion by walk up to, mm", move |row| {
-                let mm = design(row).and_then(|of| of.no_erosion_d15f_mm).map(rounded_down);
+                let mm = design(row).and_then(|of| of.no_erosion_d15f_mm).map(|mm| unit.greatest(mm));
                 mm.unwrap_or_default().shown().below(why_not(row))
             })
             .digits("no_erosion_d15f_over_d85b", 3, move |row| design(row)?.no_erosion_d15f_over_d85b)
             .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
-            .number("D15F up to, mm", |row| {
+            .number("D15F up to, mm", move |row| {
                 let is_unserved = row.d15f_max_mm.is_some() && !row.no_band.is_empty();
-                row.d15f_max_mm.map(rounded_down).shown().below(is_unserved.then(|| "no band".to_owned()))
+                let greatest = row.d15f_max_mm.map(|mm| unit.greatest(mm));
+                greatest.shown().below(is_unserved.then(|| "no band".to_owned()))
             })
             .column("set_by", |row: &Self| row.set_by().map(str::to_owned))
             .headed("Set by")
@@ -302,11 +310,13 @@ impl DesignedSamples {
         }
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             work: String::new(),
             samples,
             filter: String::new(),
             dispersive: false,
             inches: false,
+            cover: SheetCover::default(),
             walks: None,
             rows,
             notes: Vec::new(),

@@ -208,6 +208,7 @@ mod tests {
     use crate::gradation::SoilSample;
     use crate::outcome::design::Specification;
     use crate::outcome::design::band::SetBy;
+    use crate::outcome::numbers::SizeUnit;
     use crate::verdict::SampleDesign;
     use crate::verdict::SpecificationOptions;
 
@@ -274,7 +275,7 @@ mod tests {
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }
-        let csv = String::from_utf8(DesignedSample::columns().csv(&all.rows)).unwrap();
+        let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
         assert!(csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,limit_mm,rule,"));
         assert_eq!(csv.lines().count(), 4);
         assert!(

@@ -3,8 +3,8 @@
 
 use super::entry::Finding;
 use super::finding;
+use crate::outcome::apart::{digits_of, value_and_limit};
 use crate::outcome::comparison::ComparedStanding;
-use crate::outcome::numbers::whole_within;
 use crate::outcome::record::{
     AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, RuleText, TestedClass,
     Verdict,
@@ -396,16 +396,8 @@ pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
     let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
         return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
     };
-    // A limit is never shown more generous than it is.
-    let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, rule.at_least)];
-    let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {
-        (Ok(shown), Ok(of)) => shown != of && (shown < of) == (value < limit),
-        _ => shown != of,
-    };
-    let apart = (digits..9).map(pair).find(is_order);
-    apart
-        .unwrap_or_else(|| [value, limit].map(|number| digits_of(number, digits)))
-        .map(|number| with_unit(number, &rule.unit))
+    let shown = value_and_limit(value, limit, rule.at_least, digits);
+    shown.map(|number| with_unit(number, &rule.unit))
 }
 
 /// A value with its unit.
@@ -420,27 +412,6 @@ fn with_unit(number: String, unit: &str) -> String {
 /// Two digits that mean something, or three from 100 on.
 fn short(value: f64) -> String {
     digits_of(value, 2)
-}
-
-fn digits_of(value: f64, digits: i32) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    format!("{value:.*}", decimals_of(value, digits))
-}
-
-fn decimals_of(value: f64, digits: i32) -> usize {
-    (digits - 1 - value.abs().log10().floor() as i32).clamp(0, digits + 4) as usize
-}
-
-/// The same of a limit: a greatest rounded down, a least rounded up.
-pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
-    if limit <= 0.0 || !limit.is_finite() {
-        return digits_of(limit, digits);
-    }
-    let decimals = decimals_of(limit, digits);
-    let parts = libm::pow(10.0, decimals as f64);
-    format!("{:.*}", decimals, whole_within(limit * parts, at_least) / parts)
 }
 
 #[cfg(test)]

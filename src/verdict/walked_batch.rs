@@ -7,8 +7,9 @@ use super::batch_table::BatchFilter;
 use super::practice::is_beyond_tests;
 use super::probability::probabilities;
 use crate::outcome::BaseSize;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{
-    Bound, Confidence, IfDispersive, ModelLimit, Outcome, Ratios, Statistic, Verdict,
+    Bound, Confidence, IfDispersive, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit,
 };
 use crate::outcome::table::{Columns, TableCell};
 use crate::outcome::verdict::THRESHOLD;
@@ -36,6 +37,9 @@ const SHOWN: [&str; 13] = [
 pub struct WalkedBatch {
     /// Version of the program.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Hash of everything that the rows follow from: samples, filters and settings.
     pub work: String,
     /// Seed of every walk.
@@ -50,6 +54,12 @@ pub struct WalkedBatch {
     pub notes: Vec<String>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
+    /// What the sheet says of itself; without a day in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
     /// What no walk contains.
     pub model_leaves_out: Vec<ModelLimit>,
 }
@@ -156,6 +166,7 @@ impl WalkedBatch {
     pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             work: String::new(),
             seed: 0,
             samples,
@@ -163,6 +174,8 @@ impl WalkedBatch {
             rows,
             notes: Vec::new(),
             threshold: THRESHOLD,
+            cover: SheetCover::default(),
+            inches: false,
             model_leaves_out: Vec::new(),
         }
     }
@@ -182,8 +195,9 @@ impl WalkedRow {
         self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
     }
 
-    /// The columns of `batch.csv`, and under their headings what a terminal and a page show.
-    pub fn columns<'a>() -> Columns<'a, Self> {
+    /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
+    /// unit.
+    pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
         let walk = |row: &Self| row.walk.clone();
         let of_walk = Columns::default()
             .column("governs", |row: &Self| row.governs)
@@ -210,6 +224,6 @@ impl WalkedRow {
             .column("reason", move |row| walk(row)?.reason)
             .column("not_walked", |row: &Self| row.not_walked.clone())
             .column("folder", move |row| walk(row).map(|walk| walk.folder));
-        columns().of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
+        columns(unit).of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
     }
 }

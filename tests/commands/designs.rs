@@ -10,6 +10,7 @@ use voidwalk::run::FolderKind;
 
 use crate::judge::SMALL;
 use crate::program::{call, done, figures_are_listed, refused};
+use crate::sheet::inches_within;
 
 /// Three sands.
 const SAMPLES: &str = "Sieve (mm),Core,Shell,Till\n10,100,100,100\n1,100,100,100\n0.5,100,80,60\n\
@@ -158,6 +159,37 @@ fn killed_at_any_time_and_continued_the_table_is_the_same() {
     assert_eq!(text("killed"), text("whole"));
 }
 
+/// Another cover walks no sample again, and stands on the pages of the samples, too.
+#[test]
+fn a_cover_is_added_to_designs_that_are_done() {
+    let root = site();
+    let at = root.path();
+    designed(at, &words("samples.csv", "d"));
+    let samples = || -> Vec<PathBuf> {
+        let mut all: Vec<PathBuf> =
+            fs::read_dir(at.join("d/samples")).unwrap().map(|of| of.unwrap().path()).collect();
+        all.sort();
+        all
+    };
+    let of_walks = |folder: &PathBuf| {
+        let file = folder.join("design.csv");
+        (fs::read(&file).unwrap(), fs::metadata(&file).unwrap().modified().unwrap())
+    };
+    let before: Vec<_> = samples().iter().map(of_walks).collect();
+    let covered = ["--set", "about.client=Water Board", "--set", "about.revision=2", "--overwrite"];
+    designed(at, &[&words("samples.csv", "d")[..], &covered].concat());
+    assert_eq!(samples().iter().map(of_walks).collect::<Vec<_>>(), before);
+    let page = |file: PathBuf| fs::read_to_string(file).unwrap();
+    let pages = samples().into_iter().map(|of| page(of.join("design.html")));
+    for page in pages.chain([page(at.join("d/designs.html"))]) {
+        assert!(page.contains("<dt>Client</dt> <dd><bdi>Water Board</bdi></dd>"));
+        assert!(page.contains("<dt>Revision</dt> <dd><bdi>2</bdi></dd>") && page.contains("<dt>Date</dt>"));
+    }
+    // What the walks follow from is walked.
+    designed(at, &[&words("samples.csv", "d")[..], &["--set", "seed=7", "--overwrite"]].concat());
+    assert!(samples().len() > before.len());
+}
+
 #[test]
 fn by_practice_alone_nothing_is_walked_and_a_folder_of_sheets_is_taken() {
     let root = site();
@@ -197,21 +229,7 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
 
 /// That no greatest D15F has more inches than mm, and no least fewer.
 fn assert_inches_lie_within(page: &str) {
-    let number = |text: &str| {
-        let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
-        text[start..].parse::<f64>().ok()
-    };
-    let mut found = 0;
-    for (at, words) in page.match_indices("up to ").chain(page.match_indices("at most ")) {
-        let rest = &page[at + words.len()..];
-        let Some((mm, rest)) = rest.split_once(" mm (") else { continue };
-        let (Ok(mm), Some((inches, _))) = (mm.parse::<f64>(), rest.split_once("\u{202f}in")) else {
-            continue;
-        };
-        let Some(inches) = number(inches) else { continue };
-        assert!(inches * 25.4 <= mm * (1.0 + 1e-9), "{mm} mm, {inches} in");
-        found += 1;
-    }
+    let mut found = inches_within(page);
     let bands = page.match_indices("D15F from ").chain(page.match_indices("lie between "));
     for (at, words) in bands {
         let rest = &page[at + words.len()..];

@@ -29,6 +29,9 @@ mod schemas;
 mod second_command;
 #[cfg(feature = "serve")]
 mod serve;
+#[cfg(feature = "serve")]
+mod serve_batch;
+mod sheet;
 mod slurm_scripts;
 mod soils;
 mod specification;

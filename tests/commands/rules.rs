@@ -369,6 +369,14 @@ fn samples_that_govern_are_walked_as_a_comparison_and_not_twice() {
     fs::remove_file(folder.join("compare.json")).unwrap();
     walk();
     assert_eq!((read(), moments()), (first.clone(), of_first.clone()));
+    // A date that is no longer stated stands on another sheet.
+    let record = fs::read_to_string(folder.join("compare.json")).unwrap();
+    let mut dated: serde_json::Value = serde_json::from_str(&record).unwrap();
+    assert!(dated["cover"]["date"].is_string(), "{record}");
+    dated["cover"]["date"] = "1 April 2026".into();
+    fs::write(folder.join("compare.json"), dated.to_string()).unwrap();
+    refused(&words, "holds another comparison");
+    fs::write(folder.join("compare.json"), record).unwrap();
     // The comparison of another site is not cleared, nor one of other settings, and no table is written.
     let other = root.path().join("other.csv").display().to_string();
     fs::write(&other, rows.replace("60,40", "70,40")).unwrap();

@@ -15,7 +15,7 @@ use crate::judge::{BASE, COARSE, FINE};
 use crate::program::{call, done, refused, voidwalk};
 
 /// A server in a folder of its own.
-struct Served {
+pub struct Served {
     child: Child,
     port: u16,
     /// `/SECRET/`.
@@ -30,7 +30,7 @@ impl Drop for Served {
     }
 }
 
-fn serve() -> Served {
+pub fn serve() -> Served {
     serve_in(tempfile::tempdir().unwrap())
 }
 
@@ -49,7 +49,7 @@ fn serve_in(at: tempfile::TempDir) -> Served {
 }
 
 /// Status, head and body of an answer.
-type Said = (u16, String, Vec<u8>);
+pub type Said = (u16, String, Vec<u8>);
 
 impl Served {
     fn connect(&self) -> TcpStream {
@@ -77,20 +77,20 @@ impl Served {
         self.raw(&[head.as_bytes(), body].concat())
     }
 
-    fn get(&self, path: &str) -> Said {
+    pub fn get(&self, path: &str) -> Said {
         self.ask("GET", &format!("{}{path}", self.path), "", b"")
     }
 
-    fn post(&self, path: &str, body: &[u8]) -> (u16, Value) {
+    pub fn post(&self, path: &str, body: &[u8]) -> (u16, Value) {
         let (status, _, body) = self.ask("POST", &format!("{}{path}", self.path), "", body);
         (status, serde_json::from_slice(&body).unwrap())
     }
 
-    fn json(&self, path: &str) -> Value {
+    pub fn json(&self, path: &str) -> Value {
         serde_json::from_slice(&self.get(path).2).unwrap()
     }
 
-    fn sheet(&self, name: &str, text: &str) -> (u16, Value) {
+    pub fn sheet(&self, name: &str, text: &str) -> (u16, Value) {
         self.post(&format!("api/sheet?name={name}"), text.as_bytes())
     }
 
@@ -108,12 +108,12 @@ impl Served {
         )
     }
 
-    fn job(&self, id: u64) -> Value {
+    pub fn job(&self, id: u64) -> Value {
         let state = self.json("api/state");
         state["jobs"].as_array().unwrap().iter().find(|job| job["id"] == id).unwrap().clone()
     }
 
-    fn until(&self, id: u64, what: impl Fn(&Value) -> bool) -> Value {
+    pub fn until(&self, id: u64, what: impl Fn(&Value) -> bool) -> Value {
         let begun = Instant::now();
         loop {
             let job = self.job(id);
@@ -135,7 +135,7 @@ impl Served {
         (code, said, std::mem::replace(&mut self.at, tempfile::tempdir().unwrap()))
     }
 
-    fn root(&self) -> &Path {
+    pub fn root(&self) -> &Path {
         self.at.path()
     }
 
@@ -471,7 +471,7 @@ impl Served {
     }
 
     /// The same folder after a kill.
-    fn again(mut self) -> Self {
+    pub fn again(mut self) -> Self {
         self.child.kill().unwrap();
         self.child.wait().unwrap();
         serve_in(std::mem::replace(&mut self.at, tempfile::tempdir().unwrap()))
@@ -577,6 +577,33 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
     assert_eq!(served.get("api/rules?base=2&filter=1&as_given=1").0, 200);
     let pair = served.json("api/rules?base=1&filter=2");
     assert_eq!(pair["base"]["d85_mm"], pair["base"]["d85_as_sampled_mm"]);
+    // A limit that is just reached reads as kept, in the texts of the program.
+    let base = "size_mm,percent_finer\n0.08,0\n0.299,85\n0.4,100\n";
+    let filter = "size_mm,percent_finer\n0.9,0\n1.196,15\n3,100\n";
+    let [base, filter] = [("b.csv", base), ("f.csv", filter)].map(|(name, text)| {
+        let (status, sheet) = served.sheet(name, text);
+        assert_eq!(status, 200, "{sheet}");
+        sheet["id"].clone()
+    });
+    let pair = served.json(&format!("api/rules?base={base}&filter={filter}"));
+    let rules = pair["rules"].as_array().unwrap().iter().zip(pair["shown"].as_array().unwrap());
+    let number =
+        |text: &Value| -> f64 { text.as_str().unwrap().split('\u{202f}').next().unwrap().parse().unwrap() };
+    let mut reached = 0;
+    for (rule, shown) in rules {
+        assert_eq!(
+            (rule["value"].is_null(), rule["limit"].is_null()),
+            (shown[0].is_null(), shown[1].is_null())
+        );
+        let (Some(value), Some(limit)) = (rule["value"].as_f64(), rule["limit"].as_f64()) else { continue };
+        reached += usize::from(value == limit);
+        assert_eq!(
+            number(&shown[0]).total_cmp(&number(&shown[1])),
+            value.total_cmp(&limit),
+            "{rule} {shown}"
+        );
+    }
+    assert!(reached > 0, "{pair}");
     // A path is no shape, a soil that is none no base, and nothing is left of either.
     for shape in ["narrow.csv", "./narrow.csv", "/etc/passwd", "../x", "sheets/1/narrow.csv"] {
         let (status, said) = served.design(&[], json!({ "shape": shape }));

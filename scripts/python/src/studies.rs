@@ -8,6 +8,7 @@ use voidwalk::gradation::soils_in_file;
 use voidwalk::outcome::design::Specification;
 use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
 use voidwalk::outcome::numbers::{rounded_down, rounded_up};
+use voidwalk::outcome::record::SheetCover;
 use voidwalk::store::format;
 use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
 use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
@@ -118,7 +119,8 @@ pub fn specification(
 ) -> PyResult<String> {
     let sieves =
         sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
-    let options = SpecifyOptions { base, dispersive, sieves, inches: false, out, overwrite };
+    let cover = SheetCover::default();
+    let options = SpecifyOptions { base, dispersive, sieves, cover, inches: false, out, overwrite };
     let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
 }

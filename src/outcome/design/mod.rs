@@ -8,6 +8,7 @@ pub mod band;
 pub(crate) mod products;
 mod record;
 mod sieves;
+mod size_band;
 pub mod specification;
 mod spread;
 

@@ -7,7 +7,7 @@ use super::products::Fit;
 use super::specification::Specification;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -19,6 +19,9 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
     /// versions, of which [`Design::answer()`] works it out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -80,6 +83,9 @@ pub struct Design {
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
+    /// What the sheet says of itself; without a day in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
     /// Whether inches stand beside mm on its page.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,

@@ -1,16 +1,15 @@
-//! The specification of a filter for a base: the steps that lead to it, its two sides, its limits sieve by
-//! sieve, and standard products beside it.
+//! The specification of a filter for a base: the steps that lead to it, its band, and standard products
+//! beside it.
 //!
 //! `verdict` makes it from the rules of practice, with its words.
 
 use serde::{Deserialize, Serialize};
 
-use super::products::{PRODUCTS, Product, size_at};
+use super::products::{PRODUCTS, Product};
 use super::sieves::SieveSeries;
-use crate::gradation::FINES_MM;
+pub use super::size_band::{BandSize, SieveLimit, SizeBand};
 use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, significant};
-use crate::outcome::record::IfDispersive;
-use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
+use crate::outcome::record::{IfDispersive, SheetCover};
 
 /// The whole of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,12 +17,18 @@ use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 pub struct Specification {
     /// Version of voidwalk.
     pub version: String,
+    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// Name of the base.
     pub base: String,
     /// Whether it was said to be dispersive.
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
+    /// What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
     /// Whether inches stand beside mm on its page.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
@@ -133,45 +138,6 @@ impl StepValue {
     }
 }
 
-/// The two sides of a band as sizes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SizeBand {
-    /// D5, D15, D60, D90 and D100 of both sides.
-    pub sizes: Vec<BandSize>,
-    /// The fine side: size (mm) and percent finer, rising.
-    pub fine_side: Vec<[f64; 2]>,
-    /// The coarse side.
-    pub coarse_side: Vec<[f64; 2]>,
-}
-
-/// A size of both sides of a band.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct BandSize {
-    /// Percent finer.
-    pub percent: f64,
-    /// Least size (mm), of the fine side.
-    pub min_mm: f64,
-    /// Greatest size (mm), of the coarse side.
-    pub max_mm: f64,
-}
-
-/// What a delivery may have finer than a sieve. A row of `specification.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SieveLimit {
-    /// Name of the sieve.
-    pub sieve: String,
-    /// Its opening (mm).
-    pub opening_mm: f64,
-    /// Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where
-    /// no whole percent lies within.
-    pub min_percent_finer: f64,
-    /// Greatest percent finer, of the fine side, likewise.
-    pub max_percent_finer: f64,
-}
-
 /// A standard product beside a specification. A row of `specification_products.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -272,103 +238,6 @@ impl SpecificationStep {
     }
 }
 
-/// Percents at which the sizes of a band are shown.
-const SIZES: [f64; 5] = [5.0, 15.0, 60.0, 90.0, 100.0];
-
-impl SizeBand {
-    /// From the control points of its sides: least and greatest D15 and D60 (mm).
-    ///
-    /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
-    /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
-    /// fifth of that of the coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
-    /// is not below 75 mm, and where the coarse side has more than 5 % finer than 0.075 mm.
-    pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
-        let on =
-            |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
-        if d60.iter().any(|size| *size >= GREATEST_SIZE_MM) {
-            return None;
-        }
-        let top = |side: usize| [on(side, 100.0).min(GREATEST_SIZE_MM), 100.0];
-        let coarse_d5 = on(1, MOST_FINES_PERCENT);
-        let d5 = (coarse_d5 / WIDEST_BAND).max(FINES_MM);
-        // The band would be inside out.
-        if coarse_d5 < d5 {
-            return None;
-        }
-        let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
-        let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0], top(1)];
-        let size = |percent: f64| BandSize {
-            percent,
-            min_mm: size_at(&fine_side, percent),
-            max_mm: size_at(&coarse_side, percent),
-        };
-        Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
-    }
-
-    /// The size (mm) at which the fine side has this percent finer; its end where it does not reach it.
-    pub fn least_size(&self, percent: f64) -> f64 {
-        size_at(&self.fine_side, percent)
-    }
-
-    /// D15 (mm) of the fine and of the coarse side.
-    pub fn d15_mm(&self) -> [f64; 2] {
-        [&self.fine_side, &self.coarse_side].map(|side| size_at(side, 15.0))
-    }
-
-    /// Least and greatest percent finer than an opening (mm).
-    pub fn percent_finer(&self, opening_mm: f64) -> [f64; 2] {
-        [percent_at(&self.coarse_side, opening_mm), percent_at(&self.fine_side, opening_mm)]
-    }
-
-    /// The limits at the sieves of a series, from the finest sieve that all must pass down to the finest of
-    /// all.
-    pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
-        let limit = |&opening_mm: &f64| {
-            let [min_percent_finer, max_percent_finer] = whole(self.percent_finer(opening_mm));
-            SieveLimit { sieve: series.name(opening_mm), opening_mm, min_percent_finer, max_percent_finer }
-        };
-        let all: Vec<SieveLimit> = series.openings().iter().map(limit).collect();
-        let open = all.iter().take_while(|limit| limit.min_percent_finer == 100.0).count();
-        all.into_iter().skip(open.saturating_sub(1)).collect()
-    }
-
-    /// The sieve at which the limits of a product leave the band by most, and by how many percentage points;
-    /// `None` where they stay within.
-    fn left_by(&self, product: &Product) -> Option<(f64, f64)> {
-        let beyond = |&(opening, least, greatest): &(f64, f64, f64)| {
-            let [min, max] = self.percent_finer(opening);
-            (opening, (min - least).max(greatest - max))
-        };
-        let worst = product.limits.iter().map(beyond).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (worst.1 > 0.0).then_some(worst)
-    }
-}
-
-/// Whole percents within two limits; tenths where no whole percent lies between them, hundredths where no
-/// tenth does, and the limits themselves where none does.
-fn whole([min, max]: [f64; 2]) -> [f64; 2] {
-    // Logarithms leave a hair, which is no percent.
-    let hair = 1e-9;
-    // Rounding up from below 0 gives -0, to which 0 is added.
-    let inward =
-        |parts: f64| [((min - hair) * parts).ceil() / parts + 0.0, ((max + hair) * parts).floor() / parts];
-    let found = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
-    found.unwrap_or([min, max])
-}
-
-/// The percent finer than a size (mm); below its first point a side has what it has there.
-fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
-    let below = side.partition_point(|point| point[0] <= size);
-    match below.checked_sub(1) {
-        None => side[0][1],
-        Some(last) if below == side.len() => side[last][1],
-        Some(last) => {
-            let ([low, a], [high, b]) = (side[last], side[below]);
-            a + (b - a) * libm::log(size / low) / libm::log(high / low)
-        }
-    }
-}
-
 /// Every standard product beside the least D15F (mm) and whether that is one at most, the greatest, and a
 /// band.
 pub fn margins(
@@ -405,89 +274,6 @@ mod tests {
         (found / wanted - 1.0).abs() < 1e-9
     }
 
-    /// D15 0.14 to 0.7 mm, as for a base of category 2: D60 to 5 x 0.7 = 3.5 mm, and a fifth of it.
-    fn band() -> SizeBand {
-        SizeBand::of([0.14, 0.7], [0.7, 3.5]).unwrap()
-    }
-
-    #[test]
-    fn the_sides_of_a_band_by_hand() {
-        let band = band();
-        let size = |percent: f64| {
-            let of = band.sizes.iter().find(|of| of.percent == percent).unwrap();
-            (of.min_mm, of.max_mm)
-        };
-        assert_eq!((size(15.0), size(60.0)), ((0.14, 0.7), (0.7, 3.5)));
-        // Both sides rise by a factor of 5 in 45 %.
-        let (d5, d90, d100) = (size(5.0), size(90.0), size(100.0));
-        assert!(near(d5.0, d5.1 / 5.0) && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
-        let fine = SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap();
-        assert_eq!(fine.sizes[0].min_mm, 0.075);
-        assert!(near(d90.0, 0.7 * 5f64.powf(30.0 / 45.0)) && near(d90.1, 3.5 * 5f64.powf(30.0 / 45.0)));
-        assert!(near(d100.0, 0.7 * 5f64.powf(40.0 / 45.0)) && near(d100.1, 3.5 * 5f64.powf(40.0 / 45.0)));
-    }
-
-    #[test]
-    fn limits_by_hand_are_whole_percents_within_the_band() {
-        let limits = band().limits(SieveSeries::Us);
-        let of = |name: &str| {
-            let limit = limits.iter().find(|limit| limit.sieve == name).unwrap();
-            (limit.min_percent_finer, limit.max_percent_finer)
-        };
-        // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
-        assert_eq!(of("No. 30"), (11.0, 55.0));
-        // ln(4.75/3.5)/ln 5 x 45 + 60 = 68.5; the fine side ends at 2.93 mm.
-        assert_eq!(of("No. 4"), (69.0, 100.0));
-        assert_eq!(of("No. 200"), (0.0, 5.0));
-        assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
-        // The coarse side ends at 14.6 mm.
-        assert_eq!(limits[0].sieve, "3/4 in");
-        assert_eq!((of("3/4 in"), of("1/2 in").0), ((100.0, 100.0), 96.0));
-        let iso = band().limits(SieveSeries::Iso);
-        assert_eq!((iso[0].sieve.as_str(), iso.last().unwrap().max_percent_finer), ("16 mm", 5.0));
-    }
-
-    #[test]
-    fn a_side_that_stands_upright_and_one_beyond_the_greatest_size() {
-        // D15 and D60 of the fine side are one size.
-        let band = SizeBand::of([0.7, 0.7], [0.7, 3.5]).unwrap();
-        assert_eq!(band.percent_finer(0.7)[1], 100.0);
-        assert!(band.percent_finer(0.69)[1] < 15.0);
-        assert!(SizeBand::of([4.0, 20.0], [20.0, 100.0]).is_none());
-        // It is cut off at the greatest size.
-        let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
-        assert_eq!(coarse.sizes[4].max_mm, 75.0);
-        assert_eq!(coarse.limits(SieveSeries::Iso)[0].sieve, "75 mm");
-    }
-
-    #[test]
-    fn percents_are_rounded_into_the_band() {
-        assert_eq!(whole([4.2, 4.8]), [4.2, 4.8]);
-        assert_eq!(whole([4.24, 4.86]), [4.3, 4.8]);
-        assert_eq!(whole([4.241, 4.289]), [4.25, 4.28]);
-        assert_eq!(whole([4.2411, 4.2419]), [4.2411, 4.2419]);
-        assert_eq!(whole([3.2, 9.9]), [4.0, 9.0]);
-    }
-
-    /// No sieve has a least above its greatest, down to the greatest D15F at which the coarse side has 5 %
-    /// finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
-    #[test]
-    fn no_band_is_inside_out() {
-        let of = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);
-        assert!(of(0.1, 0.1).is_none() && of(0.1, 0.107).is_none() && of(0.1, 0.1073).is_some());
-        for (least, most) in [(0.1, 0.1073), (0.1, 0.12), (0.1, 0.5), (0.7, 0.7), (2.0, 10.0), (2.9, 14.9)] {
-            let band = of(least, most).unwrap();
-            for series in [SieveSeries::Us, SieveSeries::Iso] {
-                for limit in band.limits(series) {
-                    assert!(limit.min_percent_finer <= limit.max_percent_finer, "{most}: {limit:?}");
-                    let [min, max] = band.percent_finer(limit.opening_mm);
-                    assert!(limit.min_percent_finer > min - 1e-6 && limit.max_percent_finer < max + 1e-6);
-                }
-            }
-            assert!(band.sizes.iter().all(|size| size.min_mm <= size.max_mm), "{:?}", band.sizes);
-        }
-    }
-
     #[test]
     fn a_least_size_is_rounded_up_and_a_greatest_down() {
         let of =
@@ -501,7 +287,8 @@ mod tests {
 
     #[test]
     fn products_have_their_margins_also_where_none_fits() {
-        let sand = &margins((Some(0.1), false), Some(0.7), Some(&band()))[0];
+        let band = SizeBand::of([0.14, 0.7], [0.7, 3.5]).unwrap();
+        let sand = &margins((Some(0.1), false), Some(0.7), Some(&band))[0];
         // D15 0.178 to 0.424 mm (see `products`).
         assert!(
             near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),

@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+/// The commit that this program was built from, where it is known.
+pub fn commit() -> Option<String> {
+    option_env!("VOIDWALK_COMMIT").map(String::from)
+}
+
 /// The whole of `manifest.json`: what made the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

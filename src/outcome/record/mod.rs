@@ -14,6 +14,7 @@
 //!   second begins.
 
 mod answer;
+mod cover;
 mod evidence;
 mod finding;
 mod inputs;
@@ -26,13 +27,14 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{ShortOf, Statistic, Stopping, Verdict};
+pub use cover::SheetCover;
 pub use evidence::{Bound, Evidence};
 pub use finding::{Direction, FindingRecord, Topic, Weight};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,
 };
-pub use manifest::{InputFile, Manifest};
+pub use manifest::{InputFile, Manifest, commit};
 pub use practice::{IfDispersive, LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};

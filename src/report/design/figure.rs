@@ -1,6 +1,6 @@
 //! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
 
-use crate::outcome::design::band::{limits, retention};
+use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
@@ -58,14 +58,15 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let mut figure =
         Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
             .sizes((760.0, 480.0), (358.0, 420.0));
-    let practice = retention(&design.rules, design.rules_at * d85).map(|(_, limit)| limit);
-    zones(&mut figure, row, d85, practice.filter(|_| !design.inverse), ends);
+    let practice = Allowed::of(design, d85);
+    zones(&mut figure, row, d85, &practice, ends);
     for (rule, at) in &limits {
         let name = NAMES.iter().find(|(id, _)| *id == rule.id).map_or(rule.name.as_str(), |(_, name)| *name);
+        let at_most = if rule.limit_at_most { ", at most" } else { "" };
         figure.add(
             Rule::new(Across::X, *at, if rule.at_least { BLACK } else { GREY })
                 .dash(Dash::Dotted)
-                .label(name),
+                .label(&format!("{name}{at_most}")),
         );
     }
     figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
@@ -73,11 +74,11 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
     let mut caption = format!(
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
-         second where it was walked. Green: no erosion, as far as practice allows it; grey: no erosion \
-         beyond that; orange: some erosion; red: continuing erosion. The colours blend over the 5 to 95 % \
-         band of the networks.{of_base}",
+         second where it was walked. {}; orange: some erosion; red: continuing erosion. The colours blend \
+         over the 5 to 95 % band of the networks.{of_base}",
         row.name(),
-        row.thickness
+        row.thickness,
+        practice.words()
     );
     if design.boundaries.len() > 1 {
         if least.is_some() {
@@ -87,13 +88,57 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     }
     // As in the tables: no more than a greatest, and no less than a least.
     let shown = SizeUnit::of(unit.is_empty(), design.inches);
-    let within = |rule: &AppliedRule, at: f64| shown.limit(at, unit, rule.at_least);
+    let within = |rule: &AppliedRule, at: f64| {
+        let at_most = if rule.limit_at_most { "at most " } else { "" };
+        format!("{at_most}{}", shown.limit(at, unit, rule.at_least))
+    };
     let lines: Vec<String> =
         limits.iter().map(|(rule, at)| format!("{} {}", rule.name, within(rule, *at).trim_end())).collect();
     if !lines.is_empty() {
         caption += &format!(" Dotted: {}.", lines.join("; "));
     }
     Some(Drawn::new("design", figure, caption))
+}
+
+/// How far practice allows what the walk holds.
+enum Allowed {
+    /// As far as the walk holds: no limit of practice is known, as sizes have no unit, or it is no stricter.
+    All,
+    /// Up to this place on the figure's axis.
+    UpTo(f64),
+    /// Practice allows nothing that was searched.
+    Nothing,
+    /// Of the limit of practice only the most is known, which allows nothing.
+    NotKnown,
+}
+
+impl Allowed {
+    fn of(design: &Design, d85: f64) -> Self {
+        let answer = design.answer();
+        match (answer.d15f_over_d85b, design.least_held()) {
+            // A rule that a finer base breaks, or none as its limit is not known.
+            (None, Some(_)) if design.inverse && answer.rule.is_some() => Self::Nothing,
+            (None, Some(_)) if design.inverse => Self::NotKnown,
+            (Some(ratio), _) if design.inverse && answer.set_by == SetBy::Practice => Self::UpTo(ratio * d85),
+            _ if design.inverse => Self::All,
+            _ => match retention(&design.rules, design.rules_at * d85) {
+                _ if open_retention(&design.rules).is_some() => Self::NotKnown,
+                Some((_, limit)) => Self::UpTo(limit),
+                None => Self::All,
+            },
+        }
+    }
+
+    /// What green and grey mean.
+    fn words(&self) -> &'static str {
+        match self {
+            Self::NotKnown => {
+                "Grey: no erosion in the model. Nothing is green, because only an upper bound of the limit \
+                 of practice is known"
+            }
+            _ => "Green: no erosion, as far as practice allows it; grey: no erosion beyond that",
+        }
+    }
 }
 
 /// Limits of D15F on the figure's axis.
@@ -108,7 +153,7 @@ fn of_rules(design: &Design, d85: f64) -> Vec<(&AppliedRule, f64)> {
 /// The zones, as wide as the figure is.
 ///
 /// What the walk alone holds beyond practice is no zone of no erosion.
-fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, practice: Option<f64>, (left, right): (f64, f64)) {
+fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, practice: &Allowed, (left, right): (f64, f64)) {
     let of = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
         // Where no ratio is known that nearly all networks hold, some erosion begins at the left.
@@ -127,9 +172,14 @@ fn zones(figure: &mut Figure, row: &DesignRow, d85: f64, practice: Option<f64>, 
             figure.add(if name.is_empty() { area } else { area.label(name) });
         }
     };
-    let allowed = practice.map_or(to, |limit| limit.clamp(left, to));
+    let (allowed, beyond) = match practice {
+        Allowed::All => (to, ""),
+        Allowed::UpTo(limit) => (limit.clamp(left, to), "beyond practice"),
+        Allowed::Nothing => (left, "beyond practice"),
+        Allowed::NotKnown => (left, "practice not known"),
+    };
     zone(left, allowed, GREEN, 0.10, "no erosion");
-    zone(allowed, to, GREY, 0.12, "beyond practice");
+    zone(allowed, to, GREY, 0.12, beyond);
     if row.no_erosion.is_none() {
         return;
     }

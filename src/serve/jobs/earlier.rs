@@ -9,9 +9,11 @@ use super::work::{Work, of_run};
 use crate::outcome::design::Design;
 use crate::outcome::record::Outcome;
 use crate::run::FolderKind;
+use crate::serve::batches::of_batch;
 use crate::serve::designs::of_design;
 use crate::serve::job_file::JobFile;
 use crate::store::read_whole;
+use crate::verdict::WalkedBatch;
 
 /// The last number of a job.
 pub const LAST: usize = 999_999;
@@ -50,7 +52,7 @@ fn holds_nothing(folder: &Path) -> bool {
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);
-    let is_ours = ["run-", "compare-", "design-"].iter().any(|kind| name.starts_with(kind));
+    let is_ours = ["run-", "compare-", "design-", "batch-"].iter().any(|kind| name.starts_with(kind));
     if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }
@@ -63,7 +65,10 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
         Some(FolderKind::Design) if path.join("design.html").is_file() => record(FolderKind::Design)
             .and_then(|bytes| serde_json::from_slice::<Design>(&bytes).ok())
             .and_then(|design| of_design(&design).ok()),
-        Some(FolderKind::Design) | None => None,
+        Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
+            .and_then(|bytes| serde_json::from_slice::<WalkedBatch>(&bytes).ok())
+            .map(|batch| of_batch(&batch)),
+        Some(FolderKind::Design | FolderKind::Batch) | None => None,
         Some(kind) => record(kind).and_then(|bytes| serde_json::from_slice(&bytes).ok()),
     };
     let ended = file.as_ref().and_then(|file| file.ended.clone());

@@ -80,17 +80,16 @@ impl Job {
     /// What the page is told of it; messages pass through `said`.
     pub fn snapshot(&self, all: &[Job], root: &Path, said: &impl Fn(&str) -> String) -> Value {
         let waits = |job: &&Job| job.state == JobState::Waiting && job.id < self.id;
-        let page = ["report.html", "compare.html", "design.html"]
+        let page = ["report.html", "compare.html", "design.html", "batch.html"]
             .into_iter()
             .find(|page| self.state == JobState::Done && root.join(&self.folder).join(page).is_file());
-        let mut kinds = ["compare", "design"].into_iter();
+        let mut kinds = ["compare", "design", "batch"].into_iter();
         let kind = kinds.find(|kind| self.folder.starts_with(kind)).unwrap_or("judge");
         let (runs, replicates) = match &self.work {
             Work::Judge(scene) => (scene.walk.runs, Some(scene.walk.replicates)),
             _ => (2, None),
         };
-        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        live.warnings.iter_mut().for_each(|warning| *warning = said(warning));
+        let live = self.live.lock().unwrap_or_else(PoisonError::into_inner).clone();
         json!({
             "id": self.id,
             "kind": kind,
@@ -105,7 +104,7 @@ impl Job {
             "message": said(&self.message),
             "page": page.map(|page| format!("files/{}/{page}", self.folder)),
             "replicates": replicates,
-            "live": live.snapshot(runs),
+            "live": all_said(&live.snapshot(runs), said),
             "result": all_said(&self.result, said),
         })
     }

@@ -6,15 +6,17 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-use crate::campaign::{CampaignCallbacks, CampaignOptions, CasePart};
+use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
 use crate::outcome::record::{FindingRecord, Outcome};
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::AnyError;
 use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
+use crate::serve::batches::of_batch;
 use crate::serve::designs::{KeptDesign, of_design};
 use crate::serve::live::Live;
+use crate::study::batch::{self, BatchPlan};
 use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
 
@@ -27,7 +29,9 @@ pub enum Work {
     /// Walks a scene.
     Judge(Box<Scene>),
     /// Walks several cases.
-    Compare(ComparePlan),
+    Compare(Box<ComparePlan>),
+    /// Walks every sample against filters.
+    Batch(Box<BatchPlan>),
     /// Finds how coarse a filter may be; the networks that are done in its folder are kept.
     Design(KeptDesign),
     /// What its folder keeps: it is planned again when the job continues.
@@ -44,6 +48,7 @@ impl Work {
         match self {
             Self::Compare(_) => "compare",
             Self::Design(_) => "design",
+            Self::Batch(_) => "batch",
             _ => "run",
         }
     }
@@ -98,15 +103,7 @@ impl WorkContext {
             }
             Work::Resume => run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome)),
             Work::Compare(plan) => {
-                let options = CampaignOptions {
-                    out: folder.to_owned(),
-                    part: CasePart::All,
-                    packings: Some(self.prepare.packings.clone()),
-                    memory: self.prepare.memory,
-                    threads: self.prepare.threads,
-                    checkpoint_interval: often(),
-                    command: self.command.clone(),
-                };
+                let options = of_cases(folder, &self.prepare, &self.command);
                 let callbacks = CampaignCallbacks {
                     run: callbacks,
                     on_cases: &|all, done| live().cases(all, done),
@@ -114,12 +111,44 @@ impl WorkContext {
                 };
                 Ok(serde_json::to_value(compare::run(plan, &options, false, &callbacks)?)?)
             }
+            Work::Batch(plan) => {
+                // Outcomes are read before the page is kept waiting.
+                let rows = plan.so_far(folder);
+                live().batch(rows, plan.shows_inches());
+                let options = of_cases(folder, &self.prepare, &self.command);
+                let callbacks = CampaignCallbacks {
+                    run: callbacks,
+                    on_cases: &|all, done| live().cases(all, done),
+                    on_case: &|case, event| {
+                        if let CaseEvent::Done(line) = event
+                            && let Some((at, row)) = plan.walked_row(folder, line)
+                        {
+                            live().walked_pair(at, row);
+                        }
+                        live().tell_case(case, event);
+                    },
+                };
+                Ok(of_batch(&batch::run(plan, &options, false, &callbacks)?))
+            }
             Work::Design(kept) => {
                 let options = kept.options(&self.root, folder, &self.prepare)?;
                 Ok(of_design(&design::run(&options, &callbacks)?)?)
             }
             Work::Kept | Work::Nothing => Ok(Value::Null),
         }
+    }
+}
+
+/// How the cases of a study in this folder are walked.
+pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CampaignOptions {
+    CampaignOptions {
+        out: folder.to_owned(),
+        part: CasePart::All,
+        packings: Some(prepare.packings.clone()),
+        memory: prepare.memory,
+        threads: prepare.threads,
+        checkpoint_interval: often(),
+        command: command.to_owned(),
     }
 }
 

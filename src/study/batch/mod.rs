@@ -10,11 +10,15 @@ mod plan;
 pub use plan::{BatchPlan, BatchWalks};
 
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
-use super::of_cases::{StudyOfCases, outcome};
-use crate::campaign::cases::PreparedCase;
+use super::days::last_day;
+use super::of_cases::{StudyOfCases, of_sheet, outcome};
+use crate::campaign::cases::{CASES, PreparedCase};
 use crate::campaign::{CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::leaves_out_of_all;
+use crate::outcome::ledger::LedgerLine;
+use crate::outcome::numbers::SizeUnit;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, shown};
 use crate::store::Folder;
@@ -42,7 +46,7 @@ pub fn run(
 ) -> Result<WalkedBatch, RunError> {
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, work, walked| {
         let batch = plan.walked(folder, work, walked)?;
-        folder.write(TABLE, &WalkedRow::columns().csv(&batch.rows))?;
+        folder.write(TABLE, &WalkedRow::columns(SizeUnit::Mm).csv(&batch.rows))?;
         Ok(batch)
     })
 }
@@ -58,6 +62,29 @@ pub fn found(plan: &BatchPlan, options: &CampaignOptions) -> Result<Option<Walke
 }
 
 impl BatchPlan {
+    /// The rows, with the walk of each pair that is done in this folder of the batch, to whatever end.
+    pub fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
+        let walked = |case: &String| {
+            let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;
+            let place = format!("{WALKS}/{CASES}/{}", planned.folder_name());
+            let at = folder.join(&place);
+            let is_done = at.is_dir() && FolderKind::Run.is_finished(&at).unwrap_or(false);
+            let outcome = is_done.then(|| outcome(&at).ok()).flatten()?;
+            Some(SampleWalk::of(&outcome, place, self.in_full.contains(case)))
+        };
+        let rows = self.rows.iter().zip(&self.cases);
+        rows.map(|(row, case)| WalkedRow { walk: walked(case), ..row.clone() }).collect()
+    }
+
+    /// The row of a case that was just done in this folder, and its place among all.
+    pub fn walked_row(&self, folder: &Path, line: &LedgerLine) -> Option<(usize, WalkedRow)> {
+        let at = self.cases.iter().position(|case| *case == line.case)?;
+        let place = format!("{WALKS}/{}", line.folder);
+        let outcome = outcome(&folder.join(&place)).ok()?;
+        let walk = SampleWalk::of(&outcome, place, self.in_full.contains(&line.case));
+        Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
+    }
+
     fn study<'a>(&'a self, work: &'a dyn Fn(&[PreparedCase]) -> String) -> StudyOfCases<'a> {
         StudyOfCases { kind: FolderKind::Batch, walks: WALKS, campaign: &self.campaign, work }
     }
@@ -70,7 +97,9 @@ impl BatchPlan {
             (row.rules.clone(), row.governs, row.not_walked.clone(), self.in_full.contains(case))
         };
         let rows: Vec<_> = self.rows.iter().zip(&self.cases).map(of_row).collect();
-        let text = format!("{} {rows:?} {:?} {:?} {all:?}", shown(&self.samples), self.filters, self.notes);
+        let sheet = of_sheet(&self.cover(), self.shows_inches());
+        let text =
+            format!("{} {rows:?} {:?} {:?} {all:?}{sheet}", shown(&self.samples), self.filters, self.notes);
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
 
@@ -98,6 +127,11 @@ impl BatchPlan {
         let batch = WalkedBatch::new(shown(&self.samples), self.filters.clone(), rows);
         let (work, notes) = (work.to_owned(), self.notes.clone());
         let seed = self.campaign.cases.first().map_or(0, |case| case.scene.walk.seed);
-        Ok(WalkedBatch { work, seed, notes, model_leaves_out: leaves_out_of_all(modelled), ..batch })
+        let folders =
+            batch.rows.iter().filter_map(|row| Some(folder.path().join(&row.walk.as_ref()?.folder)));
+        let folders: Vec<PathBuf> = folders.collect();
+        let cover = self.cover().dated(last_day(folders.iter().map(PathBuf::as_path)));
+        let (inches, model_leaves_out) = (self.shows_inches(), leaves_out_of_all(modelled));
+        Ok(WalkedBatch { work, seed, notes, cover, inches, model_leaves_out, ..batch })
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::super::file_names::{as_folders, names, refuse_twice};
 use crate::campaign::plan::PlannedCase;
 use crate::campaign::{self, CampaignOptions, CampaignPlan};
+use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
@@ -108,6 +109,27 @@ impl BatchPlan {
         Ok(plan)
     }
 
+    /// With these names of the samples and of each filter in the place of their paths, and with what `said`
+    /// makes of notes that may hold paths.
+    #[must_use]
+    pub fn named(mut self, samples: &str, filters: &[String], said: impl Fn(&str) -> String) -> Self {
+        let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
+        for (at, row) in self.rows.iter_mut().enumerate() {
+            row.rules.filter.clone_from(&filters[at / of_filter]);
+            row.rules.note = said(&row.rules.note);
+            row.not_walked = said(&row.not_walked);
+            let case = self.campaign.cases.iter_mut().find(|case| case.name == self.cases[at]);
+            let levels = case.into_iter().flat_map(|case| &mut case.levels);
+            let level = levels.filter(|(factor, _)| factor == "filter");
+            level.for_each(|(_, level)| level.clone_from(&filters[at / of_filter]));
+        }
+        self.filters.iter_mut().zip(filters).for_each(|(of, name)| of.name.clone_from(name));
+        self.notes.iter_mut().for_each(|note| *note = said(note));
+        self.campaign.title = format!("samples of {samples}");
+        self.samples = samples.into();
+        self
+    }
+
     /// Leaves out of the walks what is wrong in itself.
     fn leave_out_unsound(&mut self, options: &CampaignOptions) -> Result<(), RunError> {
         if !self.campaign.cases.is_empty() {
@@ -126,6 +148,16 @@ impl BatchPlan {
             return Err(RunError::Refused(problem));
         }
         Ok(())
+    }
+
+    /// What the scenes of the walks say of the sheet: all the same.
+    pub(super) fn cover(&self) -> SheetCover {
+        self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
+    }
+
+    /// Whether page and terminal show inches beside mm.
+    pub fn shows_inches(&self) -> bool {
+        self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
 
     /// What the constrictions of the walks come from, in a sentence.

@@ -8,10 +8,14 @@ mod plan;
 
 pub use plan::{ComparePlan, Compared};
 
-use super::of_cases::{StudyOfCases, outcome};
+use super::days::last_day;
+use super::of_cases::{StudyOfCases, of_sheet, outcome};
+use std::path::PathBuf;
+
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::rules::Authority;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
@@ -45,7 +49,7 @@ pub fn run(
     campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, _, walked| {
         let comparison = plan.compared(folder, walked)?;
-        folder.write(CASES, &ComparedCase::columns().csv(&comparison.cases))?;
+        folder.write(CASES, &ComparedCase::columns(SizeUnit::Mm).csv(&comparison.cases))?;
         folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
         Ok(comparison)
     })
@@ -58,8 +62,16 @@ pub fn run(
 /// A case that is wrong, and a folder that holds anything else, another comparison too.
 pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Comparison>, RunError> {
     campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
-    let is_this = |there: &Comparison, _: &[PreparedCase]| {
-        there.of == plan.of && there.cases.iter().map(|case| case.name.as_str()).eq(plan.names())
+    let walks = options.out.join(WALKS);
+    let is_this = |there: &Comparison, cases: &[PreparedCase]| {
+        let folders = cases.iter().filter_map(|case| Some(walks.join(case.line(&walks)?.folder)));
+        let folders: Vec<PathBuf> = folders.collect();
+        let day = last_day(folders.iter().map(PathBuf::as_path));
+        // Earlier versions wrote no date.
+        let cover = plan.cover.clone().dated(day.filter(|_| there.cover.date.is_some()));
+        there.of == plan.of
+            && (&there.cover, there.inches) == (&cover, plan.inches)
+            && there.cases.iter().map(|case| case.name.as_str()).eq(plan.names())
     };
     plan.study(&|cases| plan.work(cases)).found(options, is_this)
 }
@@ -74,7 +86,7 @@ impl ComparePlan {
         let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
         let all: Vec<String> = cases.iter().map(of_case).collect();
         // Not the path of what is common: the cases know its bytes.
-        let text = format!("{} {all:?}", self.of);
+        let text = format!("{} {all:?}{}", self.of, of_sheet(&self.cover, self.inches));
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
 
@@ -93,6 +105,9 @@ impl ComparePlan {
             outcomes.push((line.case.clone(), case, outcome));
         }
         let mut comparison = Comparison::new(self.of, &self.common, self.seed, &outcomes);
+        let folders: Vec<PathBuf> = outcomes.iter().map(|(_, case, _)| folder.path().join(case)).collect();
+        let day = last_day(folders.iter().map(PathBuf::as_path));
+        (comparison.cover, comparison.inches) = (self.cover.clone().dated(day), self.inches);
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
             case.headline = outcome.headline();
             case.practice = outcome.practice_in_words();

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::super::file_names::{names, refuse_twice};
 use crate::campaign::CampaignPlan;
 use crate::campaign::plan::PlannedCase;
+use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
@@ -44,6 +45,10 @@ pub struct ComparePlan {
     pub seed: u64,
     /// Whether scenes had seeds of their own, which are not taken.
     pub seeds_differed: bool,
+    /// What the scenes say alike of the sheet.
+    pub(super) cover: SheetCover,
+    /// Whether all of them show inches beside mm.
+    pub(super) inches: bool,
     /// The cases.
     pub(super) campaign: CampaignPlan,
 }
@@ -80,10 +85,12 @@ impl ComparePlan {
         let seed = cases[0].scene.walk.seed;
         let seeds_differed = cases.iter().any(|case| case.scene.walk.seed != seed);
         cases.iter_mut().for_each(|case| case.scene.walk.seed = seed);
+        let cover = SheetCover::in_common(cases.iter().map(|case| case.scene.about.cover()));
+        let inches = cases.iter().all(|case| case.scene.about.shows_inches());
         let title = format!("comparison of {of}");
         let campaign = CampaignPlan { file: title.clone(), title, factors: Vec::new(), cases };
         let common = common.map_or(String::new(), |path| shown(path));
-        Ok(Self { of, common, seed, seeds_differed, campaign })
+        Ok(Self { of, common, seed, seeds_differed, cover, inches, campaign })
     }
 
     /// The names of the cases.

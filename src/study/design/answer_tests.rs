@@ -106,3 +106,27 @@ fn a_real_thickness_is_compared_in_mm_alone() {
         assert!(!design.reasons.join("; ").contains("thicker than the real one"), "{:?}", design.reasons);
     }
 }
+
+/// 30 % of the base pass its finest sieve: of the limit of practice only the most is known.
+#[test]
+fn a_base_of_whose_limit_only_the_most_is_known_is_not_said_to_be_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = [(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)];
+    let base = of_base(folder.path(), "base.csv", &points);
+    let filter = of_base(folder.path(), "filter.csv", &[(1.0, 0.0), (2.0, 50.0), (4.0, 100.0)]);
+    let filter = Some(filter.display().to_string());
+    let options = tiny(&folder.path().join("out"), &["replicates=1", "network.nz=6"]);
+    let options = DesignOptions { inverse: true, filter, densities: vec!["loose".into()], ..options };
+    let settings = options.settings.iter().filter(|of| !of.starts_with("base.")).cloned().collect();
+    let design = found(&DesignOptions { base: Some(base), settings, ..options.clone() });
+    let answer = design.answer();
+    assert!(answer.said.starts_with("The finest D85B is not known: of the limit"), "{}", answer.said);
+    assert_eq!((answer.d85b_min_mm, answer.d15f_over_d85b, answer.rule), (None, None, None));
+    // With its fines known the same sizes have an answer.
+    let closed = [&[(0.125, 0.0)][..], &points].concat();
+    let base = of_base(folder.path(), "closed.csv", &closed);
+    let settings = options.settings.iter().filter(|of| !of.starts_with("base.")).cloned().collect();
+    let out = folder.path().join("closed");
+    let known = found(&DesignOptions { base: Some(base), settings, out, ..options });
+    assert!(!known.answer().said.contains("not known"), "{}", known.answer().said);
+}

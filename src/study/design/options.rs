@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::outcome::design::SieveSeries;
+use crate::outcome::record::SheetCover;
 use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
 use crate::scene::Scene;
@@ -85,10 +86,18 @@ impl DesignOptions {
         self.scene_of("about.units").is_some_and(|scene| scene.about.shows_inches())
     }
 
-    /// What the scene reads of the settings of one key; what it refuses is refused where the whole of it is
-    /// read.
+    /// What the settings say of the sheet.
+    pub(in crate::study) fn cover(&self) -> SheetCover {
+        self.scene_of("about").map(|scene| scene.about.cover()).unwrap_or_default()
+    }
+
+    /// What the scene reads of the settings of one key or section; what it refuses is refused where the whole
+    /// of it is read.
     fn scene_of(&self, key: &str) -> Option<Scene> {
-        let is_of = |setting: &&String| setting.split('=').next().unwrap_or_default().trim() == key;
+        let is_of = |setting: &&String| {
+            let name = setting.split('=').next().unwrap_or_default().trim();
+            name == key || name.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'))
+        };
         let said: Vec<String> = self.settings.iter().filter(is_of).cloned().collect();
         Scene::built_in(&said).ok()
     }

@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use crate::gradation::{Gradation, curves_in_file};
 use crate::outcome::design::{SieveSeries, Specification, SpecificationStep};
+use crate::outcome::record::SheetCover;
 use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::store::{Folder, StoreError};
+use crate::study::days::today;
 use crate::study::kept;
 use crate::verdict::SpecificationOptions;
 
@@ -25,6 +27,8 @@ pub struct SpecifyOptions {
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
+    /// What its page says of itself, besides the day.
+    pub cover: SheetCover,
     /// Whether its page shows inches beside mm.
     pub inches: bool,
     /// Folder for the results.
@@ -46,10 +50,12 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let (dispersive, sieves) = (options.dispersive, options.sieves);
     let specified = SpecificationOptions { dispersive, sieves, ..SpecificationOptions::default() };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
-    let specification = Specification { inches: options.inches, ..specification };
+    let cover = options.cover.clone().dated(today());
+    let specification = Specification { inches: options.inches, cover, ..specification };
     let kind = FolderKind::Specification;
     let folder = claim(&options.out, kind, options.overwrite)?;
-    let work = format!("{dispersive} {sieves} {} {bases:?}", options.inches);
+    let (inches, cover) = (options.inches, &options.cover);
+    let work = format!("{dispersive} {sieves} {inches} {cover:?} {bases:?}");
     kept::study((&folder, kind, options.overwrite), work, callbacks, |_, _: Option<()>| {
         write_tables(&folder, &specification)?;
         Ok(specification)

@@ -15,10 +15,11 @@ use crate::outcome::design::{
     NetworkBoundaries, Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{Confidence, FindingRecord};
+use crate::outcome::record::{Confidence, FindingRecord, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
+use crate::study::days::today;
 use crate::verdict::by_authority::of_design;
 use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
 
@@ -99,6 +100,7 @@ pub(super) fn design(
         answer: None,
         specification: None,
         version: env!("CARGO_PKG_VERSION").into(),
+        commit: commit(),
         inverse: options.inverse,
         base: base(first, &judged.base_name),
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
@@ -121,6 +123,7 @@ pub(super) fn design(
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
+        cover: first.stated.scene.about.cover().dated(today()),
         inches: first.stated.scene.about.shows_inches(),
         seconds,
         boundaries,

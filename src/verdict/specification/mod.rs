@@ -9,6 +9,7 @@ use crate::gradation::FINES_MM;
 use crate::outcome::design::SieveSeries;
 use crate::outcome::design::specification::{SizeBand, Specification, margins};
 use crate::outcome::numbers::{rounded_down, rounded_up};
+use crate::outcome::record::{SheetCover, commit};
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND};
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found};
@@ -65,9 +66,11 @@ impl Specification {
         };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
             base: name.into(),
             dispersive: options.dispersive,
             sieves: options.sieves,
+            cover: SheetCover::default(),
             inches: false,
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),

@@ -70,6 +70,7 @@ __all__ = [
     "SameShape",
     "SampledBase",
     "Sensitivity",
+    "SheetCover",
     "SieveLimit",
     "SizeBand",
     "SizeThreshold",
@@ -1680,6 +1681,39 @@ class Fit(_Fit, total=False):
     may_drain: bool
 
 
+class SheetCover(TypedDict, total=False):
+    """The cover of a sheet, as its author states it.
+
+    Keys
+    ----
+    project
+        The project.
+    number
+        The number of the project.
+    purpose
+        What the sheet is for.
+    client
+        The client.
+    author
+        The author.
+    checker
+        Who checked it.
+    revision
+        The revision of the sheet.
+    date
+        The date on the sheet: the one that is stated, else the day of its results.
+    """
+
+    project: Optional[str]
+    number: Optional[str]
+    purpose: Optional[str]
+    client: Optional[str]
+    author: Optional[str]
+    checker: Optional[str]
+    revision: Optional[str]
+    date: Optional[str]
+
+
 class _SpecifiedCurve(TypedDict):
     curve: str
     gradation: List[List[float]]
@@ -1884,12 +1918,16 @@ class Specification(_Specification, total=False):
     ----
     version
         Version of voidwalk.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     base
         Name of the base.
     dispersive
         Whether it was said to be dispersive.
     sieves
         The sieves at which the limits are stated.
+    cover
+        What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     curves
@@ -1915,6 +1953,8 @@ class Specification(_Specification, total=False):
         Standard products beside it; empty where neither limit of D15F is known.
     """
 
+    commit: Optional[str]
+    cover: SheetCover
     inches: bool
     d15f_min_at_most: bool
     if_dispersive: Optional[IfDispersive]
@@ -1960,6 +2000,8 @@ class Design(_Design, total=False):
         Version of the program that wrote it.
     version
         Version of voidwalk.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     answer
         How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
         versions, of which `Design::answer()` works it out.
@@ -2016,16 +2058,20 @@ class Design(_Design, total=False):
         What the model does not contain.
     settings
         Settings that were given, as on the command line.
+    cover
+        What the sheet says of itself; without a day in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     seconds
         Wall time (s).
     """
 
+    commit: Optional[str]
     answer: Optional[DesignAnswer]
     findings: List[DesignFinding]
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
+    cover: SheetCover
     inches: bool
 
 
@@ -2164,7 +2210,20 @@ class ComparedPair(TypedDict):
     differ: Optional[bool]
 
 
-class Comparison(TypedDict):
+class _Comparison(TypedDict):
+    format: Literal["voidwalk-comparison/1"]
+    voidwalk: str
+    of: str
+    common: str
+    seed: int
+    version: str
+    cases: List[ComparedCase]
+    pairs: List[ComparedPair]
+    threshold: float
+    model_leaves_out: List[str]
+
+
+class Comparison(_Comparison, total=False):
     """The whole of `compare.json`.
 
     Keys
@@ -2181,26 +2240,25 @@ class Comparison(TypedDict):
         Seed of every case.
     version
         Version of the program.
+    commit
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     cases
         The cases, in the order in which they were named.
     pairs
         Every two cases, in that order, for each run that both have.
     threshold
         Eroded mass fraction that divides the classes: 0.075.
+    cover
+        What the sheet says of itself; without a day in files of earlier versions.
+    inches
+        Whether inches stand beside mm on page and terminal.
     model_leaves_out
         What no case contains; records of earlier versions do not say.
     """
 
-    format: Literal["voidwalk-comparison/1"]
-    voidwalk: str
-    of: str
-    common: str
-    seed: int
-    version: str
-    cases: List[ComparedCase]
-    pairs: List[ComparedPair]
-    threshold: float
-    model_leaves_out: List[str]
+    commit: Optional[str]
+    cover: SheetCover
+    inches: bool
 
 
 class SizeThreshold(TypedDict):

@@ -1,0 +1,96 @@
+//! Arguments that several commands share: which scene, how it is walked, and where its results go.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::exit::FailOn;
+use super::values::{assignment, decide, seed, target_error, threads};
+use crate::run::CheckpointInterval;
+use crate::run::machine::bytes_from_words;
+
+/// How a walk is done.
+#[derive(Debug, Args)]
+pub struct WalkArgs {
+    /// Worker threads; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Save a checkpoint this often, such as 10min or 50increments; a stop (Ctrl-C, SIGTERM) always saves
+    /// one [default: 10min; for a resumed run, its first setting]
+    #[arg(long, value_name = "TIME")]
+    pub checkpoint_every: Option<CheckpointInterval>,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which verdicts the caller does not accept.
+#[derive(Debug, Args)]
+pub struct AcceptArgs {
+    /// Exit with code 4 if the verdict is at least this bad: some or continuing erosion, or doubt for
+    /// anything but no erosion within the checked range. Undecided counts as bad for each of them. Results
+    /// are written as usual
+    #[arg(long, value_name = "VERDICT")]
+    pub fail_on: Option<FailOn>,
+}
+
+/// Where a run's results go, and how it is walked.
+#[derive(Debug, Args)]
+pub struct ResultArgs {
+    /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
+    /// voidwalk-run-2, ...]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier run in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Write verdict.xlsx, too: verdict, inputs, rules, runs, gradations, provenance
+    #[cfg(feature = "xlsx")]
+    #[arg(long)]
+    pub xlsx: bool,
+    /// Which verdicts are not accepted.
+    #[command(flatten)]
+    pub accept: AcceptArgs,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
+}
+
+/// Which scene.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
+    /// 1.5 and a base of Cu 1.5 at Dc5]
+    pub scene: Option<PathBuf>,
+    /// What is set in it, and how it is prepared.
+    #[command(flatten)]
+    pub set: SettingArgs,
+}
+
+/// What is set in a scene, and how it is prepared.
+#[derive(Debug, Args)]
+pub struct SettingArgs {
+    /// Replace a setting, for example --set base.cu=3; can be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub settings: Vec<String>,
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Add replicates until the 95 % interval of the eroded mass is within this of its mean, such as 0.1pp
+    /// (percentage points)
+    #[arg(long, value_name = "ERROR", value_parser = target_error, allow_hyphen_values = true)]
+    pub target_error: Option<f64>,
+    /// Add replicates until the verdict is right with this probability, such as 99.9%
+    #[arg(long, value_name = "PERCENT", value_parser = decide, allow_hyphen_values = true)]
+    pub decide: Option<f64>,
+    /// Folder that keeps packings, so that each is made once
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
+    pub packings: PathBuf,
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}

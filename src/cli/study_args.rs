@@ -1,0 +1,276 @@
+//! Arguments of the commands that design, plan, pack and study.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::shared_args::{SceneArgs, WalkArgs};
+use super::values::{assignment, authority, bracket, facets, lattice_size, seed, sheet_units, threads, time};
+use crate::campaign::CasePart;
+use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
+use crate::outcome::design::SieveSeries;
+use crate::outcome::rules::Authority;
+use crate::packing::{CellOption, LengthUnit};
+use crate::run::machine::bytes_from_words;
+use crate::scene::SheetUnits;
+use crate::study::design::ThicknessList;
+use crate::study::precision::Tier;
+
+/// Which base, and what shape of filter.
+#[derive(Debug, Args)]
+pub struct DesignArgs {
+    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
+    /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope;
+    /// with --each also a folder of tables
+    pub base: Option<PathBuf>,
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: a
+    /// design for each, one table and the samples that govern in --out [default: voidwalk-designs]. The same
+    /// command continues what was stopped or killed. With --steps nothing is walked
+    #[arg(long, requires = "base", conflicts_with_all = ["inverse", "authority"])]
+    pub each: bool,
+    /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
+    /// sieve and standard products
+    #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
+          "as_sampled", "as_given", "inverse", "authority", "seed", "bracket", "packings", "memory",
+          "threads"])]
+    pub steps: bool,
+    /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
+    #[arg(long, value_name = "SERIES", default_value = "us")]
+    pub sieves: SieveSeries,
+    /// Units of page and terminal: us has inches beside mm, metric has none (about.units)
+    #[arg(long, value_name = "UNITS", value_parser = sheet_units)]
+    pub units: Option<SheetUnits>,
+    /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
+    #[arg(long)]
+    pub dispersive: bool,
+    /// The shape of the filter, whose size is searched: a sieve table, a Cu, or a shipped curve [default:
+    /// shire2016-cu1.5-loose, or from --set]
+    #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
+    pub filter: Option<String>,
+    /// Density of the filter: dense, medium (or intermediate) or loose, from the library of packings, or
+    /// unknown, for anything from loose to dense; friction=F packs the grains with that friction, estimate=D
+    /// guesses the constrictions at that relative density; can be repeated [default for a table or a Cu:
+    /// unknown]
+    #[arg(long = "density", value_name = "DENSITY", value_delimiter = ',', allow_hyphen_values = true)]
+    pub densities: Vec<String>,
+    /// Pack the grains of this very filter and measure its constrictions [density: loose]
+    #[arg(long)]
+    pub pack: bool,
+    /// Thickness of the filter: 60layers, 500mm, 24in, 2ft or 75D50F; can be repeated, or listed with commas
+    /// [default: 60layers]
+    #[arg(long = "thickness", value_name = "THICKNESS", allow_hyphen_values = true)]
+    pub thicknesses: Vec<ThicknessList>,
+    /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse
+    #[arg(long)]
+    pub as_sampled: bool,
+    /// Accept base and filter as named, even if they look exchanged
+    #[arg(long)]
+    pub as_given: bool,
+    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
+    /// answer rests on all of them [default: all]
+    #[arg(long, value_name = "NAME", value_parser = authority)]
+    pub authority: Option<Authority>,
+    /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
+    #[arg(long)]
+    pub inverse: bool,
+    /// Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be
+    /// repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub settings: Vec<String>,
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Range of D15F/D85B to search, rounded outwards to steps of 8 %; boundaries close to an end may be
+    /// missed
+    #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
+          allow_hyphen_values = true)]
+    pub bracket: (f64, f64),
+    /// Folder for the results [default: voidwalk-design; with --steps voidwalk-specification]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Folder that keeps packings, so that each is made once
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
+    pub packings: PathBuf,
+    /// Memory limit, such as 4GB; the result is the same [default: 80 % of what is available]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// Worker threads; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print design.json; with --steps specification.json
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which plan, and where its results go.
+#[derive(Debug, Args)]
+pub struct CampaignArgs {
+    /// Plan (TOML): crossed factors, and single cases
+    pub plan: PathBuf,
+    /// Folder for the results: new, empty, or with finished cases of this plan. Several processes may share
+    /// it
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-campaign")]
+    pub out: PathBuf,
+    /// Walk this case only, without the ledger
+    #[arg(long, value_name = "NAME", group = "part")]
+    pub case: Option<String>,
+    /// Print the names of the cases and do nothing
+    #[arg(long, group = "part")]
+    pub list: bool,
+    /// Walk nothing: write Slurm job scripts for the unfinished cases into --out. Processors of a task:
+    /// --threads [default: 4]; memory and time are estimated
+    #[arg(long, group = "part")]
+    pub slurm: bool,
+    /// With --slurm: number of tasks [default: enough that each takes about ten minutes]
+    #[arg(long, value_name = "N", requires = "slurm",
+          value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub tasks: Option<u16>,
+    /// Walk nothing: write ledger, table and page of a campaign whose cases are all finished
+    #[arg(long, group = "part")]
+    pub collect: bool,
+    /// Walk the cases of task N of a list that --slurm wrote
+    #[arg(long, value_name = "FILE:N", group = "part", value_parser = CasePart::task)]
+    pub task: Option<CasePart>,
+    /// Walk nothing: make the N-th packing that the plan needs
+    #[arg(long, value_name = "N", group = "part", value_parser = clap::value_parser!(u64).range(1..))]
+    pub make_packing: Option<u64>,
+    /// Folder that keeps packings [default: packings in --out]
+    #[arg(long, value_name = "DIR")]
+    pub packings: Option<PathBuf>,
+    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
+    /// result is the same [default: 80 % of what is available]
+    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
+    pub memory: Option<u64>,
+    /// How it is walked.
+    #[command(flatten)]
+    pub walk: WalkArgs,
+}
+
+/// Which filter, and where its packing goes.
+#[derive(Debug, Args)]
+pub struct PackArgs {
+    /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
+    /// scene works too
+    pub filter: PathBuf,
+    /// Replace a setting, for example --set packing.grains=20000; can be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub settings: Vec<String>,
+    /// Seed for the sizes and positions of the grains
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
+    /// own in voidwalk-packings]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace an earlier packing in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Worker threads; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Save a checkpoint this often
+    #[arg(long, value_name = "TIME", default_value = "1min", value_parser = time)]
+    pub checkpoint_every: Duration,
+    /// Print packing.json
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which packing, and how its voids are told apart.
+#[derive(Debug, Args)]
+pub struct ConstrictionsArgs {
+    /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`; or points
+    /// of ParaView and MFIX by their names), a text dump of LAMMPS or LIGGGHTS, Yade's export.text,
+    /// MercuryDPM's .data, or points of VTK with a diameter or radius (.vtk, .vtp, .vtu); each also by gzip
+    pub packing: PathBuf,
+    /// Unit of lengths, if the file does not state it: m, cm, mm, um or nm
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<LengthUnit>,
+    /// Boundaries, if the file does not state them: none (free), Lx,Ly,Lz (a periodic cell with a corner at
+    /// the origin, in the file's unit) or bounds (a periodic cell between the bounds in the file)
+    #[arg(long, value_name = "CELL")]
+    pub cell: Option<CellOption>,
+    /// Overlap of two inscribed spheres above which their tetrahedra form one void
+    #[arg(long, value_name = "F", default_value_t = DEFAULT_MERGE_OVERLAP)]
+    pub merge_overlap: f64,
+    /// Facets counted in the curve: all, or on-both-hulls (on the convex hulls of the grains of both voids)
+    #[arg(long, value_name = "WHICH", default_value = "all", value_parser = facets)]
+    pub facets: Facets,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-constrictions")]
+    pub out: PathBuf,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Print constrictions.json
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Which lattices, and how many.
+#[derive(Debug, Args)]
+pub struct PercolationArgs {
+    /// Lattice sizes: voids along each side, or along x, y and z, such as 40x40x60
+    #[arg(long, value_name = "L,L,...", value_delimiter = ',', default_value = "10,20,40,80,160",
+          value_parser = lattice_size, allow_hyphen_values = true)]
+    pub sizes: Vec<[u32; 3]>,
+    /// Realisations of each size
+    #[arg(long, value_name = "N", default_value_t = 100,
+          value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub realisations: u64,
+    /// Seed: the same seed gives the same bits
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed, allow_hyphen_values = true)]
+    pub seed: u64,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-percolation")]
+    pub out: PathBuf,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Worker threads; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print percolation.json
+    #[arg(long)]
+    pub json: bool,
+    /// Print no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which scene, and how long.
+#[derive(Debug, Args)]
+pub struct PrecisionArgs {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-precision")]
+    pub out: PathBuf,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// What to measure: exact, sampling, bias, decision, scaling, packing [default: all]
+    #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
+    pub tiers: Vec<Tier>,
+    /// Processor time of all cores together. It sets the number of replicates by a count of operations, so
+    /// the same seed and budget give the same errors on any machine
+    #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
+    pub budget: Duration,
+    /// Runs side by side; the result is the same for any number [default: one per core]
+    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
+    pub threads: Option<usize>,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}

@@ -1,0 +1,31 @@
+//! Numbers and notes of a design as its page writes them.
+
+use crate::outcome::design::Design;
+use crate::report::numbers::SizeUnit;
+use crate::report::shell::clean;
+use crate::verdict::words::capital;
+
+/// A note as a sentence; in files of earlier versions it is a part of one.
+pub(super) fn sentence(note: &str) -> String {
+    clean(&format!("{}.", capital(note.trim_end_matches('.'))))
+}
+
+/// What sizes in a unit are shown in.
+pub(super) fn shown_in(design: &Design, unit: &str) -> SizeUnit {
+    SizeUnit::of(unit != "mm", design.inches)
+}
+
+pub(super) fn ratio(value: f64) -> String {
+    format!("{value:.2}")
+}
+
+pub(super) fn between(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
+    let end = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), words);
+    format!("{} to {}", end(low), end(high))
+}
+
+/// The same in brackets, where there are networks enough for a band.
+pub(super) fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
+    let is_known = low.is_some() || high.is_some();
+    if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
+}

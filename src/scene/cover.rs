@@ -1,0 +1,29 @@
+//! What a scene says of the sheet that is handed in.
+
+use super::About;
+use crate::outcome::record::SheetCover;
+
+/// Settings of the sheet that are one of a few words, or of the figure: they are not on the cover.
+const NO_COVER: [&str; 3] = ["coarse_left", "authority", "units"];
+
+impl About {
+    /// The full names of the settings of the cover, which are texts.
+    pub fn texts() -> Vec<String> {
+        let of_cover = Self::keys().into_iter().filter(|key| !NO_COVER.contains(&key.name));
+        of_cover.map(|key| key.full_name()).collect()
+    }
+
+    /// The cover of the sheet, without a date where none is stated.
+    pub fn cover(&self) -> SheetCover {
+        SheetCover {
+            project: self.project.clone(),
+            number: self.number.clone(),
+            purpose: self.purpose.clone(),
+            client: self.client.clone(),
+            author: self.author.clone(),
+            checker: self.checker.clone(),
+            revision: self.revision.clone(),
+            date: self.date.clone(),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown,
+//! which grows as the walks are done.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::sheets::Sheets;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::table::{Columns, Shown};
+use crate::outcome::with_inches;
+use crate::study::batch::BatchWalks;
+use crate::study::numbered;
+use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::{BatchRow, WalkedBatch, WalkedRow};
+
+/// What the page asks for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AskedBatch {
+    /// The sheet whose every soil is a sample, by its number.
+    pub base: String,
+    /// The sheets of the filters.
+    pub filters: Vec<String>,
+    /// Which pairs are walked, and how: `governing`, `look` or `alone`.
+    pub walks: String,
+    #[serde(default)]
+    pub dispersive: bool,
+    /// An open joint beside the base, a length; empty without one.
+    #[serde(default)]
+    pub joint: String,
+    #[serde(default)]
+    pub density: String,
+    #[serde(default)]
+    pub pack: bool,
+    #[serde(default)]
+    pub as_sampled: bool,
+    #[serde(default)]
+    pub as_given: bool,
+    #[serde(default)]
+    pub changes: Vec<String>,
+}
+
+/// Most filters of a table.
+const FILTERS: usize = 6;
+
+/// The paths of the filters that the page names.
+///
+/// # Errors
+/// There is no such sheet; no filter, or too many of them.
+pub fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBuf>, String> {
+    match (1..=FILTERS).contains(&named.len()) {
+        true => named.iter().map(|name| sheets.path(name.as_ref())).collect(),
+        false => Err(format!("name one to {FILTERS} filters")),
+    }
+}
+
+/// What the page calls these filters: by their own names, numbered where two have the same.
+pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
+    numbered(paths.iter().map(|path| sheets.as_named(&path.display().to_string())).collect())
+}
+
+impl AskedBatch {
+    /// Which pairs are walked.
+    ///
+    /// # Errors
+    /// A word that is none.
+    pub fn walks(&self) -> Result<BatchWalks, String> {
+        match self.walks.as_str() {
+            "governing" => Ok(BatchWalks::GoverningInFull),
+            "look" => Ok(BatchWalks::FirstLook),
+            "alone" => Ok(BatchWalks::GoverningAlone),
+            other => Err(format!("walks: {other}: governing, look or alone")),
+        }
+    }
+
+    /// The samples, and the filters.
+    ///
+    /// # Errors
+    /// There is no such sheet; no filter, or too many of them.
+    pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
+        let filters = filter_paths(sheets, &self.filters)?;
+        Ok((sheets.path(whole_sheet(&self.base))?, filters))
+    }
+}
+
+/// The sheet in which a soil is.
+pub fn whole_sheet(soil: &str) -> &str {
+    soil.split_once('#').map_or(soil, |(sheet, _)| sheet)
+}
+
+/// A table as the page shows it: headings, which of them stand over numbers, and cells.
+pub fn table<T>(columns: Columns<T>, rows: &[T]) -> Value {
+    let columns: Vec<_> = columns.of_page().collect();
+    let cell = |shown: Shown| [&[shown.text], &shown.below[..]].concat().join("; ");
+    let cells = |row: &T| columns.iter().map(|column| cell((column.cell)(row))).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(cells).collect();
+    json!({
+        "headings": columns.iter().map(|column| &column.heading).collect::<Vec<_>>(),
+        "numbers": columns.iter().map(|column| column.is_number).collect::<Vec<_>>(),
+        "rows": rows,
+    })
+}
+
+/// The rows of a batch as far as they are walked, and which of them are in doubt though a rule is met.
+pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
+    let mut value = table(WalkedRow::columns(SizeUnit::of(false, inches)), rows);
+    value["doubted"] = json!(rows.iter().map(WalkedRow::is_doubted).collect::<Vec<_>>());
+    value
+}
+
+/// What the page shows of a batch that is done: its table, and what a client asks of each filter.
+pub fn of_batch(batch: &WalkedBatch) -> Value {
+    let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
+    let sized = |said: String| if batch.inches { with_inches(&said) } else { said };
+    let of_filter = |filter: &crate::verdict::BatchFilter| -> Vec<String> {
+        let answers = batch.governing(&filter.name).into_iter();
+        let answers = answers.map(|row| format!("{}: {}", row.rules.sample, row.answer_in_words()));
+        let walks = batch.walks_in_words(&filter.name).into_iter();
+        filter.in_words(&rules).into_iter().chain(walks).chain(answers).map(sized).collect()
+    };
+    let mut value = so_far(&batch.rows, batch.inches);
+    value["filters"] = json!(batch.filters.iter().map(of_filter).collect::<Vec<_>>());
+    value["notes"] = json!(batch.notes);
+    value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
+    value
+}
+
+/// What a job is called whose samples and filters these are.
+pub fn title(samples: &str, filters: &[String]) -> String {
+    format!("Every sample of {samples} on {}", filters.join(", "))
+}
