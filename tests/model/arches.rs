@@ -249,7 +249,8 @@ fn by_void_each_size_asks_for_its_own_ratio() {
         let (mut found, mut wanted, mut variance) = (0.0, 0.0, 0.0);
         for seed in 1..=SEEDS {
             let open: BitVec = BitVec::repeat(false, network.constrictions());
-            let mut state = State::new(&network, &supply, SizeClasses::logarithmic(0.5, 4.0, 4), open, seed, 1);
+            let mut state =
+                State::new(&network, &supply, SizeClasses::logarithmic(0.5, 4.0, 4), open, seed, 1);
             let mut walk = Walk::new(&network, &supply, &state);
             walk.increment(&mut state).unwrap();
             let sizes: Vec<f64> = state.particles.chunk(0).1.iter().map(|&d| f64::from(d)).collect();
