@@ -449,6 +449,8 @@ def page(cells, name, head):
     ])
     lines += ["", "## Not computed", "",
               bullet("Empty cells of the table; filters of Cu 6 dense, whose void ratio is not known; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
+              *(bullet(f"{model[0]}, filter Cu {pair[0]}, {pair[1]}, base Cu {pair[2]}: it erodes at {row['first_erodes_from']}, the least ratio for which there was time; empty in the table.")
+                for model in MODELS for pair in PAIRS if (row := of(model, pair)) and not is_computed(row) and row.get("first_erodes_from")),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
               bullet("Skill on single tests: no table of single tests (base, filter, held or not) could be read. Searched again on 2026-11-25: Honjo (1985), Raut (2006) and "
                      "Indraratna et al. (2007) speak of such data, and only their first pages could be read."),
