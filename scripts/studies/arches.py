@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Where arches put the boundary of no erosion: D15F/D85B at which 7.5 % of the base erodes in the first run, by law.
 
-    scripts/studies/arches.py --out results/arches.csv [--by-void results/arches-by-void.csv] [--law marin-2018] [--binary target/release/voidwalk]
-                              [--threads 2]
+    scripts/studies/arches.py --out results/arches.csv [--by-void results/arches-by-void.csv] [--shares results/arches-shares.csv]
+                              [--law marin-2018] [--binary target/release/voidwalk] [--threads 2]
 
 Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids unless the cell says otherwise, five replicates at each
 ratio. A ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 16. `no_erosion` is where the mean crosses 7.5 %, `least` and `most` where
@@ -11,6 +11,9 @@ the first and the last of the five replicates do, by interpolation between the r
 
 `--by-void`: what erodes by `marin-2018` where the concentration is that of the first layer and where it is that of each void, by each size that may
 count; 10 x 10 voids across, five replicates.
+
+`--shares`: what erodes by `marin-2018` ratio by ratio in the cells whose boundary lies within the range of tests, so that a stricter limit than 7.5 % can
+be read; each as 10 x 10 x 60 voids, five replicates.
 """
 
 import argparse
@@ -36,7 +39,16 @@ MOST = 16.0
 # Where the concentration comes from, and which size counts.
 ARRIVALS = [("first layer", ""), ("by-void", "own"), ("by-void", "void-mean"), ("by-void", "void-d85")]
 BY_VOID_CELL = ["filter_cu", "density", "base_cu", "layers", "d15f_over_d85b", "concentration", "arch_size"]
-BY_VOID_COLUMNS = BY_VOID_CELL + ["eroded_percent", "least", "most"]
+ERODED = ["eroded_percent", "least", "most"]
+BY_VOID_COLUMNS = BY_VOID_CELL + ERODED
+# Cells within the range of tests, and the ratios at which they are walked, its edges among them.
+SHARES_CELL = ["filter_cu", "density", "base_cu", "law", "d15f_over_d85b"]
+RATIOS = [4.0, 4.5, 5.0, 5.5, 6.0, 6.4, 6.8, 7.5, 8.2, 9.0, 10.0]
+
+
+def shares_cells():
+    """One filter, three bases, ratio by ratio."""
+    return ((1.5, "loose", base_cu, "marin-2018", ratio) for base_cu in BASES for ratio in RATIOS)
 
 
 def by_void_cells():
@@ -111,9 +123,17 @@ class Walks:
         settings = self.settings((*pair, "marin-2018", "", layers, 10), ratio)
         if size:
             settings |= {"walk.concentration": concentration, "walk.arch_size": size}
+        return self.eroded_row(BY_VOID_CELL, cell, settings)
+
+    def shares(self, cell):
+        """What erodes at one ratio, in percent: mean, least and most."""
+        *of, ratio = cell
+        return self.eroded_row(SHARES_CELL, cell, self.settings((*of, "", 60, 10), ratio))
+
+    def eroded_row(self, names, cell, settings):
         shares = [100 * replicate["runs"][0]["eroded_mass_fraction"] for replicate in self.outcome(settings)["replicates"]]
-        row = {"eroded_percent": sum(shares) / len(shares), "least": min(shares), "most": max(shares)}
-        return dict(zip(BY_VOID_CELL, cell)) | {name: round(value, 2) for name, value in row.items()}
+        values = sum(shares) / len(shares), min(shares), max(shares)
+        return dict(zip(names, cell)) | {name: round(value, 2) for name, value in zip(ERODED, values)}
 
     def boundary(self, cell):
         began = time.monotonic()
@@ -178,12 +198,15 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--by-void", type=Path)
+    parser.add_argument("--shares", type=Path)
     parser.add_argument("--law", nargs="*", default=LAWS, choices=LAWS)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="2")
     options = parser.parse_args()
     if options.by_void:
         each(options.by_void, BY_VOID_CELL, BY_VOID_COLUMNS, by_void_cells(), Walks(options).by_void)
+    if options.shares:
+        each(options.shares, SHARES_CELL, SHARES_CELL + ERODED, shares_cells(), Walks(options).shares)
     if options.out:
         each(options.out, CELL, COLUMNS, (cell for cell in cells() if cell[3] in options.law), Walks(options).boundary)
 

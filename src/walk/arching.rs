@@ -96,7 +96,9 @@ pub static LAWS: [Law; 3] = [
         basis: "Suspensions arch for R < 3, where enough particles are at the neck at once. Read in the \
                 abstract; that an arch needs R^2 + 1 particles was read in a later review. That their number \
                 at the neck is Poisson, with the concentration times the volume of a neck as long as it is \
-                wide for its mean, is an assumption of this program.",
+                wide for its mean, is an assumption of this program. That number is whole, so that the \
+                probability is saw-toothed over R; from a concentration of about 0.2 on it rises with R, \
+                where that of dry grains falls.",
         widest: 3.0,
         of_concentration: true,
         probability: at_the_neck,
@@ -120,7 +122,8 @@ impl Law {
     }
 
     /// Probability that a particle jams in a constriction `ratio` times its size, where the base
-    /// arrives with this concentration (volume of particles by volume of voids); 0 from the widest on.
+    /// arrives with this concentration (volume of particles by volume of voids); 0 from the widest on. A
+    /// ratio below 1, of a size that does not fit, is asked as 1: by void that of another particle may be.
     ///
     /// ```
     /// use voidwalk::walk::Law;
@@ -147,6 +150,8 @@ fn zuriguel(ratio: f64, _: f64) -> f64 {
 }
 
 /// The probability of the others of an arch being in a neck as long as it is wide, beside this particle.
+///
+/// As 1 less a sum it is 0 where it is less than the last bit of 1.
 fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
     // pi / 4 D^2 D by pi / 6 d^3.
     let mean = 1.5 * ratio * ratio * ratio * concentration;
@@ -292,6 +297,7 @@ impl Arching {
 
 #[cfg(test)]
 mod tests {
+    use super::super::crowding::ArchSize;
     use super::*;
 
     #[test]
@@ -319,6 +325,38 @@ mod tests {
                 assert_eq!(law.probability(law.widest, concentration), 0.0);
             }
         }
+    }
+
+    /// The number of an arch is whole, so that the law is saw-toothed; in dense flow it rises with R. By hand
+    /// at 0.047: at 1.22, where an arch is of two, 1 - e^-0.1280; at 1.23, where it is of three,
+    /// 1 - e^-m (1 + m) with m = 0.1312.
+    #[test]
+    fn a_suspension_is_saw_toothed_and_rises_where_it_is_dense() {
+        let of = |ratio, concentration| at_the_neck(ratio, concentration);
+        for (ratio, wanted) in [(1.22, 0.12016), (1.23, 0.007888), (1.58, 0.03223), (1.59, 0.003072)] {
+            assert!((of(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", of(ratio, 0.047));
+        }
+        for ratios in [1.23, 2.0, 2.5, 2.9].windows(2) {
+            assert!(of(ratios[0], 0.2) < of(ratios[1], 0.2) && of(ratios[0], 0.6) < of(ratios[1], 0.6));
+        }
+        // So rarely that nothing is left of 1 less a sum.
+        assert_eq!(of(2.8, 0.001), 0.0);
+    }
+
+    /// A fine particle beside coarse ones, of which the size that counts does not fit the constriction: asked
+    /// at R = 1, 1 - e^-0.075, and two are an arch. By its own size, R = 2.5, it is rarer by far.
+    #[test]
+    fn coarser_than_the_constriction_is_asked_as_one() {
+        let law = Law::named("marin-2018").unwrap();
+        // One of 1.4 and one of 0.4, where the first is as 0.05 of the void.
+        let crowd = VoidCrowd { number: 2, cubes: 2.744 + 0.064, d85: 1.4 };
+        let of = |size| Arching::by_void(law, ByVoid { void_cube: 2.744 / 0.05, size });
+        let jams = |size, draw: f64| of(size).jams(1.0, 0.4, (draw * 2f64.powi(64)) as u64, crowd);
+        for size in [ArchSize::VoidD85, ArchSize::VoidMean] {
+            assert!(of(size).of_void().unwrap().asked(1.0, 0.4, crowd).0 < 1.0);
+            assert_eq!((jams(size, 0.0722), jams(size, 0.0723)), (Some(2), None), "{size:?}");
+        }
+        assert_eq!((jams(ArchSize::Own, 0.0012), jams(ArchSize::Own, 0.0014)), (Some(7), None));
     }
 
     /// Numbers that follow from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704,

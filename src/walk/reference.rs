@@ -2,7 +2,8 @@
 //!
 //! One particle after another, every weight computed afresh from the network, in the words of the model. It
 //! shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
-//! strata and the streams.
+//! strata and the streams, and of arches the law: its probability, by table or asked, and the size up to
+//! which particles are passive.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};

@@ -189,6 +189,12 @@ fn compare_coarse(network: &Network, supply: &Supply, n: u64, seed: u64) {
         reference.increment();
         assert_eq!(tally.retained_in_constrictions, reference.stopped.len() as u64);
         assert_eq!((tally.retained_in_arches, tally.arches), (reference.arched, reference.arches));
+        let arched = reference.arched_mass;
+        assert!(
+            (tally.arched_mass - arched).abs() <= 1e-9 * arched.max(1.0),
+            "{} {arched}",
+            tally.arched_mass
+        );
         let history: Vec<_> = state.history.iter().map(|b| (b.increment, b.constriction as usize)).collect();
         assert_eq!(history, reference.history);
         if state.finished || reference.finished() {
