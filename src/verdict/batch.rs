@@ -382,7 +382,7 @@ mod tests {
                 [cell("D15F, mm"), cell("Limit, mm")]
             };
             let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: Some(d15f) };
-            (shown(SizeUnit::Mm), shown(SizeUnit::MmAndInches), filter.in_words(&[row.clone()]))
+            (shown(SizeUnit::Mm), shown(SizeUnit::MmAndInches), filter.in_words(std::slice::from_ref(&row)))
         };
         let (mm, inches, said) = of(2.376, 2.3784);
         assert_eq!(mm, ["2.376", "2.378"]);
