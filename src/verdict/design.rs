@@ -173,10 +173,9 @@ impl<'a> Case<'a> {
                 of_walk_alone(sizes, *held)
             ),
             Self::OpenBase(rule, held) => format!(
-                "The finest D85B is not known: only an upper bound of the limit of practice is known ({}; \
-                 {}){}",
+                "The finest D85B is not known: only an upper bound of the limit of practice is known ({}{}){}",
                 cited_rule(rule),
-                rule.needs,
+                if rule.needs.is_empty() { String::new() } else { format!("; {}", rule.needs) },
                 of_walk_alone(sizes, *held)
             ),
             Self::Unknown => "No ratio is known that nearly all networks hold".into(),
@@ -475,7 +474,11 @@ mod tests {
             |ratio| design_answer(&inverse, Some(&FinestBase { ratio, is_open: true, ..finest.clone() }));
         let unknown = open(None);
         assert_eq!((unknown.d85b_min_mm, unknown.d15f_over_d85b, &unknown.rule), (None, None, &None));
-        assert!(unknown.said.starts_with("The finest D85B is not known: of the limit"), "{}", unknown.said);
+        assert!(
+            unknown.said.starts_with("The finest D85B is not known: only an upper bound"),
+            "{}",
+            unknown.said
+        );
         assert!(unknown.said.ends_with("; the walk alone holds D85B down to 0.286 mm"), "{}", unknown.said);
         assert_eq!(open(Some(4.0)).d85b_min_mm, Some(0.5));
         assert!(open(Some(4.0)).said.contains("whose limit for a finer base is not known"));

@@ -384,7 +384,7 @@ mod tests {
         let csv = CSV.replace("4.0,", "2.0,");
         let page = written(&open, &csv);
         assert!(page.contains("verdict doubted") && !page.contains("verdict none"), "{page}");
-        assert!(page.contains(">practice not known<") && page.contains("nothing is green"), "{page}");
+        assert!(page.contains(">practice not known<") && page.contains("Nothing is green"), "{page}");
         assert!(!page.contains(">no erosion<") && page.contains("design, at most"), "{page}");
         assert!(page.contains("at most 7.") && !page.contains("the filter retains the base 7."), "{page}");
         // Whose fines are known is green as far as practice allows.
