@@ -120,7 +120,7 @@ fn a_base_of_whose_limit_only_the_most_is_known_is_not_said_to_be_kept() {
     let settings = options.settings.iter().filter(|of| !of.starts_with("base.")).cloned().collect();
     let design = found(&DesignOptions { base: Some(base), settings, ..options.clone() });
     let answer = design.answer();
-    assert!(answer.said.starts_with("The finest D85B is not known: of the limit"), "{}", answer.said);
+    assert!(answer.said.starts_with("The finest D85B is not known: only an upper bound"), "{}", answer.said);
     assert_eq!((answer.d85b_min_mm, answer.d15f_over_d85b, answer.rule), (None, None, None));
     // With its fines known the same sizes have an answer.
     let closed = [&[(0.125, 0.0)][..], &points].concat();
