@@ -7,7 +7,7 @@
 use super::practice::cited_rule;
 use super::words::capital;
 use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
-use crate::outcome::design::{Design, DesignAnswer, DesignRow};
+use crate::outcome::design::{Design, DesignAnswer, DesignRow, Specification};
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, RuleRole};
@@ -75,10 +75,21 @@ pub fn design_answer(design: &Design, finest: Option<&FinestBase>) -> DesignAnsw
     }
 }
 
+impl DesignAnswer {
+    /// The same, with what the specification says of a base that may be dispersive.
+    pub fn if_dispersive_too(mut self, specification: Option<&Specification>) -> Self {
+        if let Some(said) = specification.and_then(Specification::if_dispersive_in_words) {
+            self.said += &format!(". {said}");
+        }
+        self
+    }
+}
+
 impl Design {
     /// The answer, of files of earlier versions too.
     pub fn answer(&self) -> DesignAnswer {
-        self.answer.clone().unwrap_or_else(|| design_answer(self, None))
+        let said = || design_answer(self, None).if_dispersive_too(self.specification.as_ref());
+        self.answer.clone().unwrap_or_else(said)
     }
 
     /// How far the answer can be relied on, in a sentence, with the weightiest reason.
@@ -173,7 +184,8 @@ impl<'a> Case<'a> {
                 of_walk_alone(sizes, *held)
             ),
             Self::OpenBase(rule, held) => format!(
-                "The finest D85B is not known: only an upper bound of the limit of practice is known ({}{}){}",
+                "The finest D85B is not known: only an upper bound of the limit of practice is known \
+                 ({}{}){}",
                 cited_rule(rule),
                 if rule.needs.is_empty() { String::new() } else { format!("; {}", rule.needs) },
                 of_walk_alone(sizes, *held)

@@ -128,11 +128,9 @@ pub(super) fn design(
         seconds,
         boundaries,
     };
-    let mut answer = design_answer(&design, finest.as_ref());
+    let answer = design_answer(&design, finest.as_ref());
     let specification = specification(first, &design.base.name, &answer, options);
-    if let Some(said) = specification.as_ref().and_then(Specification::if_dispersive_in_words) {
-        answer.said += &format!(". {said}");
-    }
+    let answer = answer.if_dispersive_too(specification.as_ref());
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
     Ok(Design { answer: Some(answer), warnings, specification, ..design })
