@@ -91,9 +91,9 @@ impl Planned {
     fn new(options: &SampleDesignOptions) -> Result<Self, RunError> {
         let samples = samples_in(&options.samples).map_err(RunError::refused)?;
         samples.iter().try_for_each(|of| is_a_base(&of.path, &of.name, &of.curve))?;
-        let dispersive = options.design.says_dispersive();
-        let is_dispersion_known = options.design.knows_dispersion();
-        let of = SpecificationOptions { dispersive, is_dispersion_known, ..SpecificationOptions::default() };
+        let dispersive = options.design.dispersive();
+        let of = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+        let dispersive = dispersive == Some(true);
         let row = |sample: &SoilSample| {
             let curve = (sample.name.clone(), sample.curve.clone());
             DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], of))
@@ -109,7 +109,7 @@ impl Planned {
             let work_of = match identity(&of_sample) {
                 Ok(of) => {
                     filter = of.filter;
-                    hash(&format!("{} {walked}", of.work))
+                    kept::hash_of(&format!("{} {walked}", of.work))
                 }
                 Err(problem) => {
                     row.not_walked = problem.to_string();
@@ -127,7 +127,8 @@ impl Planned {
         }
         let curves: Vec<_> = samples.iter().map(|of| of.curve.points()).collect();
         let samples_at = shown(&options.samples);
-        let work = hash(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));
+        let work =
+            kept::hash_of(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));
         Ok(Self { rows, folders, filter, dispersive, notes: notes(&samples)?, work })
     }
 
@@ -238,10 +239,6 @@ fn covered(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Run
     folder.write(kind.record(), &json(kind.format(), &design)?)?;
     callbacks.results(kind, folder.path())?;
     Ok(design)
-}
-
-fn hash(text: &str) -> String {
-    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
 }
 
 /// What was assumed of the files, once each.

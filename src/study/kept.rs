@@ -20,6 +20,11 @@ use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest
 use crate::store::format::from_json;
 use crate::store::{Folder, read_whole};
 
+/// What stands for all that a study follows from.
+pub(super) fn hash_of(work: &str) -> String {
+    format!("{:032x}", xxh3_128(work.as_bytes()))
+}
+
 /// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
 /// start of it found, and not at all where all but its page is there. `study` writes its tables; then come
 /// its record and its page, and nothing is left to continue.
@@ -99,7 +104,7 @@ pub(super) struct Kept<'a> {
 impl<'a> Kept<'a> {
     /// In a claimed folder, of the study that these words describe.
     pub fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
-        let scene = format!("{:032x}", xxh3_128(work.as_bytes()));
+        let scene = hash_of(work);
         let (name, files, parts) = match kind {
             FolderKind::Precision => ("study", &STUDY, "tiers"),
             FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),

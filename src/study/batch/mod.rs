@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::days::last_day;
+use super::kept::hash_of;
 use super::of_cases::{StudyOfCases, of_sheet, outcome};
 use crate::campaign::cases::{CASES, PreparedCase};
 use crate::campaign::{CampaignCallbacks, CampaignOptions, FinishedCampaign};
@@ -98,9 +99,8 @@ impl BatchPlan {
         };
         let rows: Vec<_> = self.rows.iter().zip(&self.cases).map(of_row).collect();
         let sheet = of_sheet(&self.cover(), self.shows_inches());
-        let text =
-            format!("{} {rows:?} {:?} {:?} {all:?}{sheet}", shown(&self.samples), self.filters, self.notes);
-        format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+        let samples = shown(&self.samples);
+        hash_of(&format!("{samples} {rows:?} {:?} {:?} {all:?}{sheet}", self.filters, self.notes))
     }
 
     /// The rows with what was walked of them.

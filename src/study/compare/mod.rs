@@ -9,6 +9,7 @@ mod plan;
 pub use plan::{ComparePlan, Compared};
 
 use super::days::last_day;
+use super::kept::hash_of;
 use super::of_cases::{StudyOfCases, of_sheet, outcome};
 use std::path::PathBuf;
 
@@ -86,8 +87,7 @@ impl ComparePlan {
         let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
         let all: Vec<String> = cases.iter().map(of_case).collect();
         // Not the path of what is common: the cases know its bytes.
-        let text = format!("{} {all:?}{}", self.of, of_sheet(&self.cover, self.inches));
-        format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+        hash_of(&format!("{} {all:?}{}", self.of, of_sheet(&self.cover, self.inches)))
     }
 
     /// Whose rules the sheet of a case lists.

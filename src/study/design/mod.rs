@@ -234,8 +234,7 @@ fn work(rows: &[Row], bracket: [f64; 2]) -> String {
         format!("{} {thickness:?} {base:?} {d85:?} {sizes:?}", row.case.fingerprint())
     };
     let rows: Vec<String> = rows.iter().map(of_row).collect();
-    let text = format!("{METHOD} {bracket:?} {rows:?}");
-    format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+    kept::hash_of(&format!("{METHOD} {bracket:?} {rows:?}"))
 }
 
 /// Searches every network of every row that is not done, side by side, and keeps each as soon as it is done.

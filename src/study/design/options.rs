@@ -71,14 +71,9 @@ impl Default for DesignOptions {
 }
 
 impl DesignOptions {
-    /// Whether the settings say that the base is dispersive, or that it is not.
-    pub(in crate::study) fn knows_dispersion(&self) -> bool {
-        self.scene_of("base.dispersive").is_some_and(|scene| scene.base.dispersive.is_some())
-    }
-
-    /// Whether the settings say that the base is dispersive.
-    pub(in crate::study) fn says_dispersive(&self) -> bool {
-        self.scene_of("base.dispersive").is_some_and(|scene| scene.base.dispersive == Some(true))
+    /// Whether the base is dispersive, as the settings say; `None` where they do not.
+    pub(in crate::study) fn dispersive(&self) -> Option<bool> {
+        self.scene_of("base.dispersive")?.base.dispersive
     }
 
     /// Whether the settings ask for inches beside mm.
@@ -184,17 +179,13 @@ mod tests {
     fn a_base_is_dispersive_as_the_scene_says() {
         let of = |settings: &[&str]| {
             let settings = settings.iter().map(ToString::to_string).collect();
-            DesignOptions { settings, ..DesignOptions::default() }.says_dispersive()
+            DesignOptions { settings, ..DesignOptions::default() }.dispersive()
         };
-        assert!(of(&["base.dispersive=true"]) && of(&["base.cu=3", " base.dispersive = true "]));
-        assert!(!of(&[]) && !of(&["base.dispersive=false"]));
-        let knows = |settings: &[&str]| {
-            let settings = settings.iter().map(ToString::to_string).collect();
-            DesignOptions { settings, ..DesignOptions::default() }.knows_dispersion()
-        };
-        assert!(!knows(&[]) && knows(&["base.dispersive=false"]) && knows(&["base.dispersive=true"]));
+        assert_eq!(of(&["base.dispersive=true"]), Some(true));
+        assert_eq!(of(&["base.cu=3", " base.dispersive = true "]), Some(true));
+        assert_eq!([of(&[]), of(&["base.dispersive=false"])], [None, Some(false)]);
         // The last counts.
-        assert!(!of(&["base.dispersive=true", "base.dispersive=false"]));
+        assert_eq!(of(&["base.dispersive=true", "base.dispersive=false"]), Some(false));
     }
 
     #[test]

@@ -48,7 +48,8 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     no_filter_within(&options.base, &bases)?;
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
     let (dispersive, sieves) = (options.dispersive, options.sieves);
-    let specified = SpecificationOptions { dispersive, sieves, ..SpecificationOptions::default() };
+    let said = dispersive.then_some(true);
+    let specified = SpecificationOptions { dispersive: said, sieves, ..SpecificationOptions::default() };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let cover = options.cover.clone().dated(today());
     let specification = Specification { inches: options.inches, cover, ..specification };

@@ -146,8 +146,7 @@ fn specification(
     let greatest = answer.d15f_max_mm?;
     let given = row.stated.regraded_from.as_ref().map_or(&row.stated.gradation, |(given, _)| given);
     let specified = SpecificationOptions {
-        dispersive: row.stated.scene.base.dispersive == Some(true),
-        is_dispersion_known: row.stated.scene.base.dispersive.is_some(),
+        dispersive: row.stated.scene.base.dispersive,
         sieves: options.sieves,
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };

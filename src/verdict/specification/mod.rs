@@ -17,10 +17,8 @@ use steps::{Control, D15_OVER_D10, Found};
 /// What a specification is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpecificationOptions {
-    /// Whether the base is dispersive.
-    pub dispersive: bool,
-    /// Whether somebody has said that it is dispersive, or that it is not.
-    pub is_dispersion_known: bool,
+    /// Whether the base is dispersive; `None` where nobody has said.
+    pub dispersive: Option<bool>,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
     /// Greatest D15F (mm) that the walk holds, where a base was walked.
@@ -41,7 +39,8 @@ impl Specification {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn of(name: &str, bases: &[NamedCurve], options: SpecificationOptions) -> Self {
-        let read: Vec<ReadCurve> = bases.iter().map(|base| ReadCurve::of(base, options.dispersive)).collect();
+        let dispersive = options.dispersive == Some(true);
+        let read: Vec<ReadCurve> = bases.iter().map(|base| ReadCurve::of(base, dispersive)).collect();
         let strictest = read.iter().min_by(|a, b| a.greatest().total_cmp(&b.greatest()));
         let unknown = read.iter().find(|curve| curve.unknown.is_some());
         let by_practice = strictest.filter(|_| unknown.is_none()).and_then(|curve| curve.of.d15f_max_mm);
@@ -52,8 +51,7 @@ impl Specification {
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
-        let is_open = !options.dispersive && !options.is_dispersion_known;
-        let if_dispersive = if is_open { curve::if_dispersive(bases) } else { None };
+        let if_dispersive = if options.dispersive.is_none() { curve::if_dispersive(bases) } else { None };
         let found = Found {
             walked_mm: options.walked_mm,
             read: &read,
@@ -68,7 +66,7 @@ impl Specification {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: commit(),
             base: name.into(),
-            dispersive: options.dispersive,
+            dispersive,
             sieves: options.sieves,
             cover: SheetCover::default(),
             inches: false,

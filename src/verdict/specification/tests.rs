@@ -44,7 +44,7 @@ fn a_core_with_60_percent_of_fines_by_hand() {
 fn the_limits_of_the_other_categories_by_hand() {
     let clay = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
     assert!(near(of(&clay).d15f_max_mm, 9.0 * 0.05));
-    let options = SpecificationOptions { dispersive: true, ..Default::default() };
+    let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
     let dispersive = Specification::of("clay", &[("clay".into(), soil(&clay))], options);
     assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
     let silty = of(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
@@ -193,6 +193,6 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     // What is finer anyway, few fines, and what was said.
     assert_eq!(said(&silt, SpecificationOptions { walked_mm: Some(0.4), ..nobody }), None);
     assert_eq!(said(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], nobody), None);
-    assert_eq!(said(&silt, SpecificationOptions { dispersive: true, ..nobody }), None);
-    assert_eq!(said(&silt, SpecificationOptions { is_dispersion_known: true, ..nobody }), None);
+    assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(true), ..nobody }), None);
+    assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(false), ..nobody }), None);
 }
