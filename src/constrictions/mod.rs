@@ -8,6 +8,7 @@
 
 mod curve;
 mod discs;
+mod frame;
 mod graph;
 mod inscribed;
 mod library;

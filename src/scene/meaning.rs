@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use super::keys::{Base, CurveSource, Filter, NetworkKeys, NetworkMadeOf, Record};
+use super::keys::{Base, Filter, NetworkKeys, Record};
+use super::values::{CurveSource, NetworkMadeOf};
 use super::{PackingKeys, SceneError};
 use crate::network::Connectivity;
 use crate::outcome::Wanted;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::keys::{Density, LibraryDensity};
+use super::values::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
 use crate::verdict::Mistake;

@@ -48,6 +48,8 @@ mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
 pub(crate) mod words;
+#[cfg(test)]
+mod worse_soils;
 
 #[cfg(doc)]
 use crate::outcome::design::band::Band;

@@ -25,14 +25,23 @@ mod precision;
 mod program;
 mod rules;
 mod scene;
+mod scene_networks;
+mod scene_refused;
 mod schemas;
 mod second_command;
 #[cfg(feature = "serve")]
 mod serve;
 #[cfg(feature = "serve")]
 mod serve_batch;
+#[cfg(feature = "serve")]
+mod serve_design;
+#[cfg(feature = "serve")]
+mod serve_jobs;
+#[cfg(feature = "serve")]
+mod served;
 mod sheet;
 mod slurm_scripts;
+mod small_run;
 mod soils;
 mod specification;
 mod studies;

@@ -1,59 +1,10 @@
-//! The program as a user meets it: exit codes, messages, and what a run folder holds.
+//! A scene as a user meets it: what a run folder holds, and the same bits from it again.
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
-use voidwalk::run::FolderKind;
 
-use super::program::figures_are_listed;
-
-/// A run of seconds: a small network, few replicates.
-const SMALL: [&str; 5] =
-    ["network.nx=8", "network.ny=8", "network.nz=10", "replicates=3", "record.sensitivity=[2.0]"];
-
-fn voidwalk(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_voidwalk")).args(args).output().unwrap()
-}
-
-fn run_small(out: &Path, more: &[&str]) -> Output {
-    let out = out.to_str().unwrap();
-    let mut args = vec!["run", "--out", out];
-    for set in SMALL {
-        args.extend(["--set", set]);
-    }
-    args.extend(more);
-    voidwalk(&args)
-}
-
-fn outcome(folder: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(folder.join("outcome.json")).unwrap()).unwrap()
-}
-
-/// The outcome without what a clock says.
-fn without_seconds(mut value: Value) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.remove("seconds");
-                map.values_mut().for_each(strip);
-            }
-            Value::Array(items) => items.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    strip(&mut value);
-    value
-}
-
-fn refused(output: &Output, messages: &[&str]) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    for message in messages {
-        assert!(stderr.contains(message), "{stderr:?} lacks {message:?}");
-    }
-}
+use super::small_run::{SMALL, outcome, refused, run_small, voidwalk, without_seconds};
 
 #[test]
 fn a_run_folder_holds_what_is_promised() {
@@ -177,43 +128,6 @@ fn the_same_seed_gives_the_same_bits_for_any_threads_and_from_the_resolved_scene
     );
 }
 
-#[test]
-fn bad_scenes_are_refused_and_leave_nothing() {
-    let root = tempfile::tempdir().unwrap();
-    let out = root.path().join("out");
-    let file = |name: &str, text: &str| {
-        let path = root.path().join(name);
-        fs::write(&path, text).unwrap();
-        path.to_str().unwrap().to_string()
-    };
-    let typo = file("typo.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nd85_at_cd = 5\n");
-    let unit = file("unit.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nd85_cm = 5\ncu = 3\n");
-    let sieve = file("s.csv", "opening_mm,percent_finer\n0.1,0\n0.2,nan\n");
-    let fine = file("fine.toml", "[filter]\ncurve = \"shire2016-cu1.5-loose\"\n[base]\nsieve = \"s.csv\"\n");
-    let _ = sieve;
-    for (scene, set, messages) in [
-        (typo.as_str(), "seed=1", &["typo.toml, line 4", "`base.d85_at_cd`", "`base.d85_at_dc`"][..]),
-        (unit.as_str(), "seed=1", &["unit.toml, line 4", "did you mean `base.d85_mm`"]),
-        (fine.as_str(), "seed=1", &["s.csv", "3", "nan"]),
-        (root.path().to_str().unwrap(), "seed=1", &["must be a regular file"]),
-        ("/no/such/scene.toml", "seed=1", &["/no/such/scene.toml"]),
-        ("", "base.n_base=0", &["--set, base.n_base: `0` is not allowed", "whole number from 1"]),
-        ("", "base.mass_ratio=1e-12", &["less than half a base particle"]),
-        ("", "filter.curve=shire2016-cu15-loose", &["nearest is \"shire2016-cu1.5-loose\""]),
-        ("", "network.nx=1e9", &["every length must be at least 1"]),
-        ("", "base.n_base=1e12", &["1000000000000 base particles walked one by one", "available"]),
-        ("", "network.file=/no/such.csv", &["/no/such.csv"]),
-    ] {
-        let mut args = vec!["run"];
-        if !scene.is_empty() {
-            args.push(scene);
-        }
-        args.extend(["--out", out.to_str().unwrap(), "--set", set, "--set", "engine=particles"]);
-        refused(&voidwalk(&args), messages);
-        assert!(!out.exists(), "{set}: something was written");
-    }
-}
-
 /// No second run, no sensitivity, no series and no early size curves: what is left is what the whole gives, and both `check` and
 /// the outcome say what is left out.
 #[test]
@@ -310,21 +224,6 @@ fn little_memory_changes_no_result() {
 }
 
 #[test]
-fn folders_that_are_not_ours_or_finished_are_left_alone() {
-    let root = tempfile::tempdir().unwrap();
-    fs::write(root.path().join("thesis.txt"), "years").unwrap();
-    refused(&run_small(root.path(), &[]), &["was not made by voidwalk"]);
-    let folder = root.path().join("run");
-    assert!(run_small(&folder, &["--quiet"]).status.success());
-    let before = fs::read(folder.join("outcome.json")).unwrap();
-    refused(&run_small(&folder, &["--seed", "9"]), &["--overwrite"]);
-    assert_eq!(fs::read(folder.join("outcome.json")).unwrap(), before);
-    assert!(run_small(&folder, &["--seed", "9", "--overwrite"]).status.success());
-    assert_ne!(fs::read(folder.join("outcome.json")).unwrap(), before);
-    refused(&voidwalk(&["report", root.path().to_str().unwrap()]), &["holds no outcome.json"]);
-}
-
-#[test]
 fn init_writes_a_scene_that_check_understands() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path().join("scene.toml");
@@ -362,77 +261,6 @@ fn init_writes_a_scene_that_check_understands() {
 }
 
 #[test]
-fn a_network_from_a_file_is_walked_and_kept() {
-    let root = tempfile::tempdir().unwrap();
-    let network = root.path().join("net.csv");
-    fs::write(&network, "from,to,diameter_mm\nstart,0,\n0,1,0.5\n0,2,0.2\n1,end,0.5\n2,end,0.3\n").unwrap();
-    let folder = root.path().join("run");
-    let set = format!("network.file={}", network.display());
-    let args = [
-        "run",
-        "--out",
-        folder.to_str().unwrap(),
-        "--set",
-        &set,
-        "--set",
-        "base.single_mm=0.25",
-        "--set",
-        "base.n_base=1000",
-    ];
-    let output = voidwalk(&args);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(folder.join("inputs/network.csv").is_file());
-    let outcome = outcome(&folder);
-    assert_eq!(outcome["inputs"]["network"]["kind"], "file");
-    let run = &outcome["replicates"][0]["runs"][0];
-    // Void 0 has one exit finer than the particles; everything else leaves.
-    assert_eq!(run["blocked"], 1);
-    assert_eq!(run["eroded"].as_u64().unwrap() + run["retained_in_constrictions"].as_u64().unwrap(), 1000);
-    // Its five ways are nobody's filter.
-    assert_ne!(outcome["confidence"], "within checked range");
-    assert!(outcome["reasons"].to_string().contains("The network was given, with 3 voids"));
-    // One that nothing leaves holds everything.
-    for rows in ["start,0,\n0,1,2\n1,0,2\n2,end,3\n2,0,1", "start,0,\n0,1,2", "start,0,\n0,end,0"] {
-        let network = root.path().join("noway.csv");
-        fs::write(&network, format!("from,to,diameter_mm\n{rows}\n")).unwrap();
-        let set = format!("network.file={}", network.display());
-        let args = ["check", "--set", &set, "--set", "base.single_mm=0.25", "--set", "base.n_base=10"];
-        refused(&voidwalk(&args), &["noway.csv: no open way leads from a start node"]);
-    }
-    // A ring with ways out so narrow that hardly anything leaves.
-    let ring = root.path().join("ring.csv");
-    let rows = "start,0,\n0,1,2\n1,2,2\n2,0,2\n0,end,0.05\n";
-    fs::write(&ring, format!("from,to,diameter_mm\n{rows}")).unwrap();
-    let set = format!("network.file={}", ring.display());
-    let base = ["--set", "base.single_mm=0.25", "--set", "base.n_base=1000", "--set", "replicates=2"];
-    let out = root.path().join("ring");
-    let args = [&["run", "--out", out.to_str().unwrap(), "--set", &set][..], &base].concat();
-    assert!(voidwalk(&args).status.success());
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("particles trapped in closed loops; they count as retained."), "no word of them");
-    assert!(page.contains("Particles trapped in closed loops could change the class. They are"));
-    // The kept scene runs again from its own folder.
-    let again = root.path().join("again");
-    let scene = folder.join("scene.toml");
-    assert!(voidwalk(&["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap()]).status.success());
-    assert_eq!(fs::read(folder.join("series.csv")).unwrap(), fs::read(again.join("series.csv")).unwrap());
-}
-
-#[test]
-fn hostile_names_are_inert() {
-    let root = tempfile::tempdir().unwrap();
-    let name = "<script>alert(1)<_script>\u{1b}[31m.csv";
-    fs::write(root.path().join(name), "opening_mm,percent_finer\n0.1,0\n0.25,100\n").unwrap();
-    let folder = root.path().join("run");
-    let set = format!("base.sieve={}", root.path().join(name).display());
-    let output = run_small(&folder, &["--set", &set]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let page = fs::read_to_string(folder.join("report.html")).unwrap();
-    assert!(!page.contains("<script>") && page.contains("&lt;script&gt;"));
-    assert!(!String::from_utf8_lossy(&output.stdout).contains('\u{1b}'));
-}
-
-#[test]
 fn init_lists_for_programs_every_setting_that_it_writes() {
     let output = voidwalk(&["init", "--json"]);
     let reference: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -450,22 +278,6 @@ fn init_lists_for_programs_every_setting_that_it_writes() {
     let groups = reference["exclusive"].as_array().unwrap();
     assert!(groups.iter().any(|group| group["alternatives"][1]["by"] == serde_json::json!(["base.sieve"])));
     refused(&voidwalk(&["init", "--json", "s.toml"]), &["cannot be used with"]);
-}
-
-#[test]
-fn a_closed_pipe_is_no_panic() {
-    for args in [&["init"][..], &["check"]] {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_voidwalk"))
-            .args(args)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        drop(child.stdout.take());
-        let output = child.wait_with_output().unwrap();
-        assert!(output.status.success());
-        assert!(!String::from_utf8_lossy(&output.stderr).contains("panicked"));
-    }
 }
 
 /// A cubic lattice of touching grains: one void a grain, three constrictions of 0.414214 D.
@@ -498,156 +310,6 @@ fn constrictions_of_a_packing_become_a_curve_for_a_scene() {
     assert!(voidwalk(&check).status.success());
     fs::write(&packing, "x_mm,y_mm,z_mm,diameter_mm\n0,0,0,nan\n").unwrap();
     refused(&voidwalk(&["constrictions", packing.to_str().unwrap()]), &["sc.csv"]);
-}
-
-/// Inputs that a first reader of this program found to slip through.
-#[test]
-fn what_once_slipped_through_is_refused() {
-    let root = tempfile::tempdir().unwrap();
-    let out = root.path().join("out");
-    for (more, message) in [
-        (vec!["--set", "base.sieve=/dev/null"], "must be a regular file"),
-        (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
-        (
-            vec![
-                "--set",
-                "network.nx=1e9",
-                "--set",
-                "network.ny=1",
-                "--set",
-                "network.nz=1",
-                "--set",
-                "base.n_base=10",
-            ],
-            "available",
-        ),
-    ] {
-        let mut args = vec!["run", "--out", out.to_str().unwrap()];
-        args.extend(more);
-        refused(&voidwalk(&args), &[message]);
-        assert!(!out.exists());
-    }
-    // A network in mm does not become scale-free, and grains per void that nobody gave are not invented.
-    let network = root.path().join("net.csv");
-    fs::write(&network, "from,to,diameter_mm\nstart,0,\n0,end,2\n").unwrap();
-    let set = format!("network.file={}", network.display());
-    let check = ["check", "--json", "--set", &set, "--set", "base.single_mm=1", "--set", "base.n_base=10"];
-    let json: Value = serde_json::from_slice(&voidwalk(&check).stdout).unwrap();
-    assert_eq!((&json["inputs"]["scale_free"], &json["grains_per_void"]), (&false.into(), &Value::Null));
-    // Another filter's curve is said to be one.
-    let json: Value =
-        serde_json::from_slice(&voidwalk(&["check", "--json", "--set", "filter.cu=3"]).stdout).unwrap();
-    assert!(json["warnings"][0].as_str().unwrap().contains("constrictions of another filter"));
-}
-
-/// Without --out the first free folder is taken; one that a stopped run left empty is free.
-#[test]
-fn unnamed_runs_do_not_overwrite_each_other() {
-    let root = tempfile::tempdir().unwrap();
-    fs::create_dir(root.path().join("voidwalk-run-2")).unwrap();
-    fs::write(root.path().join("voidwalk-run-2/.voidwalk.lock"), "").unwrap();
-    for (expected, missing) in [("voidwalk-run", "voidwalk-run-2"), ("voidwalk-run-2", "voidwalk-run-3")] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
-        command.current_dir(root.path()).args(["run", "--quiet"]);
-        for set in SMALL {
-            command.args(["--set", set]);
-        }
-        assert!(command.status().unwrap().success());
-        assert!(root.path().join(expected).join("outcome.json").is_file());
-        assert!(!root.path().join(missing).join("outcome.json").exists());
-    }
-}
-
-/// A small study: the folder, the numbers, the same bits for any number of threads, and what is refused.
-#[test]
-fn a_percolation_study_fills_a_folder() {
-    let root = tempfile::tempdir().unwrap();
-    let out = root.path().join("study");
-    let on = |threads: &str, out: &Path| {
-        let out = out.to_str().unwrap();
-        voidwalk(&[
-            "percolation",
-            "--sizes",
-            "4,6,5x5x9,8,12",
-            "--realisations",
-            "50",
-            "--threads",
-            threads,
-            "--out",
-            out,
-        ])
-    };
-    let output = on("1", &out);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let words = String::from_utf8_lossy(&output.stdout);
-    assert!(words.contains("95 % interval") && words.contains("many starts"), "{words}");
-    let study: Value =
-        serde_json::from_str(&fs::read_to_string(out.join("percolation.json")).unwrap()).unwrap();
-    let mean = |i: usize| study["sizes"][i]["threshold"]["mean"].as_f64().unwrap();
-    assert!((0.25..0.35).contains(&mean(0)) && mean(3) > mean(0) && mean(3) < 0.38222);
-    assert_eq!(study["boxes"][0]["shape"], serde_json::json!([5, 5, 9]));
-    assert!(
-        words.contains("5x5x9") && fs::read_to_string(out.join("report.html")).unwrap().contains("5 × 5 × 9")
-    );
-    for file in ["report.html", "figures/percolation-sd.svg", "figures/percolation-threshold.svg"] {
-        assert!(!fs::read_to_string(out.join(file)).unwrap().contains("NaN"), "{file}");
-    }
-    figures_are_listed(FolderKind::Percolation, &out);
-    refused(&on("1", &out), &["--overwrite"]);
-    let other = root.path().join("other");
-    assert!(on("3", &other).status.success());
-    let csv = |folder: &Path| fs::read_to_string(folder.join("percolation.csv")).unwrap();
-    assert_eq!(csv(&out), csv(&other));
-    // Boxes alone leave nothing to draw against size.
-    let boxes = root.path().join("boxes");
-    let alone = ["percolation", "--sizes", "4x4x6", "--realisations", "5", "--quiet", "--out"];
-    let said = voidwalk(&[&alone[..], &[boxes.to_str().unwrap()]].concat());
-    assert!(said.status.success() && said.stdout.is_empty() && said.stderr.is_empty());
-    assert!(fs::read_to_string(boxes.join("report.html")).unwrap().contains("4 × 4 × 6"));
-    assert!(!boxes.join("figures/percolation-sd.svg").exists());
-    let none = root.path().join("none");
-    let too_large = ["percolation", "--sizes", "10,2000", "--out", none.to_str().unwrap()];
-    refused(&voidwalk(&too_large), &["2000 x 2000 x 2000"]);
-    for wrong in ["0", "4x4", "4x0x4", "4x4x4x4", "-4", "4,,5"] {
-        refused(&voidwalk(&["percolation", "--sizes", wrong]), &["--sizes", "40x40x60"]);
-    }
-    assert!(!none.exists());
-}
-
-/// A network that is not uniform is walked, reported by connectivity, and comes again from its own folder bit for bit.
-#[test]
-fn connectivity_is_spread_and_reported() {
-    let root = tempfile::tempdir().unwrap();
-    for (name, set) in
-        [("a", "network.connectivity=table3"), ("b", "network.connectivity={3=1,5=34,6=30,7=35}")]
-    {
-        let out = root.path().join(name);
-        assert!(run_small(&out, &["--set", set, "--quiet"]).status.success());
-        let value = outcome(&out);
-        let rows = value["replicates"][0]["runs"][0]["by_connectivity"].as_array().unwrap().clone();
-        let sum = |field: &str| rows.iter().map(|row| row[field].as_u64().unwrap()).sum::<u64>();
-        let run = &value["replicates"][0]["runs"][0];
-        assert_eq!(sum("voids"), 640);
-        assert_eq!(sum("blocked"), run["blocked"].as_u64().unwrap());
-        assert_eq!(sum("retained_in_constrictions"), run["retained_in_constrictions"].as_u64().unwrap());
-        assert_eq!(sum("retained_in_voids"), run["retained_in_voids"].as_u64().unwrap());
-        let wanted: &[u64] = if name == "a" { &[4, 5, 6, 7, 8] } else { &[3, 5, 6, 7] };
-        assert_eq!(rows.iter().map(|r| r["connectivity"].as_u64().unwrap()).collect::<Vec<_>>(), wanted);
-        assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("By connectivity of the void"));
-        let again = root.path().join(format!("{name}-again"));
-        let scene = out.join("scene.toml");
-        let args =
-            ["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap(), "--quiet", "--threads", "1"];
-        assert!(voidwalk(&args).status.success());
-        assert_eq!(without_seconds(outcome(&again)), without_seconds(value));
-    }
-    let none = root.path().join("none");
-    refused(&run_small(&none, &["--set", "network.connectivity={12=100}"]), &["the nearest found was"]);
-    refused(
-        &run_small(&none, &["--set", "network.connectivity=table4"]),
-        &["--set, network.connectivity", "table3"],
-    );
-    assert!(!none.exists());
 }
 
 /// With sieve curves in mm every rule that the program knows has a result or says why not.
@@ -694,67 +356,6 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     assert!(run_small(&linear, &["--quiet"]).status.success());
     let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
     assert_eq!(text.matches("needs the filter's sieve curve").count(), 8);
-}
-
-/// Each command that writes a folder leaves those of the others alone, finished or not, with --overwrite and without.
-#[test]
-fn no_command_writes_into_a_folder_of_another_kind() {
-    let root = tempfile::tempdir().unwrap();
-    let at = root.path();
-    let write = |name: &str, text: &str| fs::write(at.join(name), text).unwrap();
-    write("filter.toml", "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 600\n");
-    write("plan.toml", "[[case]]\nname = \"one\"\n");
-    let mut grains = String::from("# cell_mm = 3, 3, 3\nx_mm,y_mm,z_mm,diameter_mm\n");
-    for i in 0..27 {
-        // Not quite a lattice.
-        grains += &format!("{}.5{},{}.5{},{}.5,0.9\n", i % 3, 37 * i % 11, i / 3 % 3, 17 * i % 7, i / 9);
-    }
-    write("grains.csv", &grains);
-    let commands: [(&str, &[&str]); 7] = [
-        ("run", &["run"]),
-        ("packing", &["pack", "filter.toml"]),
-        ("campaign", &["campaign", "plan.toml"]),
-        ("percolation study", &["percolation", "--sizes", "4", "--realisations", "2"]),
-        ("precision study", &["precision"]),
-        ("design", &["design"]),
-        ("set of constrictions", &["constrictions", "grains.csv"]),
-    ];
-    let marks = [
-        ("run", "outcome.json"),
-        ("run", "checkpoint"),
-        ("packing", "packing.json"),
-        ("packing", "compression.0"),
-        ("campaign", "cases"),
-        ("percolation study", "percolation.json"),
-        ("precision study", "precision.json"),
-        ("design", "design.json"),
-        ("design", "networks.1"),
-        ("set of constrictions", "constrictions.json"),
-    ];
-    for (held, mark) in marks {
-        let folder = at.join(format!("with {mark}"));
-        fs::create_dir(&folder).unwrap();
-        fs::write(folder.join(".voidwalk.lock"), "").unwrap();
-        fs::write(folder.join(mark), "theirs").unwrap();
-        for (kind, command) in commands {
-            if kind == held || (kind == "packing" && held == "set of constrictions") {
-                continue;
-            }
-            for overwrite in [false, true].iter().filter(|overwrite| kind != "campaign" || !**overwrite) {
-                let mut args = command.to_vec();
-                args.extend(["--out", folder.to_str().unwrap()]);
-                args.extend(overwrite.then_some("--overwrite"));
-                let output = Command::new(env!("CARGO_BIN_EXE_voidwalk"))
-                    .current_dir(at)
-                    .args(&args)
-                    .output()
-                    .unwrap();
-                refused(&output, &[&format!("holds a {held}; name another folder")]);
-            }
-        }
-        assert_eq!(fs::read_to_string(folder.join(mark)).unwrap(), "theirs");
-        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2, "something was written beside {mark}");
-    }
 }
 
 /// The packing's time stands beside that of the walks.

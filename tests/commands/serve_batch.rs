@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::program::{call, done};
-use crate::serve::{Served, serve};
+use crate::served::{Served, serve};
 
 const SMALL: [&str; 5] =
     ["network.nx=6", "network.ny=6", "network.nz=8", "record.sensitivity=[]", "replicates=2"];

@@ -31,5 +31,3 @@ use super::applied::RuleRole;
 
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod worse_soils;

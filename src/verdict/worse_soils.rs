@@ -11,11 +11,10 @@
 //! widen its limits. And Terzaghi's ratio gives way to limits by fines once a base is known to have 15 % of
 //! them.
 
-use super::*;
+use super::judge;
 use crate::gradation::Gradation;
-use crate::outcome::applied::{AppliedRule, RuleRole};
-use crate::outcome::record::Verdict;
-use crate::verdict::judge;
+use crate::outcome::record::{AppliedRule, RuleRole, Verdict};
+use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 
 /// Pairs of soils that are drawn.
 const PAIRS: u64 = 4000;

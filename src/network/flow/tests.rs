@@ -1,0 +1,235 @@
+use super::*;
+use crate::network::ExitRule;
+
+/// Whatever closed and opened again before: conductances are those of what is blocked now.
+#[test]
+fn conductances_follow_what_is_blocked() {
+    let diameters = (0..3 * 4 * 3 * 5).map(|c| if c % 17 == 0 { 0.0 } else { 1.0 + 0.01 * c as f32 });
+    let lattice = Network::cubic_from_diameters([4, 3, 5], diameters.collect(), 1.0).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
+    let blocked = |every: &[usize]| {
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        for c in every.iter().flat_map(|&step| (0..network.constrictions()).step_by(step)) {
+            network.set_blocked(&mut blocked, c, true);
+        }
+        blocked
+    };
+    let mut flow = Flow::new(&network);
+    for every in [&[][..], &[5], &[5, 7], &[5], &[3], &[]] {
+        let blocked = blocked(every);
+        flow.solve(&network, &blocked).unwrap();
+        for c in 0..network.constrictions() {
+            let rho = if blocked[c] { 0.1 } else { 1.0 };
+            let whole = if network.diameters()[c] == 0.0 { 0.0 } else { network.conductance(c) };
+            assert_eq!(flow.open[c], rho * whole, "{every:?} {c}");
+        }
+        let mut afresh = Flow::new(&network);
+        let all = [&mut flow, &mut afresh].map(|f| f.solve(&network, &blocked).unwrap().conductance);
+        assert!((all[0] / all[1] - 1.0).abs() < 1e-9, "{all:?}");
+    }
+}
+
+/// Blocks of voids are cut off one after another, some with a factor that is kept: pressures are those
+/// that are found without it, all the way to where no water comes through.
+#[test]
+fn a_factor_serves_while_little_has_closed() {
+    let [n, layers] = [12, 14];
+    let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+    for rho in [0.0, 0.1] {
+        let network = lattice.undirected_lattice(ExitRule::Flux, rho, 4.0).unwrap();
+        let reservoir = network.reservoir().unwrap();
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let mut flow = Flow::new(&network);
+        flow.solve(&network, &blocked).unwrap();
+        let (mut served, mut made) = (0, 0);
+        let like_afresh = |flow: &Flow, blocked: &BitSlice| {
+            let mut afresh = Flow::new(&network);
+            let permeability = afresh.solve(&network, blocked).unwrap();
+            for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
+                assert!((kept - anew).abs() < 1e-7, "void {v}: {kept} for {anew}");
+            }
+            permeability.conductance
+        };
+        // Two by two by one voids, with open ways between them and none out.
+        for corner in
+            (3 * n * n + 1..(layers - 3) * n * n).step_by(2 * n as usize + 5).filter(|v| v % n < n - 1)
+        {
+            let block = [corner, corner + 1, corner + n, corner + n + 1];
+            for &void in &block {
+                for c in network.exits(void).filter(|&c| !block.contains(&network.targets()[c])) {
+                    network.set_blocked(&mut blocked, c, true);
+                }
+            }
+            flow.solve(&network, &blocked).unwrap();
+            match flow.kept.as_ref().unwrap().closed {
+                0 => made += 1,
+                _ => served += 1,
+            }
+            like_afresh(&flow, &blocked);
+        }
+        assert!(served > made && made > 0, "{served} {made}");
+        // The inlets close, a few at a time.
+        let inlets: Vec<usize> = network.exits(reservoir).collect();
+        for some in inlets.chunks(20) {
+            some.iter().for_each(|&c| network.set_blocked(&mut blocked, c, true));
+            flow.solve(&network, &blocked).unwrap();
+            like_afresh(&flow, &blocked);
+        }
+        assert_eq!(like_afresh(&flow, &blocked) == 0.0, rho == 0.0);
+    }
+}
+
+/// Four slabs that clog: pressures, what is kept for the next solution and the weights of exits are the
+/// same to the bit on any number of threads, balance at every void, and are those that are found from
+/// nothing.
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let [n, layers] = [11, 200];
+    let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    assert_eq!(Flow::new(&network).passages.slabs().number(), 4);
+    let walk = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut network = network.clone();
+            let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+            let mut flow = Flow::new(&network);
+            let mut found = Vec::new();
+            // A little, much, and much of all layers but the first.
+            for (from, step) in [(0, 1009), (1, 37), (3 * network.constrictions() / 40, 11)] {
+                for c in (from..network.constrictions()).step_by(step) {
+                    network.set_blocked(&mut blocked, c, true);
+                }
+                flow.solve(&network, &blocked).unwrap();
+                flow.direct(&mut network);
+                let weights: Vec<f64> =
+                    (0..network.constrictions()).map(|c| network.exit_weight(c)).collect();
+                found.push((blocked.clone(), flow.pressure.clone(), weights));
+            }
+            found
+        })
+    };
+    let alone = walk(1);
+    for threads in [2, 3, 7] {
+        assert!(walk(threads) == alone, "{threads} threads");
+    }
+    for (blocked, pressure, _) in &alone {
+        let mut afresh = Flow::new(&network);
+        let through = afresh.solve(&network, blocked).unwrap().conductance;
+        let (mut warm, reservoir) = (Flow::new(&network), network.reservoir().unwrap());
+        warm.set_blocked(&network, blocked, 0.0);
+        warm.pressure.clone_from(pressure);
+        assert!((warm.through(&network) / through - 1.0).abs() < 1e-9);
+        for void in (0..network.voids() as u32).filter(|&void| void != reservoir) {
+            let [kept, anew] = [&warm, &afresh].map(|flow| flow.pressure[void as usize]);
+            assert!((kept - anew).abs() < 1e-8, "void {void}: {kept} for {anew}");
+            let off: f64 = network.exits(void).map(|c| warm.flux(void, c)).sum();
+            assert!(off.abs() < 1e-9 * through, "void {void}: {off} of {through}");
+        }
+    }
+}
+
+/// Parts that shrink a few at a time, solved with a factor that is kept: pressures are those that are
+/// found without it. What is blocked afterwards is solved without those parts.
+#[test]
+fn parts_are_solved_as_afresh_and_forgotten() {
+    let diameters = (0..3 * 10 * 10 * 10).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([10, 10, 10], diameters.collect(), 1.0).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
+    let is_like = |flow: &mut Flow, found: Permeability, solve: &dyn Fn(&mut Flow) -> Permeability| {
+        let mut afresh = Flow::new(&network);
+        let anew = solve(&mut afresh);
+        assert!((found.conductance / anew.conductance - 1.0).abs() < 1e-7, "{found:?} {anew:?}");
+        for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
+            assert!((kept - anew).abs() < 1e-7, "void {v}: {kept} for {anew}");
+        }
+    };
+    let mut parts = vec![1.0; network.constrictions()];
+    let mut flow = Flow::new(&network);
+    flow.solve_parts(&network, &parts).unwrap();
+    let mut served = 0;
+    for step in 1..12 {
+        for c in (37 * step..network.constrictions()).step_by(997) {
+            let part = if step % 4 == 0 { 0.0 } else { 0.3 / step as f64 };
+            parts[c] = part;
+            if let Some(twin) = network.twin(c) {
+                parts[twin] = part;
+            }
+        }
+        let found = flow.solve_parts(&network, &parts).unwrap();
+        served += usize::from(flow.kept.as_ref().is_some_and(|kept| kept.closed > 0));
+        is_like(&mut flow, found, &|flow| flow.solve_parts(&network, &parts).unwrap());
+    }
+    assert!(served > 3, "{served}");
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    for every in [network.constrictions(), 50] {
+        (0..network.constrictions()).step_by(every).for_each(|c| {
+            network.set_blocked(&mut blocked, c, every == 50);
+        });
+        flow.solve_parts(&network, &parts).unwrap();
+        let found = flow.solve(&network, &blocked).unwrap();
+        is_like(&mut flow, found, &|flow| flow.solve(&network, &blocked).unwrap());
+        for c in 0..network.constrictions() {
+            let rho = if blocked[c] { 0.1 } else { 1.0 };
+            assert_eq!(flow.open[c], rho * whole(&network, c), "{every} {c}");
+        }
+    }
+}
+
+/// A void that was cut off when a factor was made has no row there: once it opens, another is made.
+#[test]
+fn what_opens_again_needs_another_factor() {
+    let lattice = Network::cubic_from_diameters([8, 8, 8], vec![1.0; 3 * 512], 1.0).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    let mut flow = Flow::new(&network);
+    let close = |blocked: &mut BitVec, void: u32, is: bool| {
+        network.exits(void).for_each(|c| network.set_blocked(blocked, c, is));
+    };
+    close(&mut blocked, 200, true);
+    flow.solve(&network, &blocked).unwrap();
+    close(&mut blocked, 300, true);
+    flow.solve(&network, &blocked).unwrap();
+    assert!(flow.kept.as_ref().is_some_and(|kept| kept.closed > 0), "twelve exits in some 3000");
+    close(&mut blocked, 200, false);
+    flow.solve(&network, &blocked).unwrap();
+    assert_eq!(flow.kept.as_ref().unwrap().closed, 0);
+    let mut afresh = Flow::new(&network);
+    afresh.solve(&network, &blocked).unwrap();
+    for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
+        assert!((kept - anew).abs() < 1e-8, "void {v}: {kept} for {anew}");
+    }
+}
+
+/// Each exit weighs by what flows out of it, and nothing where water flows in, or where it is blocked,
+/// though it leaks.
+#[test]
+fn exits_weigh_by_what_leaves_through_them() {
+    let diameters = (0..3 * 6 * 6 * 6).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([6, 6, 6], diameters.collect(), 1.0).unwrap();
+    for rule in [ExitRule::Flux, ExitRule::AreaAlongFlow] {
+        let mut network = lattice.undirected_lattice(rule, 0.1, 4.0).unwrap();
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        (0..network.constrictions()).step_by(5).for_each(|c| network.set_blocked(&mut blocked, c, true));
+        let mut flow = Flow::new(&network);
+        flow.solve(&network, &blocked).unwrap();
+        flow.direct(&mut network);
+        let mut seen = [0; 3];
+        for void in 0..network.voids() as u32 {
+            for c in network.exits(void) {
+                let (flux, area) = (flow.flux(void, c), f64::from(network.diameters()[c]).powi(2));
+                let out = if rule == ExitRule::Flux { flux } else { area };
+                let (kind, expected) = match (blocked[c], flux > 0.0) {
+                    (true, _) => (0, 0.0),
+                    (false, false) => (1, 0.0),
+                    (false, true) => (2, out),
+                };
+                seen[kind] += 1;
+                assert_eq!(network.exit_weight(c), expected, "{void} {c}: flux {flux}");
+            }
+        }
+        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+    }
+}

@@ -1,0 +1,96 @@
+use super::*;
+use bitvec::prelude::*;
+
+fn of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
+    let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
+    let blocked: BitVec = blocked.into_iter().collect();
+    let mut out = Vec::new();
+    let last = thresholds(&network, Ways::Unblocked(&blocked), 0, &mut out);
+    (out, last)
+}
+
+#[test]
+fn widths_are_areas() {
+    let (t, last) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+    assert_eq!(last, Some(2));
+    assert!((t[0] as f64 / TWO_TO_64 - 0.25).abs() < 1e-7);
+    assert!((t[1] as f64 / TWO_TO_64 - 0.5).abs() < 1e-7);
+}
+
+#[test]
+fn a_closed_exit_has_no_width() {
+    assert_eq!(of([0.0, 1.0, 1.0], [false; 3]).0[0], 0);
+    assert_eq!(of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
+    assert_eq!(of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
+    assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
+}
+
+/// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
+/// whatever the other bits, or none where these decide.
+#[test]
+fn few_exits_are_chosen_as_by_the_definition() {
+    let mut word = 1u64;
+    let mut next = || {
+        word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        word >> 33
+    };
+    for _ in 0..300 {
+        let exits = 1 + next() % 14;
+        let of = |next: u64| match next % 5 {
+            0 | 1 => 0.0,
+            2 => 1e-9,
+            _ => (next % 97) as f64,
+        };
+        let weight: Vec<f64> = (0..exits).map(|_| of(next())).collect();
+        let Some(last) = weight.iter().rposition(|&w| w > 0.0) else { continue };
+        let total: f64 = weight.iter().sum();
+        let mut sum = 0.0;
+        let mut add = |w: &f64| {
+            sum += w;
+            (sum / total * TWO_TO_64) as u64
+        };
+        let thresholds: Vec<u64> = weight.iter().map(&mut add).collect();
+        let few = FewExits::new(100, &thresholds, last);
+        let open = weight.iter().filter(|&&w| w > 0.0).count();
+        assert!(few.is_few || open > FEW_EXITS, "{weight:?}");
+        for draw in (0..=u16::MAX).filter(|_| few.is_few) {
+            let by = |low: u64| {
+                let draw = u64::from(draw) << 48 | low;
+                100 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
+            };
+            match few.chosen(draw) {
+                Some(exit) => assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{weight:?} {draw}"),
+                None => assert!(
+                    draw == u16::MAX || thresholds.iter().any(|&t| (t >> 48) as u16 == draw),
+                    "{weight:?} {draw}"
+                ),
+            }
+        }
+    }
+}
+
+/// Exits that stand too far from the first for a byte are not few; in reach of one they are.
+#[test]
+fn exits_beyond_a_byte_are_not_few() {
+    for (last, is_few) in [(255, true), (256, false), (299, false)] {
+        let thresholds: Vec<u64> = (0..300).map(|e| if e < last { 1 << 62 } else { u64::MAX }).collect();
+        let few = FewExits::new(7, &thresholds, last);
+        assert_eq!(
+            (few.is_few, few.chosen(1 << 15).filter(|_| is_few)),
+            (is_few, is_few.then_some(7 + last))
+        );
+        assert_eq!(few.chosen(1), Some(7));
+    }
+}
+
+/// Once the exit with nearly all the area is blocked, the others keep their exact ratio.
+#[test]
+fn nothing_is_left_of_a_blocked_giant() {
+    let (giant, _) = of([1e6, 1.0, 1.0], [false; 3]);
+    assert!(((u64::MAX - giant[0]) as f64 / TWO_TO_64 / 2e-12 - 1.0).abs() < 1e-3);
+    assert_eq!(of([1e6, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+    for scale in [1e-6, 1e6] {
+        let (t, last) = of([scale, 1.0, scale], [false; 3]);
+        assert!(t[0] <= t[1] && last == Some(2));
+    }
+}
