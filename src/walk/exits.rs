@@ -443,6 +443,12 @@ impl Lattice {
         if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
+    /// Whether no exit is open, by a plain word: thresholds of open ones rise.
+    #[inline(always)]
+    pub fn has_no_exit(plain: u32) -> bool {
+        plain & 0xfffc > plain >> 16
+    }
+
     /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
     /// open.
     #[inline(always)]

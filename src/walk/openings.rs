@@ -265,7 +265,8 @@ impl Ways<'_> {
 }
 
 impl Weighed<'_> {
-    /// How an exit weighs that is as wide as this.
+    /// How an exit weighs that is as wide as this. Not inlined, so that what is blocked or not is.
+    #[inline(never)]
     pub fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
         let whole = f64::from(network.diameters()[c]);
         let part = |width: f32, exponent| part_kept(f64::from(width) / whole, exponent);

@@ -348,7 +348,11 @@ impl<'a> LatticeChunk<'a> {
     /// open.
     #[cold]
     pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
-        if let Some(exit) = Lattice::pick::<Plain>(self.table.plain[void as usize], draw) {
+        let word = self.table.plain[void as usize];
+        if Lattice::has_no_exit(word) {
+            return None;
+        }
+        if let Some(exit) = Lattice::pick::<Plain>(word, draw) {
             return Some(exit);
         }
         let mut thresholds = Vec::with_capacity(3);
