@@ -83,7 +83,12 @@ impl Frame {
 
 /// Void ratio of the tetrahedra whose centroid lies in a region: their volume, and the sectors that
 /// their grains fill.
-pub(super) fn void_ratio_within(t: &Triangulation, positions: &Positions<'_>, frame: &Frame, region: &Region) -> f64 {
+pub(super) fn void_ratio_within(
+    t: &Triangulation,
+    positions: &Positions<'_>,
+    frame: &Frame,
+    region: &Region,
+) -> f64 {
     let (mut whole, mut solid) = (0.0, 0.0);
     for i in 0..t.tetrahedra() {
         let c = t.at(positions, i, Shift::ZERO);

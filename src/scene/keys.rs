@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-
 use super::values::{
     CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits, VoidConnectivity,
 };

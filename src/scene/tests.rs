@@ -73,11 +73,7 @@ fn alternatives_that_are_set_together_are_refused() {
             "network.nx and network.file both give the network: keep one",
         ),
     ] {
-        assert!(
-            built_in(&set).unwrap_err().to_string().contains(message),
-            "{set:?}: {:?}",
-            built_in(&set)
-        );
+        assert!(built_in(&set).unwrap_err().to_string().contains(message), "{set:?}: {:?}", built_in(&set));
     }
     // The file's are replaced all the same, and the same setting twice is as on any command line.
     let text = b"[filter]\ncurve = \"a.csv\"\nd0_mm = 2\n[base]\ncu = 2\nd85_mm = 1\n";
@@ -102,8 +98,7 @@ fn what_is_written_is_the_whole_scene() {
     ] {
         let scene = built_in(&set).unwrap();
         let text = scene.to_toml();
-        let again =
-            Scene::parse(text.as_bytes(), &scene.name, &[]).unwrap_or_else(|e| panic!("{text}{e}"));
+        let again = Scene::parse(text.as_bytes(), &scene.name, &[]).unwrap_or_else(|e| panic!("{text}{e}"));
         assert_eq!(again, scene, "{text}");
     }
 }
@@ -203,14 +198,8 @@ fn values_out_of_range_and_clashes_are_refused() {
         ("[filter]\ncurve = \"a.csv\"\n[base]\ncu = 2\nsingle_mm = 1", "keep one"),
         ("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\nd85_mm = 1", "goes with base.cu"),
         ("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\nn_base = 5\ncap = 3", "base.cap goes with"),
-        (
-            "[filter]\ncurve = \"a.csv\"\ndensity = \"loose\"",
-            "both say what the filter's constrictions are",
-        ),
-        (
-            "[filter]\nfriction = 99\ncu = 2\n[base]\nsingle_mm = 1",
-            "filter.friction: `99` is not allowed",
-        ),
+        ("[filter]\ncurve = \"a.csv\"\ndensity = \"loose\"", "both say what the filter's constrictions are"),
+        ("[filter]\nfriction = 99\ncu = 2\n[base]\nsingle_mm = 1", "filter.friction: `99` is not allowed"),
     ] {
         let error = Scene::parse(text.as_bytes(), "s.toml", &[]).unwrap_err().to_string();
         assert!(error.starts_with("s.toml") && error.contains(message), "{text}: {error}");

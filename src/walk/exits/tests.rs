@@ -25,6 +25,28 @@ fn a_closed_exit_has_no_width() {
     assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
 }
 
+/// Exits of very different widths, any of them blocked: a plain word tells a void that none leads out of.
+#[test]
+fn a_word_tells_whether_an_exit_is_open() {
+    let mut seen = [0; 2];
+    for widths in 0..4usize.pow(3) {
+        let diameters = [0, 1, 2].map(|exit| [0.0, 1e-4, 1.0, 1e4][widths / 4usize.pow(exit) % 4]);
+        for blocked in 0..8 {
+            let blocked = [0, 1, 2].map(|exit| blocked >> exit & 1 == 1);
+            let (thresholds, last_open) = of(diameters, blocked);
+            let mut lattice = Lattice::new(1, 1, 1, 0);
+            lattice.set_plain(0, &thresholds, last_open);
+            assert_eq!(
+                Lattice::has_no_exit(lattice.plain[0]),
+                last_open.is_none(),
+                "{diameters:?} {blocked:?}"
+            );
+            seen[usize::from(last_open.is_none())] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+}
+
 /// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
 /// whatever the other bits, or none where these decide.
 #[test]
