@@ -10,6 +10,7 @@ use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
+use crate::verdict::left_out::NOT_COVERED;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -125,8 +126,9 @@ fn words(
             wrapped(&rule.source, INDENT).into_iter().for_each(&mut line);
         }
     }
+    line(String::new());
+    line(NOT_COVERED.into());
     if let Some(stated) = &pair.by_authority {
-        line(String::new());
         line(stated.said.clone());
     }
     text

@@ -35,8 +35,21 @@ const BETWEEN: f64 = 15.0;
 pub struct ShapeIndex {
     /// Its value.
     pub value: f64,
-    /// Percent finer where it is: F of Kenney and Lau, the split of Kezdi.
+    /// Percent finer where it is: F of Kenney and Lau.
     pub percent: f64,
+}
+
+/// A split of a soil in two, with Terzaghi's ratio of the coarser part over the finer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoilSplit {
+    /// D'15 / d'85.
+    pub value: f64,
+    /// Percent of the soil that is finer than the split.
+    pub percent: f64,
+    /// D'15 (mm): 15 % of the coarser part alone is finer.
+    pub coarse_d15_mm: f64,
+    /// d'85 (mm): 85 % of the finer part alone is finer.
+    pub fine_d85_mm: f64,
 }
 
 impl Gradation {
@@ -98,7 +111,17 @@ impl Gradation {
     /// Kezdi: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
     /// `None` for a single size, or where a pan fraction hides all of that range.
-    pub fn kezdi(&self) -> Option<ShapeIndex> {
+    ///
+    /// ```
+    /// use voidwalk::gradation::Gradation;
+    /// // Half of the soil is finer than 1 mm: d'85 of that half is D42.5, D'15 of the other half is D57.5.
+    /// let soil = Gradation::linear_from_d0(0.1, 10.0)?;
+    /// let split = soil.kezdi().unwrap();
+    /// assert_eq!(soil.d(0.85 * split.percent), Some(split.fine_d85_mm));
+    /// assert!((split.value - split.coarse_d15_mm / split.fine_d85_mm).abs() < 1e-12);
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn kezdi(&self) -> Option<SoilSplit> {
         // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
         if self.size_mm.len() < 2 {
             return None;
@@ -106,8 +129,9 @@ impl Gradation {
         let [low, high] = [KEZDI_RANGE[0].max(self.percent[0]), KEZDI_RANGE[1]];
         let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([low, high]);
         let index = |finer: f64| {
-            let value = self.highest_size_at(finer + BETWEEN)? / self.d(finer)?;
-            Some(ShapeIndex { value, percent: finer / 0.85 })
+            let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
+            let percent = finer / 0.85;
+            Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
         };
         candidates
             .filter(|&finer| (low..=high).contains(&finer))
@@ -216,6 +240,30 @@ mod tests {
         // The gap-graded filter of 40 % fine sand under gravel stays unstable.
         let gap = points(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
         assert!(gap.kezdi().unwrap().value > 10.0);
+    }
+
+    /// ASTM C33 sand, split at 17.65 %: 85 % of the finer part is 15 % of the whole, and 15 % of the coarser
+    /// part with the finer one 30 %. Both parts are worked out by themselves here, each as 100 %.
+    #[test]
+    fn a_split_is_that_of_both_parts_by_themselves() {
+        let sizes = [0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
+        let percents = [6.0, 20.0, 42.5, 67.5, 90.0, 97.5, 100.0];
+        let sand = points(&sizes.into_iter().zip(percents).collect::<Vec<_>>());
+        let split = sand.kezdi().unwrap();
+        assert!((split.percent - 15.0 / 0.85).abs() < 1e-9, "{split:?}");
+        // D15 = 0.15 x 2^(9/14), D30 = 0.3 x 2^(10/22.5).
+        let (fine, coarse) = (0.15 * libm::pow(2.0, 9.0 / 14.0), 0.3 * libm::pow(2.0, 10.0 / 22.5));
+        assert!((split.fine_d85_mm - fine).abs() < 1e-9 && (split.coarse_d15_mm - coarse).abs() < 1e-9);
+        assert!((split.value - 1.743).abs() < 1e-3 && split.value == split.coarse_d15_mm / split.fine_d85_mm);
+        let at = sand.d(split.percent).unwrap();
+        let (share, rows) = (split.percent, || sizes.into_iter().zip(percents));
+        let finer = rows().filter(|row| row.0 < at).map(|(size, of)| (size, 100.0 * of / share));
+        let finer = points(&finer.chain([(at, 100.0)]).collect::<Vec<_>>());
+        assert!((finer.d(85.0).unwrap() - fine).abs() < 1e-9);
+        let coarser = rows().filter(|row| row.0 > at);
+        let coarser = coarser.map(|(size, of)| (size, 100.0 * (of - share) / (100.0 - share)));
+        let coarser = points(&[(at, 0.0)].into_iter().chain(coarser).collect::<Vec<_>>());
+        assert!((coarser.d(15.0).unwrap() - coarse).abs() < 1e-9);
     }
 
     #[test]

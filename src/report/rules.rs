@@ -7,6 +7,9 @@ use super::shell::clean;
 use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::outcome::rules::{PERMEABILITY, PERMEABILITY_LEAST};
+use crate::verdict::left_out::NOT_COVERED;
+use crate::verdict::practice::NOT_A_LIMIT;
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
 const DIGITS: i32 = 3;
@@ -14,12 +17,13 @@ const DIGITS: i32 = 3;
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        outcome.rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+        listed(&outcome.rules).into_iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
             p { (outcome.compared_with_tests()) }
             (table(&practice, unit))
+            p.small { (NOT_COVERED) }
             @if !walk.is_empty() {
                 h3 { "Comparisons of the walk with tests and with the paper" }
                 p.small { "They show whether the walk agrees with both. No filter fails by them." }
@@ -72,6 +76,25 @@ fn without_zeros(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
 
+/// What stands in the place of a limit that is not there.
+pub(super) fn no_limit(rule: &AppliedRule) -> &'static str {
+    if rule.note.to_string().starts_with(NOT_A_LIMIT) { NOT_A_LIMIT } else { "–" }
+}
+
+/// The rules that a page lists: of two rules of drainage that come to one limit the first.
+pub(super) fn listed<'a>(rules: impl IntoIterator<Item = &'a AppliedRule>) -> Vec<&'a AppliedRule> {
+    let mut all: Vec<&AppliedRule> = Vec::new();
+    for rule in rules {
+        let is_said = |of: &&AppliedRule| {
+            of.id == PERMEABILITY && (of.limit, of.value, of.met) == (rule.limit, rule.value, rule.met)
+        };
+        if rule.id != PERMEABILITY_LEAST || !all.iter().any(is_said) {
+            all.push(rule);
+        }
+    }
+    all
+}
+
 /// Rules as a table.
 pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
@@ -99,7 +122,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let is_open = rule.at_least && rule.limit_at_most;
             let sign = if is_open { "not known; at most" } else { sign };
             let [_, limit] = value_and_limit(rule, unit);
-            let limit = clean(&limit.map_or_else(|| "–".to_owned(), |limit| format!("{sign} {limit}")));
+            let limit =
+                clean(&limit.map_or_else(|| no_limit(rule).to_owned(), |limit| format!("{sign} {limit}")));
             html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }
         })
         .text("", |rule| match (rule.role, rule.met) {

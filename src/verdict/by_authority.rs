@@ -1,7 +1,7 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::pair::{PairRules, StatedByAuthority};
-use super::practice::{against, tested, tested_words};
+use super::practice::{against, tested_words};
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
@@ -145,7 +145,7 @@ fn without_result(left: &[&AppliedRule]) -> Vec<String> {
 /// How many rules are left out, the class of tests where that is one of them, and what is said of them.
 fn left_out(rules: &[AppliedRule], left: &[&AppliedRule], said: &[String]) -> String {
     let classes = match left.iter().any(|rule| rule.id == TESTS_CONTINUING) {
-        true => format!(", with Foster and Fell's classes ({})", tested_words(tested(rules))),
+        true => format!(", with Foster and Fell's classes ({})", tested_words(rules)),
         false => String::new(),
     };
     let begin = format!("Left out: {} rules of others{classes}", left.len());
@@ -251,7 +251,7 @@ mod tests {
         let without = PairRules::of_envelopes(&base, &filter, PairOptions::default());
         let said = of_pair(&without.rules, Authority::Nrcs, without.filter.d15_mm).unwrap();
         assert!(
-            said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 4.")
+            said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 2.")
         );
         // Fines that nobody sieved.
         let open =

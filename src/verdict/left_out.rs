@@ -66,6 +66,9 @@ impl<'de> Deserialize<'de> for ModelLimit {
     }
 }
 
+/// What no rule here judges, as no text was read that gives the numbers.
+pub const NOT_COVERED: &str = "Not covered: segregation, excessive erosion.";
+
 /// What the model does not contain, in one sentence.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| limit.parts().0).collect();
