@@ -24,6 +24,9 @@ use super::Gradation;
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
 
+/// Percent finer up to which grains of a widely graded soil may be loose.
+const WIDE_LOOSE_PERCENT: f64 = 20.0;
+
 /// Percent finer than d'85 over which Kezdi's ratio is judged.
 pub const KEZDI_RANGE: [f64; 2] = [15.0, 55.0];
 
@@ -56,7 +59,7 @@ impl Gradation {
     /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not
     /// known.
     pub fn loose_percent(&self) -> Option<f64> {
-        Some(if self.cu()? > NARROW_CU { 20.0 } else { 30.0 })
+        Some(if self.cu()? > NARROW_CU { WIDE_LOOSE_PERCENT } else { 30.0 })
     }
 
     /// Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
@@ -72,7 +75,15 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
-        self.least_of_next(|finer| finer)
+        self.least_of_next(self.loose_percent()?, |finer| finer)
+    }
+
+    /// The same of as much of the curve as sieves tell: where D10 lies in a pan fraction, and Cu is more than
+    /// 3 all the same, from there up to F = 20 %. What it finds below 1 is not met, whatever the pan hides.
+    pub fn known_kenney_lau(&self) -> Option<ShapeIndex> {
+        let is_wide = self.d(60.0)? > NARROW_CU * self.smallest_mm();
+        let limit = self.loose_percent().or(is_wide.then_some(WIDE_LOOSE_PERCENT))?;
+        self.least_of_next(limit, |finer| finer)
     }
 
     /// Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
@@ -87,12 +98,11 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn li_fannin(&self) -> Option<ShapeIndex> {
-        self.least_of_next(|finer| finer.min(BETWEEN))
+        self.least_of_next(self.loose_percent()?, |finer| finer.min(BETWEEN))
     }
 
-    /// The least H / `over(F)` for F up to [`Gradation::loose_percent`].
-    fn least_of_next(&self, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
-        let limit = self.loose_percent()?;
+    /// The least H / `over(F)` for F up to `limit` (%).
+    fn least_of_next(&self, limit: f64, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
         let last = self.highest_size_at(limit)?;
         let between = self.highest_size_at(BETWEEN);
         let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]).chain(between);
@@ -270,6 +280,13 @@ mod tests {
     fn what_a_tail_hides_is_not_guessed() {
         let tail = points(&[(0.1, 35.0), (1.0, 60.0), (10.0, 100.0)]);
         assert_eq!(tail.kenney_lau(), None);
+        assert_eq!(tail.known_kenney_lau(), None);
+        // 14 % below the finest sieve, and 46 % straight over the next two decades: H is least at F = 20 %.
+        let clayey = points(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
+        let found = clayey.known_kenney_lau().unwrap();
+        let h = 46.0 * libm::log(4.0) / libm::log(100.0);
+        assert!(clayey.kenney_lau().is_none() && (found.value - h / 20.0).abs() < 1e-9, "{found:?}");
+        assert!((found.percent - 20.0).abs() < 1e-9);
         assert!(tail.kezdi().is_some());
         assert_eq!(Gradation::single(1.0).unwrap().kezdi(), None);
         assert_eq!(Gradation::single(1.0).unwrap().kenney_lau(), None);

@@ -9,14 +9,14 @@ use super::figures::shorten;
 use super::folder::RunFolder;
 use super::names::soil_name;
 use super::numbers::{SizeUnit, whole};
-use super::rules::{listed, no_limit, value_and_limit};
+use super::rules::value_and_limit;
 use super::shell::{clean, unbroken};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, SheetCover, Verdict};
 use crate::outcome::rules::Authority;
 use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
-use crate::verdict::left_out::{NOT_COVERED, left_out_in_brief};
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::{Standing, standing};
 use crate::verdict::words::capital;
 
@@ -134,13 +134,12 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 /// The rules of practice, one a line, and the thickness that was modelled.
 pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Markup {
     let stated = stated_by(&outcome.rules, by);
-    let practice = listed(&stated);
+    let practice: Vec<&AppliedRule> = stated.iter().collect();
     let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm));
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
             @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice, unit)) }
-            p.small { (NOT_COVERED) }
             @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
             (thickness(outcome, unit))
             p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
@@ -171,7 +170,7 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                     span.q { (if rule.at_least { "≥ " } else { "≤ " }) (limit) }
                     @if rule.limit_at_most { " or less" }
                 },
-                None => html! { (no_limit(rule)) },
+                None => html! { "–" },
             }
         })
         .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {

@@ -7,8 +7,7 @@ use super::shell::clean;
 use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
-use crate::outcome::rules::{PERMEABILITY, PERMEABILITY_LEAST};
-use crate::verdict::left_out::NOT_COVERED;
+use crate::verdict::by_authority::listed;
 use crate::verdict::practice::NOT_A_LIMIT;
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
@@ -23,7 +22,6 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
             p { (outcome.compared_with_tests()) }
             (table(&practice, unit))
-            p.small { (NOT_COVERED) }
             @if !walk.is_empty() {
                 h3 { "Comparisons of the walk with tests and with the paper" }
                 p.small { "They show whether the walk agrees with both. No filter fails by them." }
@@ -77,22 +75,8 @@ fn without_zeros(number: &str) -> &str {
 }
 
 /// What stands in the place of a limit that is not there.
-pub(super) fn no_limit(rule: &AppliedRule) -> &'static str {
+fn no_limit(rule: &AppliedRule) -> &'static str {
     if rule.note.to_string().starts_with(NOT_A_LIMIT) { NOT_A_LIMIT } else { "–" }
-}
-
-/// The rules that a page lists: of two rules of drainage that come to one limit the first.
-pub(super) fn listed<'a>(rules: impl IntoIterator<Item = &'a AppliedRule>) -> Vec<&'a AppliedRule> {
-    let mut all: Vec<&AppliedRule> = Vec::new();
-    for rule in rules {
-        let is_said = |of: &&AppliedRule| {
-            of.id == PERMEABILITY && (of.limit, of.value, of.met) == (rule.limit, rule.value, rule.met)
-        };
-        if rule.id != PERMEABILITY_LEAST || !all.iter().any(is_said) {
-            all.push(rule);
-        }
-    }
-    all
 }
 
 /// Rules as a table.
@@ -104,7 +88,7 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
                 @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
-                    br; span.small { "If not met, it speaks against " (clean(&rule.speaks_against)) "." }
+                    br; span.small { "If not met, it argues against " (clean(&rule.speaks_against)) "." }
                 }
                 @for text in [&rule.note, &rule.needs] {
                     @if !text.is_empty() { br; span.small { b { (clean(&text.to_string())) } } }

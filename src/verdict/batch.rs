@@ -290,7 +290,7 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
     let limits = of_filter.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let limit = match row.d15f_min_at_most {
-        true => format!("the least D15F is not known, and at most {} mm", rounded_up(least)),
+        true => format!("the minimum D15F is not known, and at most {} mm", rounded_up(least)),
         false => format!("D15F {} mm or more", rounded_up(least)),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))

@@ -163,7 +163,7 @@ fn reservation(confidence: Confidence) -> &'static str {
         Confidence::MayNotDrain => "the filter may not drain the base",
         Confidence::MaySegregate => "the filter may segregate when placed",
         Confidence::Unstable => "the filter may lose its finer part",
-        Confidence::Contradicted => "another rule speaks against it",
+        Confidence::Contradicted => "another rule argues against it",
         Confidence::Within | Confidence::Outside => {
             "the walk agrees, outside the range in which it was checked"
         }

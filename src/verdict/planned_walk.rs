@@ -59,6 +59,7 @@ impl PlannedWalk<'_> {
             self.broad_base(),
             self.cu_of_filter(),
             self.cu_of_base(),
+            self.unstable_base(),
             self.passive_pan(),
             self.filter.is_none().then(finding::no_filter),
             self.gap(),
@@ -115,6 +116,13 @@ impl PlannedWalk<'_> {
             }
             (_, cu) => not_as_uniform("base", cu, BASE_CU),
         }
+    }
+
+    /// A base whose own finer part its coarser part does not hold.
+    fn unstable_base(&self) -> Option<Finding> {
+        let stated = self.regraded_from.unwrap_or(self.base);
+        let found = stated.known_kenney_lau().filter(|found| found.value < 1.0 && !self.scale_free)?;
+        Some(finding::unstable_base(found.value, found.percent))
     }
 
     fn passive_pan(&self) -> Option<Finding> {

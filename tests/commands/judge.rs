@@ -157,7 +157,7 @@ fn a_first_look_says_so_beside_the_verdict() {
         serde_json::from_slice::<Value>(&said.stdout).unwrap()
     };
     let whole = run(&["--set", "record.sensitivity=[]"]);
-    let unstudied = "How the verdict moves with the amount of base and with the thickness was not studied.";
+    let unstudied = "How the verdict changes with the amount of base and with the thickness was not studied.";
     let notes = |outcome: &Value| -> Vec<String> {
         let found = outcome["findings"].as_array().unwrap().iter().filter(|of| of["against"] == false);
         found
