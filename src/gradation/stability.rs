@@ -110,7 +110,8 @@ impl Gradation {
             let finer = self.percent_finer_by_mass(d);
             let next = self.percent_finer_by_mass(4.0 * d) - finer;
             let of = over(finer);
-            (finer > 0.0 && finer <= limit).then_some(ShapeIndex { value: next / of, percent: finer })
+            (finer > 0.0 && finer <= limit * (1.0 + 1e-9))
+                .then_some(ShapeIndex { value: next / of, percent: finer })
         };
         candidates
             .filter(|d| (self.smallest_mm()..=last).contains(d))
@@ -180,6 +181,21 @@ mod tests {
             assert!((kenney_lau.percent - limit).abs() < 1e-9);
             assert!((g.kezdi().unwrap().value - libm::pow(cu, 0.3)).abs() < 1e-9, "{cu}");
         }
+    }
+
+    /// A size at F = 20 % may read as a hair more than 20 % finer, and is looked at all the same.
+    #[test]
+    fn the_end_of_the_loose_part_is_looked_at_whatever_its_last_digit() {
+        let mut beyond = 0;
+        for n in 1..400 {
+            let soil = points(&[(0.1, 0.0), (2.0 + 0.01 * f64::from(n), 40.0), (19.0, 100.0)]);
+            let d20 = soil.d(20.0).unwrap();
+            let finer = soil.percent_finer_by_mass(d20);
+            beyond += usize::from(finer > 20.0);
+            let at_end = (soil.percent_finer_by_mass(4.0 * d20) - finer) / finer;
+            assert!(soil.kenney_lau().unwrap().value <= at_end, "{n}");
+        }
+        assert!(beyond > 10, "{beyond}");
     }
 
     /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but

@@ -307,8 +307,8 @@ mod tests {
         }
     }
 
-    /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times it
-    /// 0.111 mm, and neither the limit of design nor that of drainage follows it below its floor.
+    /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
+    /// it 0.111 mm, and neither the limit of design nor that of drainage follows it below its floor.
     #[test]
     fn the_next_step_names_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.02,87\n0.063,95\n0.63,100\n";
@@ -333,8 +333,8 @@ mod tests {
         let between = next(0.18, &["base.dispersive=false"]);
         assert_eq!(
             between,
-            "have this pair tested: D15F meets the limit of design, whose floor is 0.200 mm, and tests saw no \
-             erosion up to 0.156 mm"
+            "have this pair tested: D15F meets the limit of design, whose floor is 0.200 mm, and tests saw \
+             no erosion up to 0.156 mm"
         );
         let fine = Outcome { verdict: Verdict::None, ..walked_base(CLAY, 0.08, &["base.dispersive=false"]) };
         assert_eq!(

@@ -19,7 +19,7 @@ fn all_stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
     rules.iter().filter(|rule| rule.role != RuleRole::Walk && is_stated_by(rule, by)).cloned().collect()
 }
 
-/// Rules as a sheet lists them: of two rules of drainage that come to one limit, the floor of both, the first.
+/// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first.
 pub fn listed(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =

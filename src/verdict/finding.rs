@@ -327,8 +327,8 @@ findings! {
     /// A Cu of which only the least is known, and that is out of the checked range.
     cu_at_least(soil: Text, cu: Ratio, d10: Mm, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
-        "The Cu of the {soil} is more than {cu} (D10 is finer than {d10}), and the model was checked for {low} \
-         to {high}.";
+        "The Cu of the {soil} is more than {cu} (D10 is finer than {d10}), and the model was checked for \
+         {low} to {high}.";
     /// A Cu between two bounds, of which one is out of the checked range.
     cu_in_doubt(soil: Text, least: Ratio, most: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",

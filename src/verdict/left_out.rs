@@ -333,7 +333,8 @@ mod tests {
             "{brief}"
         );
         assert!(brief.ends_with(
-            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter."
+            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter. \
+             Not covered by the rules: segregation, excessive erosion."
         ));
     }
 }

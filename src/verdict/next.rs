@@ -98,9 +98,9 @@ impl Outcome {
         let below = self.if_dispersive.filter(|of| of.d15f_max_mm < floor);
         below.map_or_else(String::new, |of| {
             format!(
-                "; whether the base is dispersive is not stated, and 6.4 D85B is {} mm, below that floor: have \
-                 the base tested for dispersion, and if it is dispersive take a filter in two stages or have \
-                 this pair tested in the laboratory",
+                "; whether the base is dispersive is not stated, and 6.4 D85B is {} mm, below that floor: \
+                 have the base tested for dispersion, and if it is dispersive take a filter in two stages \
+                 or have this pair tested in the laboratory",
                 rounded_down(of.d15f_max_mm)
             )
         })
@@ -113,7 +113,8 @@ impl Outcome {
         match least {
             Some(least) if least <= most => format!(" and at least {} {}", rounded_up(least), self.unit()),
             Some(least) => format!(
-                " (to drain the base it would be at least {} {}: compare the permeabilities of filter and base)",
+                " (to drain the base it would be at least {} {}: compare the permeabilities of filter and \
+                 base)",
                 rounded_up(least),
                 self.unit()
             ),
@@ -206,7 +207,7 @@ impl Outcome {
         let is_unsafe =
             is_unsafe.then(|| "the walk errs on the unsafe side for filters like this".to_owned());
         let limits = (!why.is_empty() && self.confidence == Confidence::Outside)
-            .then(|| format!("the model was not checked for it ({})", why.join(", ")));
+            .then(|| format!("the model was not checked for this pair ({})", why.join(", ")));
         let why: Vec<String> = is_unsafe.into_iter().chain(limits).collect();
         match why.is_empty() {
             true => "have this pair tested".into(),

@@ -218,14 +218,17 @@ mod tests {
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
             (&hidden, vec!["fines_not_sieved", "pan_passive"], vec!["pan_passive"]),
-            (&till, vec!["not_regraded"], vec![]),
+            (&till, vec!["not_regraded", "unstable_base"], vec![]),
             (&broad, vec!["broadly_graded"], vec![]),
         ] {
             let plan = PlannedWalk { base, ..plan.clone() };
             assert_eq!(ids(&plan), in_mm);
             assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
         }
-        assert_eq!(ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }), [""; 0]);
+        assert_eq!(
+            ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
+            ["unstable_base"]
+        );
         let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
         assert_eq!(ids(&exchanged), ["doubtful_tables"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };

@@ -454,9 +454,9 @@ mod tests {
     #[test]
     fn the_limit_of_design_and_the_class_of_tests_stand_in_one_line() {
         // With 38 % fines and a D95B of 2.6 mm tests found no clear boundary of continuing erosion.
-        let whole = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow (design); \
-                     Foster and Fell: erosion, class not known (no erosion up to 0.700 mm; for such bases \
-                     tests found no clear boundary of continuing erosion)";
+        let whole = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
+                     (design); Foster and Fell: erosion, class not known (no erosion up to 0.700 mm; for \
+                     such bases tests found no clear boundary of continuing erosion)";
         assert_eq!(said(&GRAVEL, &TILL), whole);
         let between = said(&[(3.7, 0.0), (8.0, 100.0)], &SAND);
         assert!(between.contains("Fell: some or excessive erosion (no erosion up to 3.56 mm, continuing"));

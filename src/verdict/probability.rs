@@ -52,13 +52,12 @@ pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2]) -> String {
     let of = |end: f64| digits_of(d15f_mm / end, 2);
     match d15f_mm {
         d15f if d15f < low => format!(
-            "D15F is {} of the lowest D15F at which erosion began in tests on soils with such fines ({} mm)",
+            "D15F is {} of the lowest D15F with erosion in tests on soils with such fines ({} mm)",
             of(low),
             rounded_down(low)
         ),
         d15f if d15f > high => format!(
-            "D15F is {} times the highest D15F that tests on soils with such fines still held without erosion \
-             ({} mm)",
+            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm)",
             of(high),
             rounded_up(high)
         ),
@@ -80,13 +79,12 @@ mod tests {
         let said = |d15f| beside_range(d15f, [0.7, 1.7]);
         assert_eq!(
             said(0.234),
-            "D15F is 0.33 of the lowest D15F at which erosion began in tests on soils with such fines (0.700 \
-             mm)"
+            "D15F is 0.33 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm)"
         );
         assert!(said(0.7).starts_with("D15F lies in the range in which erosion began"), "{}", said(0.7));
         assert!(said(1.7).ends_with("(0.700 to 1.70 mm)"), "{}", said(1.7));
         let coarse = said(2.21);
-        assert!(coarse.starts_with("D15F is 1.3 times the highest D15F that tests"), "{coarse}");
+        assert!(coarse.starts_with("D15F is 1.3 times the highest D15F without erosion"), "{coarse}");
         assert!(coarse.ends_with("(1.70 mm)"), "{coarse}");
     }
 

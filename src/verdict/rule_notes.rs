@@ -68,8 +68,8 @@ impl RuleNote {
             Self::KezdiAt(split, coarse, fine) => {
                 let [coarse, fine] = [coarse, fine].map(significant);
                 return format!(
-                    "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part {fine} \
-                     mm",
+                    "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part \
+                     {fine} mm",
                     fixed(split, 1)
                 );
             }

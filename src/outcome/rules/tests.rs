@@ -75,7 +75,7 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     }
     // With gravel the base is regraded: D95 of what passes No. 4, not of all.
     let gravelly = sieve(&[(0.01, 0.0), (0.075, 30.0), (1.0, 60.0), (4.75, 80.0), (50.0, 100.0)]);
-    // D95B after regrading is 3.48 mm, with 37.5 % fines: tests found no clear boundary, and there is no limit.
+    // D95B after regrading is 3.48 mm, with 37.5 % fines: tests found no clear boundary, so it is no limit.
     assert!((4.75f64.powf((76.0 - 60.0) / 20.0) - 3.478).abs() < 1e-3);
     for d15f in [1.0, 100.0] {
         let rule = of("foster-fell-continuing", &filter(d15f), &gravelly);
@@ -208,8 +208,8 @@ fn internal_stability_by_hand() {
     // That is a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it.
     assert_eq!(
         rule.note.to_string(),
-        "split at 29.4 % finer: D'15 of the coarser part 5.00 mm, d'85 of the finer part 0.273 mm; judged over \
-         splits at 17.6 to 64.7 % finer"
+        "split at 29.4 % finer: D'15 of the coarser part 5.00 mm, d'85 of the finer part 0.273 mm; judged \
+         over splits at 17.6 to 64.7 % finer"
     );
     let unstable = sieve(&[(0.1, 0.0), (0.2, 15.0), (4.0, 15.0), (20.0, 100.0)]);
     for (id, value) in [("kenney-lau", 0.0), ("li-fannin", 0.0)] {
