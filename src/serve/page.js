@@ -334,7 +334,7 @@ function readCurves(svg) {
 
 const ROLES = [["retention", "The filter retains the base"],
   ["continuation", "Coarser filters: where erosion still ends"],
-  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "The filter holds its finer part"]];
+  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "Internal stability of the filter"]];
 
 function result(rule) {
   if (rule.met === true) return el("span", { class: "keeps" }, "met");
