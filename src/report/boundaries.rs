@@ -38,7 +38,7 @@ pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
 
 /// Draws the row of 15 % and the boundaries at it.
 pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
-    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %"));
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %").named_at_start());
     for (place, limit, _) in boundaries {
         let (_, name, colour, _) = LIMITS[*place];
         let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);

@@ -31,6 +31,7 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     let (width, height) = match size {
         Size::Wide => figure.wide,
         Size::Narrow => figure.narrow,
+        Size::Sheet => figure.sheet.unwrap_or(figure.wide),
     };
     let mut above = match figure.naming {
         Naming::Above => named(figure),
@@ -355,13 +356,17 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     match mark {
         Mark::Point(point) => frame.at(point.at).into_iter().collect(),
         Mark::Disc(_) => Vec::new(),
-        Mark::Rule(rule) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
-            .into_iter()
-            .filter_map(|share| match rule.across {
+        Mark::Rule(rule) => {
+            let mut shares = [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03];
+            if rule.named_at_start {
+                shares.reverse();
+            }
+            let at = |share: f64| match rule.across {
                 Across::X => frame.x_at(rule.at).map(|x| (x, bottom - share * (bottom - top))),
                 Across::Y => frame.y_at(rule.at).map(|y| (left + share * (right - left), y)),
-            })
-            .collect(),
+            };
+            shares.into_iter().filter_map(at).collect()
+        }
         Mark::Line(line) => {
             let path = frame.path(&line.points);
             [0.62, 0.7, 0.54, 0.78, 0.46, 0.86, 0.38, 0.92, 0.3, 0.22, 0.97, 0.14, 0.06]

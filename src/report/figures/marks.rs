@@ -181,12 +181,13 @@ pub struct Rule {
     pub(super) colour: Colour,
     pub(super) dash: Dash,
     pub(super) label: Option<String>,
+    pub(super) named_at_start: bool,
 }
 
 impl Rule {
     /// A solid line.
     pub fn new(across: Across, at: f64, colour: Colour) -> Rule {
-        Rule { across, at, colour, dash: Dash::Solid, label: None }
+        Rule { across, at, colour, dash: Dash::Solid, label: None, named_at_start: false }
     }
 
     /// Broken.
@@ -198,6 +199,12 @@ impl Rule {
     /// With a name.
     pub fn label(mut self, label: &str) -> Rule {
         self.label = Some(label.to_owned());
+        self
+    }
+
+    /// With its name at the left, or at the foot, where there is room.
+    pub fn named_at_start(mut self) -> Rule {
+        self.named_at_start = true;
         self
     }
 }
