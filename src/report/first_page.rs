@@ -112,7 +112,7 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
 }
 
 /// A part of the filter that the mass eroded does not know of.
-const NOT_COUNTED: &str = "pan_of_filter";
+pub(super) const NOT_COUNTED: &str = "pan_of_filter";
 
 /// What is said of the thickness, which stands below the rules.
 const OF_THICKNESS: [&str; 4] =

@@ -38,7 +38,7 @@ pub(super) fn titled(kind: &str, name: &str) -> Markup {
     html! {
         (kind)
         @if is_named(kind, name) { " " b { bdi { (clean(&shorten(&soil, LINE))) } } } @else {
-            @if let Some(size) = regraded { (REGRADED) (clean(size)) }
+            @if let Some(size) = regraded { " (regraded on " (clean(size)) ")" }
         }
     }
 }
@@ -99,7 +99,7 @@ mod tests {
     fn a_name_that_says_no_more_than_its_kind_is_left_out() {
         let said = |kind, name| titled(kind, name).into_string();
         assert_eq!(said("Base", "/lab/base.csv"), "Base");
-        assert_eq!(said("Base", "soils.xlsx#BASE, regraded on 4.75 mm"), "Base, regraded on 4.75 mm");
+        assert_eq!(said("Base", "soils.xlsx#BASE, regraded on 4.75 mm"), "Base (regraded on 4.75 mm)");
         assert_eq!(said("filter", "C33 <sand>.csv"), "filter <b><bdi>C33 &lt;sand&gt;</bdi></b>");
         let till = "Base <b><bdi>Till 3, regraded on 4.75 mm</bdi></b>";
         assert_eq!(said("Base", "lab/soils.xlsx#Till 3, regraded on 4.75 mm"), till);

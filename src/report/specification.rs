@@ -141,7 +141,7 @@ fn steps(of: &Specification) -> Markup {
              NRCS (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names \
              the text in which its numbers were read, or says that they are this program’s own."
         }
-        (Table::of(&of.steps).class("study")
+        (Table::of(&of.steps).class("study steps")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
                 (step.step) ". " (clean(&step.does))
                 @for text in [&step.formula, &step.note] {

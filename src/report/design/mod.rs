@@ -11,6 +11,7 @@ use maud::{Markup, html};
 use super::cover::program;
 use super::error::ReportError;
 use super::files::{json, rows};
+use super::first_page::NOT_COUNTED;
 use super::names::{is_named, soil_name, titled};
 use super::numbers::{threshold, whole};
 use super::section::Sections;
@@ -82,9 +83,10 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
 fn filter_words(filter: &str) -> Markup {
     let (soil, curve) = filter.split_once(CURVE).unwrap_or((filter, ""));
     html! {
-        @if is_named("filter", soil) { "filter of the shape " b { bdi { (clean(&soil_name(soil))) } } }
-        @else { "filter" }
-        @if !curve.is_empty() { (CURVE) (clean(curve)) }
+        @if is_named("filter", soil) {
+            "filter of the shape " b { bdi { (clean(&soil_name(soil))) } }
+            @if !curve.is_empty() { (CURVE) (clean(curve)) }
+        } @else if curve.is_empty() { "filter" } @else { "filter’s constrictions " (clean(curve)) }
     }
 }
 
@@ -96,7 +98,10 @@ fn told(design: &Design) -> Vec<String> {
     // Why a row has no band stands in the answer itself.
     let notes = design.boundaries.iter().filter_map(|row| row.band_note.as_ref());
     let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
-    let is_said = |of: &&DesignFinding| notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
+    let is_said = |of: &&DesignFinding| {
+        let is_noted = notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
+        is_noted || of.finding.id == NOT_COUNTED
+    };
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
         of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
@@ -108,6 +113,12 @@ fn told(design: &Design) -> Vec<String> {
     let more = |said: &'_ [String]| said.iter().filter(is_found).cloned().collect::<Vec<String>>();
     let against = more(&design.reasons).into_iter().chain(against.into_iter().map(words));
     against.chain(more(&design.warnings)).chain(others.into_iter().map(words)).collect()
+}
+
+/// What is said of a part of the filter that the mass eroded does not know of, once.
+fn not_counted(design: &Design) -> Option<&str> {
+    let of = design.findings.iter().find(|of| of.finding.id == NOT_COUNTED)?;
+    Some(&of.finding.sentence)
 }
 
 /// The findings that do not stand on the first sheet: folded on a screen, and open in print.
@@ -167,6 +178,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     }
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
+                @if let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
                 @if let Some(of) = &design.specification {
                     @match of.band_in_words() {
                         Some(band) => p { b { "Band to specify: " (clean(&band)) } "." },

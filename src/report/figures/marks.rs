@@ -181,13 +181,13 @@ pub struct Rule {
     pub(super) colour: Colour,
     pub(super) dash: Dash,
     pub(super) label: Option<String>,
-    pub(super) named_at_start: bool,
+    pub(super) named_at_end: bool,
 }
 
 impl Rule {
     /// A solid line.
     pub fn new(across: Across, at: f64, colour: Colour) -> Rule {
-        Rule { across, at, colour, dash: Dash::Solid, label: None, named_at_start: false }
+        Rule { across, at, colour, dash: Dash::Solid, label: None, named_at_end: false }
     }
 
     /// Broken.
@@ -202,9 +202,9 @@ impl Rule {
         self
     }
 
-    /// With its name at the left, or at the foot, where there is room.
-    pub fn named_at_start(mut self) -> Rule {
-        self.named_at_start = true;
+    /// With its name at one of its ends alone, apart from other names.
+    pub fn named_at_end(mut self) -> Rule {
+        self.named_at_end = true;
         self
     }
 }
