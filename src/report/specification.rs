@@ -92,7 +92,7 @@ fn answer(of: &Specification) -> Markup {
 pub(super) fn to_specify(of: &Specification) -> Markup {
     let Some(band) = &of.band else { return html! {} };
     let unit = SizeUnit::of(false, of.inches);
-    let sides = [("Fine side, least size", true), ("Coarse side, greatest size", false)];
+    let sides = [("Fine side", true), ("Coarse side", false)];
     let table = Table::of(&sides).class("band").name(unit.name(), |side| side.0);
     let table = band.sizes.iter().fold(table, |table, size| {
         table.number(format!("D{}F", size.percent), move |side: &(_, bool)| match side.1 {
