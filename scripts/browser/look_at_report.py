@@ -69,8 +69,22 @@ PRINTED_CURVES = """[...document.querySelectorAll('[class^=curve-]')].filter(par
   .concat([...document.querySelectorAll('.looks')].filter(part => part.getClientRects().length > 0)).length"""
 
 # What must stand on the first printed page, so that it can be handed in by itself.
-FIRST_PAGE = """[...document.querySelectorAll('.names, .about, .verdict .word, .practice, .verdict li, .sizes, .short, .pair figcaption')]
-  .map(part => part.innerText)"""
+FIRST_PAGE = """[...document.querySelectorAll('.names, .model, .about, .verdict .word, .practice, .counted, .verdict li, .band, .sizes, .short, .pair figcaption')]
+  .map(part => part.innerText).concat(document.querySelector('.sign') ? ['Name Date Signature Prepared Checked Approved'] : [])"""
+
+# The least lettering of Figure 1 in print (points), where it stands on the first page.
+LEAST_LETTERS = 7
+LETTERS = """(() => {
+  const found = [];
+  for (const svg of document.querySelectorAll('.sheet figure svg, .sheet + figure svg')) {
+    const { width } = svg.getBoundingClientRect();
+    if (width === 0) continue;
+    const scale = width / svg.viewBox.baseVal.width;
+    for (const text of svg.querySelectorAll('text'))
+      found.push(0.75 * scale * parseFloat(text.getAttribute('font-size') ?? svg.getAttribute('font-size')));
+  }
+  return found.length ? Math.min(...found) : null;
+})()"""
 
 # Width and height in inches.
 PAPER = {"a4": (8.27, 11.69), "letter": (8.5, 11.0)}
@@ -165,12 +179,15 @@ def print_out(page, pdf, paper):
         browser.ask("Emulation.setDeviceMetricsOverride", tab, width=inside, height=900, deviceScaleFactor=1, mobile=False)
         browser.ask("Emulation.setEmulatedMedia", tab, media="print")
         wide = browser.ask("Runtime.evaluate", tab, expression="document.documentElement.scrollWidth", returnByValue=True)
+        letters = browser.ask("Runtime.evaluate", tab, expression=LETTERS, returnByValue=True)["result"].get("value")
         hidden = browser.ask("Runtime.evaluate", tab, expression=PRINTED_CURVES, returnByValue=True)
         browser.ask("Emulation.setEmulatedMedia", tab, media="")
         printed = browser.ask("Page.printToPDF", tab, paperWidth=width, paperHeight=height,
                               printBackground=False, preferCSSPageSize=True)
         pathlib.Path(pdf).write_bytes(base64.b64decode(printed["data"]))
     faults = list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    if letters is not None and letters < LEAST_LETTERS:
+        faults.append(f"Figure 1 is lettered at {letters:.1f} pt on {paper}")
     if hidden["result"].get("value") != 0:
         faults.append("what is hidden on the screen is not printed, or a box is")
     if wide["result"]["value"] > inside:
@@ -202,6 +219,9 @@ def faults_of_sheets(found, first):
             gap, reached = max(gap, top - reached), max(reached, bottom)
         if gap > EMPTY * height and number < len(found):
             yield f"printed page {number} of {len(found)} is mostly empty"
+        said = [word for box, word in words if box[1] > 0.93 * height]
+        if ["page", str(number), "of", str(len(found))] != said[-4:]:
+            yield f"printed page {number} does not end with its number: {' '.join(said)}"
         for place, (box, word) in enumerate(words):
             near = (other for other in words[place + 1:] if other[1] == word)
             if any(max(abs(a - b) for a, b in zip(box, other)) < 2.0 for other, _ in near):

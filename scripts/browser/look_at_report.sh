@@ -6,8 +6,8 @@
 #
 # WIDTH is that of the window in pixels, 1280 unless given (390 is a telephone); dark sets the screen to dark colours. Fails when the page breaks its content
 # security policy, logs an error, asks for any other file, is wider than the window, holds two labels that overlap in a
-# figure or one that is cut off, when a box of a figure does not hide its curve or enlarge it, or when the picture is blank; in print, when the first page lacks verdict, warnings or
-# rules, when a page but the last is mostly empty, or when a word lies on itself. Installs Debian's chromium, and for
+# figure or one that is cut off, when a box of a figure does not hide its curve or enlarge it, or when the picture is blank; in print, when the first page lacks verdict, warnings,
+# rules or the places to sign, when Figure 1 is lettered below 7 pt, when a page has no number, when a page but the last is mostly empty, or when a word lies on itself. Installs Debian's chromium, and for
 # print poppler-utils, when they are missing.
 set -eu
 

@@ -75,7 +75,19 @@ pub(super) fn show(plan: &ComparePlan, comparison: &Comparison, out: &Path) {
     let constrictions = plan.constrictions_in_words().into_iter().map(|said| plain(&said) + "\n");
     to_stdout(&constrictions.collect::<String>());
     to_stdout(&words(comparison));
+    to_stdout(&of_earlier_cover(plan.with_other_cover(out)));
     to_stdout(&format!("report: {}\n", shown(&out.join("compare.html"))));
+}
+
+/// That so many walks were kept with the cover of an earlier call, in a line; nothing where none was.
+pub(super) fn of_earlier_cover(walks: usize) -> String {
+    match walks {
+        0 => String::new(),
+        1 => "1 walk was kept from an earlier call; its own page has the cover of that call\n".into(),
+        _ => format!(
+            "{walks} walks were kept from an earlier call; their own pages have the cover of that call\n"
+        ),
+    }
 }
 
 fn words(comparison: &Comparison) -> String {

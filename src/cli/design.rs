@@ -90,6 +90,10 @@ fn words(design: &Design) -> String {
     for row in &design.boundaries {
         lines.extend(of_row(row, design));
     }
+    if let Some(of) = &design.specification {
+        lines.extend(of.band_in_words().map(|band| format!("band to specify: {band}")));
+        lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
+    }
     lines.push(match (design.confidence, design.reasons.first()) {
         (Confidence::Within, _) => "within the range in which the model was checked".into(),
         (confidence, Some(reason)) => format!("{}: {reason}", confidence.words()),
@@ -148,7 +152,10 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     }
     if let Some(band) = &row.band {
         let over_range = design.boundaries.iter().any(|end| end.end_of.as_ref() == Some(&row.density));
-        let what = if over_range { "band over the whole range of this curve" } else { "band" };
+        let what = match over_range {
+            true => "between drainage and retention, over the whole range of this curve",
+            false => "between drainage and retention",
+        };
         let practice = band.practice.filter(|_| band.set_by == Some(SetBy::Walk) && !band.is_empty);
         let practice =
             practice.map(|limit| format!("; practice allows up to {} {}", rounded_down(limit), band.unit));

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::args::JudgeArgs;
 use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
-use super::compare::campaign_options;
+use super::compare::{campaign_options, of_earlier_cover};
 use super::exit::accept_walked;
 use super::print::{json, plain, shown, to_stdout};
 use crate::outcome::numbers::SizeUnit;
@@ -47,6 +47,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         to_stdout(&json(format::BATCH, &batch)?);
     } else if !quiet {
         to_stdout(&words(&batch, &plan.constrictions_in_words(), out));
+        to_stdout(&of_earlier_cover(plan.with_other_cover(out)));
     }
     let names: Vec<String> = batch.rows.iter().map(name).collect();
     // Nobody knows the class of a pair that could not be walked; others were left out on purpose.

@@ -11,11 +11,14 @@ pub const GRAVEL_MM: f64 = 4.75;
 /// Coarser grains are cobbles, which the groups leave out (mm).
 const COBBLES_MM: f64 = 75.0;
 
+/// From this much gravel on a sand is one with gravel, and a gravel with as much sand one with sand (%).
+const WITH_OTHER: f64 = 15.0;
+
 /// A group. Where more than 12 % are fines their plasticity decides, and no shape is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Group {
     FineGrained,
-    ManyFines { is_gravel: bool },
+    ManyFines { is_gravel: bool, has_other: bool },
     FewFines { is_gravel: bool, is_well_graded: bool, has_fines: bool },
 }
 
@@ -27,7 +30,9 @@ impl Group {
         }
         let is_gravel = gravel > (100.0 - fines) / 2.0;
         if fines > 12.0 {
-            return Some(Self::ManyFines { is_gravel });
+            // A sand with gravel, or a gravel with sand.
+            let other = if is_gravel { 100.0 - fines - gravel } else { gravel };
+            return Some(Self::ManyFines { is_gravel, has_other: other >= WITH_OTHER });
         }
         let (cu, cc) = shape?;
         let least_cu = if is_gravel { 4.0 } else { 6.0 };
@@ -40,9 +45,14 @@ impl Group {
         let letter = |is_gravel| if is_gravel { 'G' } else { 'S' };
         match self {
             Self::FineGrained => "fine-grained".into(),
-            Self::ManyFines { is_gravel } => {
+            Self::ManyFines { is_gravel, has_other } => {
                 let kind = letter(is_gravel);
-                format!("{kind}M or {kind}C")
+                let other = match (has_other, is_gravel) {
+                    (false, _) => "",
+                    (true, true) => ", with sand",
+                    (true, false) => ", with gravel",
+                };
+                format!("{kind}M or {kind}C{other}")
             }
             Self::FewFines { is_gravel, is_well_graded, has_fines } => {
                 let kind = letter(is_gravel);
@@ -59,7 +69,7 @@ impl Group {
             Self::FineGrained => {
                 "fine-grained soil (half or more is finer than 0.075 mm): silt or clay".into()
             }
-            Self::ManyFines { is_gravel } => {
+            Self::ManyFines { is_gravel, .. } => {
                 format!("{} with more than 12 % fines: {}", noun(is_gravel), self.symbol())
             }
             Self::FewFines { is_gravel, is_well_graded, has_fines } => {
@@ -110,8 +120,16 @@ mod tests {
         assert_eq!(group(&dual).as_deref(), Some("SP-SM or SP-SC"));
         assert_eq!(group(&[(0.075, 22.0), (0.3, 85.0), (0.6, 100.0)]).as_deref(), Some("SM or SC"));
         // Half of what is coarser than No. 200 is gravel, and no more.
-        assert_eq!(group(&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)]).as_deref(), Some("SM or SC"));
-        assert_eq!(group(&[(0.075, 20.0), (4.75, 59.0), (19.0, 100.0)]).as_deref(), Some("GM or GC"));
+        assert_eq!(
+            group(&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)]).as_deref(),
+            Some("SM or SC, with gravel")
+        );
+        let gravel = group(&[(0.075, 20.0), (4.75, 59.0), (19.0, 100.0)]);
+        assert_eq!(gravel.as_deref(), Some("GM or GC, with sand"));
+        for (finer, name) in [(85.0, "SM or SC, with gravel"), (85.1, "SM or SC")] {
+            let sand = [(0.075, 20.0), (4.75, finer), (19.0, 100.0)];
+            assert_eq!(group(&sand).as_deref(), Some(name));
+        }
         assert_eq!(group(&[(0.01, 0.0), (0.075, 50.0), (0.3, 100.0)]).as_deref(), Some("fine-grained"));
         // Nobody sieved its fines; cobbles.
         assert_eq!(group(&[(0.3, 25.0), (1.0, 100.0)]), None);

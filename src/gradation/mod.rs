@@ -47,6 +47,7 @@ pub use group::{FINES_MM, GRAVEL_MM};
 pub use regrade::{FEW_FINES, RegradeCause, RegradeReason, Regraded};
 pub(crate) use sampler::SizeGuide;
 pub use sampler::{SizeRange, SizeSampler};
+pub(crate) use shape::GAP_PERCENT;
 pub use shape::Gap;
 pub use sieve::Gradation;
 pub(crate) use soil::file_and_soil;

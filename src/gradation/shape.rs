@@ -3,7 +3,7 @@
 use super::Gradation;
 
 /// Sizes are missing where less of the mass than this (%) lies between D and 4 D.
-const GAP_PERCENT: f64 = 5.0;
+pub(crate) const GAP_PERCENT: f64 = 5.0;
 
 /// A gap is looked for where this much of the mass is finer, and no more than the second (%).
 const GAP_RANGE: [f64; 2] = [10.0, 80.0];
@@ -32,6 +32,12 @@ impl Gradation {
     /// Manuals leave gaps to the eye; these numbers are ours. A straight line on semi-log paper has less than
     /// 5 % in a factor of 4 only where its Cu is above a million.
     pub fn gap(&self, least_mm: f64) -> Option<Gap> {
+        self.flattest(least_mm).filter(|gap| gap.within < GAP_PERCENT)
+    }
+
+    /// Where the curve is flattest from `least_mm` on: of D up to 4 D with the least of the mass between
+    /// them, where 10 to 80 % is finer than D. `None` where no D is.
+    pub(crate) fn flattest(&self, least_mm: f64) -> Option<Gap> {
         let at = |d: f64| {
             let percent = self.percent_finer_by_mass(d);
             Gap { from_mm: d, percent, within: self.percent_finer_by_mass(4.0 * d) - percent }
@@ -41,7 +47,7 @@ impl Gradation {
         candidates
             .filter(|d| range.contains(d))
             .map(at)
-            .filter(|gap| (GAP_RANGE[0]..=GAP_RANGE[1]).contains(&gap.percent) && gap.within < GAP_PERCENT)
+            .filter(|gap| (GAP_RANGE[0]..=GAP_RANGE[1]).contains(&gap.percent))
             .min_by(|a, b| a.within.total_cmp(&b.within).then(a.from_mm.total_cmp(&b.from_mm)))
     }
 
@@ -109,6 +115,11 @@ mod tests {
             assert_eq!(Gradation::linear_from_d0(0.1, cu).unwrap().gap(0.0), None, "{cu}");
         }
         assert_eq!(Gradation::single(1.0).unwrap().gap(0.0), None);
+        // 12 % of the mass over a factor of 8.33: the flattest factor of 4 begins at 0.6 mm.
+        let flat = points(&[(0.1, 0.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
+        let within = 12.0 * libm::log(4.0) / libm::log(5.0 / 0.6);
+        let found = flat.flattest(0.0).unwrap();
+        assert!(flat.gap(0.0).is_none() && (found.within - within).abs() < 1e-9, "{found:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::names::soil_name;
+use super::names::{is_named, soil_name};
 use super::numbers::{SizeUnit, in_digits, percent, trimmed};
 use super::shell::clean;
 use super::table::Table;
@@ -47,7 +47,7 @@ fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: SizeUnit) -> Marku
         .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
     html! {
         div {
-            h3 { (kind) ": " bdi { (clean(&soil_name(name))) } }
+            h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(&soil_name(name))) } } }
             (table)
             @if finest > 0.0 {
                 p.small {

@@ -12,7 +12,7 @@ use super::figures::{
     positive_range, shorten,
 };
 use super::files::json;
-use super::names::soil_name;
+use super::names::{is_named, note_words, soil_name, titled};
 use super::numbers::{SizeUnit, interval_in_percent, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
@@ -55,18 +55,28 @@ fn name(name: &str) -> String {
     clean(&shorten(name, 60))
 }
 
-/// What a filter is called here: the soil, or its whole path where that is the name of another, too.
+/// What a filter is called here: the soil, and its number where that is the name of another, too.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
-    let is_shared = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter)).count() > 1;
-    if is_shared { name(filter) } else { name(&soil_name(filter)) }
+    let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter));
+    let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+    let soil = soil_name(filter);
+    match alike.iter().position(|of| *of == filter) {
+        Some(at) if alike.len() > 1 => name(&format!("{soil} ({})", at + 1)),
+        _ => name(&soil),
+    }
 }
 
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
-        "Samples " b { bdi { (name(&soil_name(&batch.samples))) } } ", "
-        @if batch.filters.len() == 1 { "filter " } @else { "filters " }
-        @for (at, filter) in batch.filters.iter().enumerate() {
-            @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }
+        (titled("Samples", &batch.samples))
+        @match &batch.filters[..] {
+            [only] => @if is_named("filter", &only.name) { ", " (titled("filter", &only.name)) },
+            all => {
+                ", filters "
+                @for (at, filter) in all.iter().enumerate() {
+                    @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }
+                }
+            },
         }
     };
     let first = html! { div.first {
@@ -81,6 +91,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         code { "batch.csv" } " its table with further columns."
     } };
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
+        .model()
         .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
         .inches(batch.inches)
         .words(&first)
@@ -173,7 +184,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
 }
 
 fn notes(batch: &WalkedBatch) -> Markup {
-    html! { @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(note)) } } } } }
+    html! { @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } } }
 }
 
 /// The limit of every sample against its D85B, with the D15F of the filters; none without a limit.

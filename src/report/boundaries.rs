@@ -37,7 +37,7 @@ pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
 
 /// Draws the row of 15 % and the boundaries at it.
 pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
-    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %"));
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %").named_at_end());
     for (place, limit, _) in boundaries {
         let (_, name, colour, _) = LIMITS[*place];
         let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
@@ -61,8 +61,7 @@ pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
     };
     let all: Vec<String> = boundaries.iter().map(one).collect();
     format!(
-        " Short lines at the 15 % row: the D15F up to which practice sees {}, the erosion boundaries by \
-         Foster and Fell.",
+        " Short lines at the 15 % row: D15F of {} (boundaries of erosion: Foster and Fell).",
         all.join(", ")
     )
 }

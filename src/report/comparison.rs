@@ -10,7 +10,7 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
 use super::files::json;
 use super::first_page::colour;
-use super::names::soil_name;
+use super::names::{is_named, titled};
 use super::numbers::{SizeUnit, threshold};
 use super::run_figures::run_name;
 use super::section::Sections;
@@ -102,9 +102,9 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         "bases" => ("Which of these bases does this filter hold?", "filter"),
         _ => ("Which of these filters hold?", ""),
     };
-    let names = match common.is_empty() {
-        true => html! {},
-        false => html! { (capital(common)) " " b { bdi { (name(&soil_name(&comparison.common))) } } },
+    let names = match !common.is_empty() && is_named(common, &comparison.common) {
+        true => titled(&capital(common), &comparison.common),
+        false => html! {},
     };
     let first = html! { section.sheet {
             (answers(comparison))
@@ -137,6 +137,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         code { "compare.csv" } " and " code { "compare_pairs.csv" } " its tables."
     } };
     Sections::new(format!("Comparison of {}", clean(&comparison.of)), question, &names)
+        .model()
         .cover(
             &comparison.cover,
             &program(&comparison.version, comparison.commit.as_deref()),

@@ -8,7 +8,7 @@ use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
-use super::names::soil_name;
+use super::names::{file_name, is_named, note_words, option_words, titled};
 use super::numbers::{SizeUnit, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, fact, leaves_out};
@@ -33,11 +33,10 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         return Err(ReportError::Value { path, field, value, allowed });
     }
     let names = html! {
-        "Samples " b { bdi { (name(&soil_name(&all.samples))) } }
+        (titled("Samples", &all.samples))
         @if all.dispersive { ", dispersive" }
-        @if all.filter.is_empty() { ", by the rules of practice alone" } @else {
-            ", filter of the shape " b { bdi { (name(&soil_name(&all.filter))) } }
-        }
+        @if all.filter.is_empty() { ", by the rules of practice alone" }
+        @else if is_named("filter", &all.filter) { ", " (titled("filter of the shape", &all.filter)) }
     };
     let said = all.in_words();
     let has_walks = !all.model_leaves_out.is_empty();
@@ -65,21 +64,22 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
     } else {
         citation()
     };
-    Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
-        .cover(
-            &all.cover,
-            &program(&all.version, all.commit.as_deref()),
-            all.walks.as_ref().map(|of| of.seed),
-        )
-        .inches(all.inches)
-        .words(&first)
-        .contents()
-        .words(&html! { h2 { "Figures" } })
-        .figures(limits(&all))
-        .section("Samples", &table(folder, &all))
-        .section("Notes on the files", &notes(&all))
-        .section("How this was made", &made)
-        .write(folder, "designs.html", &footer)
+    let page = Sections::new("Filters for many samples", "How coarse may the filter be?", &names);
+    let page = if has_walks { page.model() } else { page };
+    page.cover(
+        &all.cover,
+        &program(&all.version, all.commit.as_deref()),
+        all.walks.as_ref().map(|of| of.seed),
+    )
+    .inches(all.inches)
+    .words(&first)
+    .contents()
+    .words(&html! { h2 { "Figures" } })
+    .figures(limits(&all))
+    .section("Samples", &table(folder, &all))
+    .section("Notes on the files", &notes(&all))
+    .section("How this was made", &made)
+    .write(folder, "designs.html", &footer)
 }
 
 fn name(name: &str) -> String {
@@ -88,9 +88,10 @@ fn name(name: &str) -> String {
 
 /// What was walked for every sample alike.
 fn walked(of: &DesignedWalks) -> Markup {
-    let asked: Vec<String> = of.settings.iter().map(|setting| format!("--set {setting}")).collect();
+    let asked = of.settings.iter().map(|setting| option_words(&format!("--set {setting}")));
+    let asked: Vec<String> = asked.collect();
     html! { table.facts { tbody {
-        (fact("Filter", &of.filter))
+        (fact("Filter", file_name(&of.filter)))
         (fact("Density", of.densities.join(", ")))
         (fact("Thickness", of.thicknesses.join(", ")))
         (fact("Networks, seed", format!("{}, {}", whole(of.networks), of.seed)))
@@ -99,7 +100,7 @@ fn walked(of: &DesignedWalks) -> Markup {
 }
 
 fn notes(all: &DesignedSamples) -> Markup {
-    html! { @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(note)) } } } } }
+    html! { @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(&note_words(note))) } } } } }
 }
 
 fn table(folder: &Path, all: &DesignedSamples) -> Markup {

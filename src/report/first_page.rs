@@ -4,17 +4,19 @@
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::cover::{LINE, cover, program};
-use super::figures::shorten;
+use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
-use super::names::soil_name;
-use super::numbers::{SizeUnit, whole};
+use super::names::{is_named, titled};
+use super::numbers::{SizeUnit, size, whole};
 use super::rules::value_and_limit;
-use super::shell::{clean, unbroken};
+use super::shell::{clean, model, unbroken};
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Confidence, Outcome, SheetCover, Verdict};
-use crate::outcome::rules::Authority;
+use crate::outcome::record::{
+    AppliedRule, Confidence, FindingRecord, NetworkKind, Outcome, SheetCover, Verdict,
+};
+use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
 use crate::outcome::soil_sizes::sizes_of;
+use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::{Standing, standing};
@@ -57,15 +59,22 @@ pub(super) fn authority(folder: &RunFolder) -> Authority {
 /// The two soils, and what belongs to a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
-    let soil = |name: &str| clean(&shorten(&soil_name(name), LINE));
+    let (base, filter) = (titled("Base", &inputs.base.name), titled("filter", &inputs.filter.name));
+    let is_said = base.0 != "Base" || is_named("filter", &inputs.filter.name);
     html! {
-        h1 { "Will this filter hold this soil?" }
-        p.names {
-            "Base " b { bdi { (soil(&inputs.base.name)) } } " against filter "
-            b { bdi { (soil(&inputs.filter.name)) } }
-        }
+        h1 { (QUESTION) }
+        @if is_said { p.names { (base) " against " (filter) } }
+        (model())
         (about(folder))
     }
+}
+
+/// What the page answers.
+pub(super) const QUESTION: &str = "Will this filter hold this soil?";
+
+/// What is printed at the foot of every page.
+pub(super) fn foot_of(folder: &RunFolder) -> Option<String> {
+    foot(&toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.cover)
 }
 
 fn about(folder: &RunFolder) -> Markup {
@@ -79,18 +88,44 @@ fn about(folder: &RunFolder) -> Markup {
 /// The answer: four lines, and the findings that matter most.
 pub(super) fn answer(outcome: &Outcome) -> Markup {
     let [(_, headline), lines @ ..] = outcome.first_lines();
-    let (foremost, more) = outcome.foremost();
+    let all = findings(outcome);
+    let (foremost, more) = all.split_at(all.len().min(FOREMOST));
     html! {
         @let fails = standing(&outcome.rules) == Standing::Fails;
         section.verdict.(colour(outcome.verdict, outcome.confidence, fails)) {
             p.word { (clean(&capital(&headline))) "." }
-            @for (name, said) in &lines { p.practice { b { (name) } ": " (unbroken(said)) "." } }
-            @if !foremost.is_empty() {
-                ul { @for finding in &foremost { li { (unbroken(&finding.sentence)) } } }
+            @for (name, said) in &lines {
+                p.practice { b { (name) } ": " (unbroken(said)) "." }
+                // Beside the mass that is counted.
+                @if let Some(not_counted) = outcome.sentence_of(NOT_COUNTED).filter(|_| *name == "Walk") {
+                    p.counted { (unbroken(&not_counted)) }
+                }
             }
-            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
+            @if !foremost.is_empty() {
+                ul { @for finding in foremost { li { (unbroken(&finding.sentence)) } } }
+            }
+            @if !more.is_empty() {
+                p.small { "and " (more.len()) " more below, under “Other findings”" }
+            }
         }
     }
+}
+
+/// A part of the filter that the mass eroded does not know of.
+pub(super) const NOT_COUNTED: &str = "pan_of_filter";
+
+/// What is said of the thickness, which stands below the rules.
+const OF_THICKNESS: [&str; 4] =
+    ["modelled_thickness", "stays_with_thickness", "moves_with_thickness", "open_with_thickness"];
+
+/// All findings in the order of a reader, but those that stand elsewhere on the first sheet.
+pub(super) fn findings(outcome: &Outcome) -> Vec<FindingRecord> {
+    let is_elsewhere = |finding: &FindingRecord| {
+        let of_thickness = OF_THICKNESS.contains(&finding.id.as_str());
+        finding.id == NOT_COUNTED || (of_thickness && outcome.inputs.network.thickness_mm.is_some())
+    };
+    let all = outcome.ordered().into_iter();
+    all.filter(|finding| !is_elsewhere(finding)).collect()
 }
 
 /// The colour of the answer: never green where the model was not checked or practice does not agree, and
@@ -131,15 +166,26 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     }
 }
 
-/// The rules of practice, one a line, and the thickness that was modelled.
+/// The rules of practice, those that decide first, and the thickness that was modelled.
 pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Markup {
     let stated = stated_by(&outcome.rules, by);
-    let practice: Vec<&AppliedRule> = stated.iter().collect();
+    let mut practice: Vec<&AppliedRule> = stated.iter().collect();
+    practice.sort_by_key(|rule| place(rule));
+    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+        practice.into_iter().partition(|rule| place(rule) < WITHOUT_RESULT);
     let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm));
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
-            @if practice.is_empty() { p { "No rule was applied." } } @else { (table(&practice, unit)) }
+            @if stated.is_empty() { p { "No rule was applied." } }
+            @if !shown.is_empty() { (table(&shown, unit)) }
+            @for said in ["no limit", "no result", "does not apply"] {
+                @let of_kind: Vec<&str> =
+                    others.iter().filter(|rule| without_result(rule) == said).map(|rule| &*rule.name).collect();
+                @if !of_kind.is_empty() {
+                    p.others { b { (capital(said)) } ": " (clean(&of_kind.join("; "))) "." }
+                }
+            }
             @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
             (thickness(outcome, unit))
             p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
@@ -148,14 +194,43 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
     }
 }
 
+/// The rules that decide whether a filter retains and drains a base, in the order of a reader.
+const DECIDING: [&str; 3] = [DESIGN, TESTS_NO_EROSION, PERMEABILITY];
+
+/// The place of rules without a result, which stand below the table.
+const WITHOUT_RESULT: usize = DECIDING.len() + 2;
+
+/// Where a rule stands: those that decide first, then those that are not met, and then the others.
+fn place(rule: &AppliedRule) -> usize {
+    let deciding = DECIDING.iter().position(|id| *id == rule.id);
+    match (deciding, result(rule)) {
+        (Some(place), _) => place,
+        (None, Some(false)) => DECIDING.len(),
+        (None, Some(true)) => DECIDING.len() + 1,
+        (None, None) => WITHOUT_RESULT,
+    }
+}
+
 /// What a rule found, where it was made for these soils.
 fn result(rule: &AppliedRule) -> Option<bool> {
     rule.met.filter(|_| rule.applies)
 }
 
+/// Why a rule found nothing.
+fn without_result(rule: &AppliedRule) -> &'static str {
+    match (rule.applies, rule.needs.is_empty()) {
+        (false, true) => "does not apply",
+        (true, true) if rule.value.is_some() && rule.limit.is_none() => "no limit",
+        _ => "no result",
+    }
+}
+
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
-        .name("Rule", |rule| clean(&rule.name))
+        .name("Rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
+            true => html! { b { (clean(&rule.name)) } },
+            false => html! { (clean(&rule.name)) },
+        })
         .text("here", |rule| match &value_and_limit(rule, unit)[0] {
             Some(value) => html! { (clean(rule.quantity.name())) " " span.q { "= " (clean(value)) } },
             None => html! { "–" },
@@ -173,14 +248,10 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 None => html! { "–" },
             }
         })
-        .text("", |rule| match (result(rule), rule.applies || !rule.needs.is_empty()) {
-            (Some(true), _) => html! { span.keeps { "✓ met" } },
-            (Some(false), _) => html! { span.breaks { "✗ not met" } },
-            (None, true) if rule.value.is_some() && rule.limit.is_none() && rule.needs.is_empty() => {
-                html! { "no limit" }
-            }
-            (None, true) => html! { "no result" },
-            (None, false) => html! { "does not apply" },
+        .text("result", |rule| match result(rule) {
+            Some(true) => html! { span.keeps { "✓ met" } },
+            Some(false) => html! { span.breaks { "✗ not met" } },
+            None => html! { (without_result(rule)) },
         });
     html! { (table) }
 }
@@ -192,7 +263,12 @@ fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
         @if let Some(thickness) = network.thickness_mm {
             p.thickness {
                 "Thickness modelled: " b { (unit.size(thickness)) } " along the flow, "
-                (whole(network.layers)) " layers of voids. "
+                (whole(network.layers)) " layers of voids"
+                @if network.kind != NetworkKind::Graph {
+                    ", each D50F by number, "
+                    (size(outcome.inputs.filter.d50_by_number_mm, outcome.inputs.scale_free))
+                }
+                ". "
                 @if let Some(grain) = larger_grain(outcome, thickness) {
                     "That is less than the largest grain of the filter, " (unit.size(grain)) ". "
                 }

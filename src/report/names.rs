@@ -1,6 +1,13 @@
-//! What a soil is called on a page: its own name and not that of a file, where there is one.
+//! What a soil is called on a page: its own name and not that of a file, where there is one, and no name that
+//! says no more than what it is. No page tells in which folders of a machine a file lies.
 
 use std::borrow::Cow;
+
+use maud::{Markup, html};
+
+use super::cover::LINE;
+use super::figures::shorten;
+use super::shell::clean;
 
 /// Endings of the tables that soils are read from.
 const TABLES: [&str; 7] = ["csv", "txt", "tsv", "xlsx", "ods", "ags", "dat"];
@@ -17,13 +24,67 @@ pub(super) fn soil_name(name: &str) -> Cow<'_, str> {
     }
 }
 
+/// Whether a soil has a name that says more than what it is: a column of a table may be called `Base`.
+pub(super) fn is_named(kind: &str, name: &str) -> bool {
+    let soil = soil_name(name);
+    let own = soil.split_once(REGRADED).map_or(&*soil, |(own, _)| own).trim();
+    !own.is_empty() && !own.eq_ignore_ascii_case(kind)
+}
+
+/// What a soil is, and its name where it has one: `Base Till 3, regraded on 4.75 mm`.
+pub(super) fn titled(kind: &str, name: &str) -> Markup {
+    let soil = soil_name(name);
+    let regraded = soil.split_once(REGRADED).map(|(_, size)| size);
+    html! {
+        (kind)
+        @if is_named(kind, name) { " " b { bdi { (clean(&shorten(&soil, LINE))) } } } @else {
+            @if let Some(size) = regraded { " (regraded on " (clean(size)) ")" }
+        }
+    }
+}
+
+/// The name of a file without its folders, and of what is called after a file; anything else stays.
+pub(super) fn file_name(name: &str) -> Cow<'_, str> {
+    let (file, rest) = match name.find('#').or_else(|| name.find(", ")) {
+        Some(at) => name.split_at(at),
+        None => (name, ""),
+    };
+    match ends_as_table(file) {
+        Some(_) => Cow::Owned(format!("{}{rest}", last_part(file))),
+        None => Cow::Borrowed(name),
+    }
+}
+
+/// An option as a command line has it, of which the name of a file stands without its folders.
+pub(super) fn option_words(option: &str) -> String {
+    let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
+    let (said, value) = option.split_at(at.unwrap_or(0));
+    format!("{said}{}", file_name(value))
+}
+
+/// A note that begins with the name of its file.
+pub(super) fn note_words(note: &str) -> String {
+    match note.split_once(": ") {
+        Some((file, said)) => format!("{}: {said}", file_name(file)),
+        None => note.to_owned(),
+    }
+}
+
+/// The end of a path, from its last separator on.
+pub(super) fn last_part(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or_default()
+}
+
+/// What stands before the ending of a table; `None` where a name has none.
+fn ends_as_table(file: &str) -> Option<&str> {
+    let (stem, ending) = file.rsplit_once('.')?;
+    TABLES.iter().any(|table| ending.eq_ignore_ascii_case(table)).then_some(stem)
+}
+
 fn own_name(name: &str) -> &str {
     let (file, soil) = name.split_once('#').unwrap_or((name, ""));
-    let Some((stem, ending)) = file.rsplit_once('.') else { return name };
-    if !TABLES.iter().any(|table| ending.eq_ignore_ascii_case(table)) {
-        return name;
-    }
-    match (soil.trim(), stem.rsplit(['/', '\\']).next().unwrap_or_default()) {
+    let Some(stem) = ends_as_table(file) else { return name };
+    match (soil.trim(), last_part(stem)) {
         ("", "") => name,
         ("", stem) => stem,
         (soil, _) => soil,
@@ -32,7 +93,36 @@ fn own_name(name: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::soil_name;
+    use super::*;
+
+    #[test]
+    fn a_name_that_says_no_more_than_its_kind_is_left_out() {
+        let said = |kind, name| titled(kind, name).into_string();
+        assert_eq!(said("Base", "/lab/base.csv"), "Base");
+        assert_eq!(said("Base", "soils.xlsx#BASE, regraded on 4.75 mm"), "Base (regraded on 4.75 mm)");
+        assert_eq!(said("filter", "C33 <sand>.csv"), "filter <b><bdi>C33 &lt;sand&gt;</bdi></b>");
+        let till = "Base <b><bdi>Till 3, regraded on 4.75 mm</bdi></b>";
+        assert_eq!(said("Base", "lab/soils.xlsx#Till 3, regraded on 4.75 mm"), till);
+        assert!(
+            is_named("Base", "filter.csv") && !is_named("filter", "a/Filter.CSV") && !is_named("base", "")
+        );
+    }
+
+    #[test]
+    fn no_folder_stands_beside_the_name_of_a_file() {
+        for (name, file) in [
+            ("/tmp/a b/base.csv", "base.csv"),
+            ("C:\\soils\\ring.xlsx#Base/Sample 1", "ring.xlsx#Base/Sample 1"),
+            ("/tmp/base.csv, regraded on 4.75 mm", "base.csv, regraded on 4.75 mm"),
+            ("linear, Cu 3/4", "linear, Cu 3/4"),
+        ] {
+            assert_eq!(file_name(name), file);
+        }
+        assert_eq!(option_words("--filter /a b/c.csv"), "--filter c.csv");
+        assert_eq!(option_words("--set base.sieve=/a/b.csv"), "--set base.sieve=b.csv");
+        assert_eq!([option_words("/a/b.csv"), option_words("--pack")], ["b.csv", "--pack"]);
+        assert_eq!(note_words("/a/b.csv: 3/4 in: taken as 19 mm"), "b.csv: 3/4 in: taken as 19 mm");
+    }
 
     #[test]
     fn a_soil_is_called_by_its_own_name() {

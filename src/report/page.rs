@@ -11,12 +11,12 @@ use super::files::json_of;
 use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
-use super::names::soil_name;
-use super::numbers::{duration, known, percent, significant, size, whole};
+use super::names::{file_name, is_named, last_part, soil_name};
+use super::numbers::{known, percent, significant, size, whole};
 use super::results::{eroded, replicates, results, sensitivity, thickness};
 use super::rules::rules;
 use super::run_figures::{self, run_name};
-use super::shell::{self, Drawn, clean, drawing, fact, whole_page};
+use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot};
 use super::table::Table;
 use super::varied;
 use super::verdict_box::{self, Said};
@@ -110,7 +110,10 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
     let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
-    let title = format!("{} on {}", soil(&base.name), soil(&filter.name));
+    let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
+        true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
+        false => first_page::QUESTION.to_owned(),
+    };
     let main = html! {
         section.sheet {
             (answer(outcome))
@@ -137,7 +140,8 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         (appendix::gradations(outcome, unit))
         (provenance(folder))
     };
-    whole_page(&title, &first_page::header(folder), &main, &citation(outcome))
+    let foot = first_page::foot_of(folder);
+    page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
 }
 
 /// What the walk found: its class, the mass eroded, and what leaves it open.
@@ -145,7 +149,7 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
     let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     html! {
-        h2 { "The walk" }
+        h2 { "What the model found" }
         p.lead { b { (capital(outcome.verdict.words())) } ". " (in_words(outcome, walks)) }
         @if outcome.confidence != Confidence::Within {
             p { "Confidence: " b { (outcome.confidence.words()) } "." }
@@ -230,7 +234,7 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
 /// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
 /// print.
 fn findings(outcome: &Outcome) -> Markup {
-    let all = outcome.ordered();
+    let all = first_page::findings(outcome);
     let rest = &all[all.len().min(FOREMOST)..];
     html! {
         @if !rest.is_empty() {
@@ -318,22 +322,14 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         (NetworkKind::Graph, ..) => "the voids of a packing".to_owned(),
     };
     html! {
-        h2 { "Filter thickness and inputs" }
-        @match network.thickness_mm {
-            Some(thickness) if network.kind == NetworkKind::Graph => p {
-                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
-                (whole(network.layers)) " layers of voids."
-            },
-            Some(thickness) => p {
-                "Modelled filter thickness: " b { (mm(thickness)) } " along the flow, "
-                (whole(network.layers)) " layers, each D50F by number, " (mm(filter.d50_by_number_mm)) "."
-            },
-            None => p { "Modelled filter thickness: none in particular, the layers of this network have \
-                         none." },
+        h2 { "Inputs" }
+        // A thickness stands on the first sheet.
+        @if network.thickness_mm.is_none() {
+            p { "Modelled filter thickness: none in particular, the layers of this network have none." }
         }
         h3 { "Filter" }
         table.facts { tbody {
-            (fact("Name", &filter.name))
+            (fact("Name", file_name(&filter.name)))
             (fact("Cu = D60/D10", known(filter.cu, significant)))
             (fact("D0, D15, D50, D85 (by mass)",
                 [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
@@ -354,7 +350,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         } }
         h3 { "Base" }
         table.facts { tbody {
-            (fact("Name", &base.name))
+            (fact("Name", file_name(&base.name)))
             (fact("Cu = D60/D10", known(base.cu, significant)))
             (fact("D0, D15, D50 (by mass)",
                 [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
@@ -384,7 +380,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
         h3 { "Network" }
         table.facts { tbody {
             (fact("Kind", &kind))
-            @if !network.name.is_empty() { (fact("Name", &network.name)) }
+            @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
             (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
             (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
         } }
@@ -402,24 +398,19 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("voidwalk",
                 format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
-            (fact("Command", &manifest.command))
-            (fact("Started, finished", format!("{}, {}", manifest.started, manifest.finished)))
-            (fact("Wall time, beside what else ran", duration(outcome.seconds)))
-            (fact("Machine",
-                format!("{}, {}, {} threads", manifest.host, manifest.machine, manifest.threads)))
             @for input in &manifest.inputs {
-                (fact("Input file", format!("{} (XXH3 {})", input.name, input.xxh3)))
+                (fact("Input file", format!("{} (XXH3 {})", last_part(&input.name), input.xxh3)))
             }
             @if !outcome.left_out.is_empty() {
-                (fact("Not needed for this scene", outcome.left_out.join("; ")))
+                (fact("Not needed here", outcome.left_out.join("; ")))
             }
         } }
         details open {
-            summary { "scene.toml" }
+            summary { "Settings (scene.toml)" }
             pre { (scene) }
             @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-            p.small { "Running this scene again gives the same results, bit for bit, on any number of \
-                       threads." }
+            p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
+                       in manifest.json." }
         }
     }
 }

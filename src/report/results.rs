@@ -2,9 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::numbers::{
-    duration, known, percent, percent_interval, significant, size, size_unit, trimmed, whole,
-};
+use super::numbers::{known, percent, percent_interval, significant, size, size_unit, trimmed, whole};
 use super::run_figures::run_name;
 use super::table::Table;
 use super::varied::{HELD, STOPPED_WHEN_CLEAR, classes_of_points};
@@ -117,8 +115,7 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
         .number("Trapped", |(.., run)| count(run.trapped))
         .number("Per void", |(.., run)| significant(run.retained_per_void))
         .number("Increments", |(.., run)| whole(run.increments))
-        .number("Moves", |(.., run)| whole(run.particle_moves))
-        .number("Time", |(.., run)| duration(run.seconds));
+        .number("Moves", |(.., run)| whole(run.particle_moves));
     html! {
         details {
             summary {
@@ -129,8 +126,8 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
             p.small {
                 "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
                  retained "
-                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments, \
-                 moves and times are not printed; outcome.json holds them."
+                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments and \
+                 moves are not printed; outcome.json holds them."
             }
         }
     }

@@ -9,7 +9,7 @@ use super::figures::{
 };
 use super::first_page::{coarse_left, units};
 use super::folder::RunFolder;
-use super::names::soil_name;
+use super::names::{is_named, soil_name};
 use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
@@ -110,12 +110,14 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         d85b,
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
-        .sizes((720.0, 460.0), (358.0, 400.0));
+        .sizes((720.0, 460.0), (358.0, 400.0))
+        .sheet((510.0, 270.0));
     if !inputs.scale_free {
         figure = figure.sieves();
     }
-    let name = |kind: &str, name: &str| {
-        if name.is_empty() { kind.to_owned() } else { format!("{kind}:\n{}", shorten(&soil_name(name), 24)) }
+    let name = |kind: &str, name: &str| match is_named(kind, name) {
+        true => format!("{kind}:\n{}", shorten(&soil_name(name), 24)),
+        false => kind.to_owned(),
     };
     boundaries::draw(&mut figure, &limits);
     // Of two curves of the base each says which it is; of one, it is as sampled.
@@ -138,10 +140,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations of filter and base (percent finer by mass) and the filter’s constrictions (percent \
-         smaller by number, curve “{}”). Base particles pass a constriction that is no smaller than they \
-         are. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
-        shorten(&filter.curve_name, 80),
+        "Gradations by mass, and the filter’s constrictions by number. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
         significant(folder.outcome.ratios.d15f_over_d85b),
         inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
         significant(folder.outcome.ratios.d15f_over_d95b),

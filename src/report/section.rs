@@ -5,9 +5,9 @@ use std::path::Path;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::cover::cover;
+use super::cover::{cover, foot};
 use super::error::ReportError;
-use super::shell::{Drawn, contents, figure, whole_page};
+use super::shell::{Drawn, contents, figure, model, page_with_foot};
 use super::written::{Written, write_page_as};
 use crate::outcome::page_with_inches;
 use crate::outcome::record::SheetCover;
@@ -15,6 +15,7 @@ use crate::outcome::record::SheetCover;
 /// A page that is put together from above.
 pub(super) struct Sections {
     title: String,
+    foot: Option<String>,
     header: Markup,
     main: String,
     drawn: Vec<Drawn>,
@@ -25,12 +26,26 @@ impl Sections {
     /// A page with its title for a browser, its first heading, and below that what it is about.
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
-        Self { title: title.into(), header, main: String::new(), drawn: Vec::new(), inches: false }
+        Self {
+            title: title.into(),
+            foot: None,
+            header,
+            main: String::new(),
+            drawn: Vec::new(),
+            inches: false,
+        }
+    }
+
+    /// With a line on what the model is, before anything is said by it.
+    pub(super) fn model(mut self) -> Self {
+        self.header = html! { (self.header) (model()) };
+        self
     }
 
     /// With the cover of a sheet below its first heading.
     pub(super) fn cover(mut self, of: &SheetCover, program: &str, seed: Option<u64>) -> Self {
         self.header = html! { (self.header) (cover(of, program, seed)) };
+        self.foot = foot(of);
         self
     }
 
@@ -70,7 +85,7 @@ impl Sections {
     /// The page as text, with this at its end.
     pub(super) fn text(&self, footer: &Markup) -> String {
         let main = if self.inches { page_with_inches(&self.main) } else { self.main.clone() };
-        whole_page(&self.title, &self.header, &PreEscaped(main), footer)
+        page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &PreEscaped(main), footer])
     }
 
     /// Writes the figures and then the page, with this at its end, under its name in the folder.

@@ -30,7 +30,7 @@ use crate::outcome::record::ModelLimit;
 const STYLE: &str = include_str!("page.css");
 /// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
 /// new one.
-const STYLE_HASH: &str = "/LoJtF+6KEl9ZhTLadGRq/NdULGjngKOorVHZPnj0J0=";
+const STYLE_HASH: &str = "8L2C7mK3CUW32tVAP1g9VZfc25uln5f9Ga57y5OVGtA=";
 
 /// A figure of a page with its caption.
 pub struct Drawn {
@@ -57,11 +57,20 @@ pub fn content_policy() -> String {
 
 /// A page as text: `title` for the browser, and what stands in each part of its body.
 pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
+    page_with_foot(None, title, [header, main, footer])
+}
+
+/// The same with what is printed at the foot of every sheet of paper, beside its number.
+pub(super) fn page_with_foot(
+    foot: Option<&str>,
+    title: &str,
+    [header, main, footer]: [&Markup; 3],
+) -> String {
     let policy = content_policy();
     let main = with_contents(&main.0);
     html! {
         (DOCTYPE)
-        html lang="en" {
+        html lang="en" data-foot=[foot] {
             head {
                 meta charset="utf-8";
                 meta http-equiv="Content-Security-Policy" content=(policy);
@@ -126,11 +135,16 @@ pub(super) fn unbroken(text: &str) -> String {
     said
 }
 
-/// A figure as an element of the page, in both its sizes: the style shows the one that there is room for.
+/// A figure as an element of the page, in all its sizes: the style shows the one that there is room for.
 pub fn drawing(drawn: &Drawn) -> Markup {
     let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
     let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
-    html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }
+    let sheet =
+        drawn.figure.has_sheet().then(|| drawn.figure.inline(&format!("{}-sheet", drawn.name), Size::Sheet));
+    html! {
+        div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) }
+        @if let Some(sheet) = sheet { div.paper { (PreEscaped(sheet)) } }
+    }
 }
 
 /// Figures with their captions, numbered from 1.
@@ -158,6 +172,16 @@ fn looks(number: usize, curves: &[String]) -> Markup {
                 label { input.(format!("show-{}", index + 1)) type="checkbox" checked; " " (clean(name)) }
             }
             label { input.larger type="checkbox"; " larger" }
+        }
+    }
+}
+
+/// What the model is, before a page speaks of it.
+pub(super) fn model() -> Markup {
+    html! {
+        p.model {
+            b { "Model" } " (“the walk”): base particles are moved through a network of voids packed to the \
+            filter’s gradation (a simulation, not a test)."
         }
     }
 }
@@ -214,6 +238,18 @@ mod tests {
         let (_, style) = page.split_once("<style>").unwrap();
         let (style, _) = style.split_once("</style>").unwrap();
         assert!(style == STYLE && page.contains(&format!("style-src 'sha256-{STYLE_HASH}'")));
+    }
+
+    #[test]
+    fn every_printed_page_has_a_foot() {
+        let of = |foot| page_with_foot(foot, "A page", [&html! {}; 3]);
+        let page = of(Some("D-114 \"<b>"));
+        assert!(page.contains("<html lang=\"en\" data-foot=\"D-114 &quot;&lt;b&gt;\">"), "{page}");
+        assert!(of(None).contains("<html lang=\"en\"><head>"));
+        for part in ["--foot:attr(data-foot)", "content:var(--foot)", "counter(page) \" of \" counter(pages)"]
+        {
+            assert!(STYLE.contains(part), "{part}");
+        }
     }
 
     #[test]

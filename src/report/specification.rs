@@ -9,6 +9,7 @@ use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
+use super::names::titled;
 use super::numbers::{SizeUnit, known, significant, trimmed};
 use super::section::Sections;
 use super::shell::{Drawn, clean};
@@ -29,8 +30,7 @@ const DRAWN_CURVES: usize = 12;
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let of: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        "Base " b { bdi { (clean(&of.base)) } } @if of.dispersive { ", dispersive" }
-        ", by the rules of practice alone"
+        (titled("Base", &of.base)) @if of.dispersive { ", dispersive" } ", by the rules of practice alone"
     };
     let footer = html! {
         p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
@@ -77,28 +77,32 @@ impl Stated {
 }
 
 fn answer(of: &Specification) -> Markup {
-    let d15 = of.band.iter().flat_map(|band| &band.sizes).find(|size| size.percent == 15.0);
-    let raised = d15.zip(of.d15f_min_mm).filter(|(size, least)| size.min_mm > *least);
-    let least = |mm: f64| SizeUnit::of(false, of.inches).limit(mm, "mm", true);
-    let unit = SizeUnit::Mm;
     html! {
         section.verdict {
-            @if let Some(size) = d15 {
-                p.word.long {
-                    "D15F from " (unit.least(size.min_mm)) " to " (unit.greatest(size.max_mm))
-                    " mm, by practice."
-                }
-            }
-            @if let Some((_, drains)) = raised {
-                p {
-                    "A D15F of " (least(drains)) " already drains the base. The least is raised to \
-                     keep the band narrow."
-                }
-            }
+            @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
+            (to_specify(of))
             @if let Some(said) = of.if_dispersive_in_words() { p { (clean(&said)) "." } }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
             p { (clean(&products_in_short(of))) }
         }
+    }
+}
+
+/// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
+pub(super) fn to_specify(of: &Specification) -> Markup {
+    let Some(band) = &of.band else { return html! {} };
+    let unit = SizeUnit::of(false, of.inches);
+    let sides = [("Fine side", true), ("Coarse side", false)];
+    let table = Table::of(&sides).class("band").name(unit.name(), |side| side.0);
+    let table = band.sizes.iter().fold(table, |table, size| {
+        table.number(format!("D{}F", size.percent), move |side: &(_, bool)| match side.1 {
+            true => unit.least(size.min_mm),
+            false => unit.greatest(size.max_mm),
+        })
+    });
+    html! {
+        @if let Some(raised) = of.raised_in_words() { p { (clean(&raised)) "." } }
+        (table)
     }
 }
 
@@ -137,7 +141,7 @@ fn steps(of: &Specification) -> Markup {
              NRCS (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names \
              the text in which its numbers were read, or says that they are this program’s own."
         }
-        (Table::of(&of.steps).class("study")
+        (Table::of(&of.steps).class("study steps")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
                 (step.step) ". " (clean(&step.does))
                 @for text in [&step.formula, &step.note] {
@@ -155,10 +159,9 @@ fn steps(of: &Specification) -> Markup {
 }
 
 fn limits(of: &Specification) -> Markup {
-    let Some(band) = &of.band else {
+    if of.band.is_none() {
         return html! { @if let Some(why) = &of.no_band { p { (clean(why)) } } };
-    };
-    let unit = SizeUnit::of(false, of.inches);
+    }
     html! {
         (Table::of(&of.limits)
             .name("Sieve", |limit| clean(&limit.sieve))
@@ -171,11 +174,6 @@ fn limits(of: &Specification) -> Markup {
             "Percent finer by mass, rounded into the band. At most 5 % may be finer than \
              0.075 mm, and these fines must not be plastic. Segregation is not checked: see its step."
         }
-        (Table::of(&band.sizes)
-            .name("Size of the band", |size| format!("D{}", size.percent))
-            .number("Least (mm)", |size| unit.least(size.min_mm))
-            .number("Greatest (mm)", |size| unit.greatest(size.max_mm))
-            .render())
     }
 }
 
@@ -236,14 +234,15 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
 fn figure(of: &Specification, band: &SizeBand) -> Drawn {
     let points = |rows: &[[f64; 2]]| rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>();
     let drawn = &of.curves[..of.curves.len().min(DRAWN_CURVES)];
+    let fine_side = band.drawn_fine_side();
     let bases = drawn.iter().flat_map(|curve| &curve.gradation);
-    let sizes = bases.chain(&band.fine_side).chain(&band.coarse_side).map(|row| row[0]);
+    let sizes = bases.chain(&fine_side).chain(&band.coarse_side).map(|row| row[0]);
     let (low, high) = positive_range(sizes);
     let what = "Percent finer against size for the base and for both sides of the band of the filter";
     let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
     let mut figure =
         Figure::new("Band of the filter", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
-    let (fine, coarse) = (points(&band.fine_side), points(&band.coarse_side));
+    let (fine, coarse) = (points(&fine_side), points(&band.coarse_side));
     let outline = fine.iter().chain(coarse.iter().rev()).copied().collect();
     figure.add(Area::new(outline, GREEN, 0.15).label("band"));
     figure.add(Line::new(fine, GREEN).width(2.6).label("fine side"));
@@ -266,9 +265,11 @@ fn figure(of: &Specification, band: &SizeBand) -> Drawn {
     } else {
         String::new()
     };
+    let d15 = of.band_in_words().map_or(String::new(), |said| format!(": {said}"));
     let caption = format!(
-        "The band of the filter for this base. Its control points are joined by straight lines; above 60 % \
-         finer both sides go on straight.{more}"
+        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points are \
+         joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine side \
+         runs level: no more than 5 % may be finer.{more}"
     );
     Drawn::new("specification", figure, caption)
 }

@@ -10,8 +10,8 @@ use crate::outcome::record::{Classed, OfThickness, Outcome};
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates if its erosion \
-    clearly continues, as it does for this scene. Its interval then takes twice the scatter of this scene’s \
-    replicates, or its own if that is wider, because so few replicates do not show theirs.";
+    clearly continues, as it does at ×1. Its interval then takes twice the scatter of the replicates of ×1, \
+    or its own if that is wider, because so few replicates do not show theirs.";
 
 /// What is said where not every thickness has its base.
 pub(super) const HELD: &str = "The number of base particles is fixed or capped (marked * in the table), so a \
@@ -44,7 +44,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
         "How the verdict moves with the number of base particles",
         "Percent of the base mass eroded in each run against multiples of the number of base particles; the \
          colour behind is the verdict",
-        "Times the base particles of this scene; below, grains per void",
+        "Times the base particles of this run; below, grains per void",
     ];
     let cases: Vec<Varied> = cases.collect();
     let behind = behind(&folder.outcome, &cases);
@@ -52,7 +52,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     let caption = format!(
         "How the verdict moves with the number of base particles. It is proportional to the grains per void \
          and to the mass ratio, so this axis covers both: ×2 is twice the grains \
-         per void or twice the mass ratio. ×1 is this scene: {} grains per void, mass ratio {}. Bars: 95 % \
+         per void or twice the mass ratio. ×1 is this run: {} grains per void, mass ratio {}. Bars: 95 % \
          intervals. {behind}",
         known(folder.outcome.grains_per_void, significant),
         known(folder.outcome.inputs.mass_ratio, percent),
@@ -70,7 +70,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
         "How the verdict moves with the thickness of the filter",
         "Percent of the base mass eroded in each run against multiples of the filter's thickness; the \
          colour behind is the verdict",
-        "Times the thickness of this scene; below, the thickness modelled",
+        "Times the thickness of this filter; below, the thickness modelled",
     ];
     let rows: Vec<Varied> = rows.collect();
     let behind = behind(&folder.outcome, &rows);
@@ -82,7 +82,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     };
     let caption = format!(
         "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
-         pass. ×1 is this scene, {} layers of voids. {offered} Bars: 95 % intervals. {behind}",
+         pass. ×1 is this filter, {} layers of voids. {offered} Bars: 95 % intervals. {behind}",
         whole(folder.outcome.inputs.network.layers),
     );
     Some(Drawn::new("thickness", figure, caption))

@@ -7,18 +7,30 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::kept;
-use crate::campaign::cases::PreparedCase;
+use crate::campaign::cases::{CASES, PreparedCase};
+use crate::campaign::plan::PlannedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, CampaignPlan};
 use crate::campaign::{FinishedCampaign, ReadyCases, Walk};
 use crate::outcome::record::{Outcome, SheetCover};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
+use crate::scene::Scene;
 use crate::store::Folder;
 
 /// What a sheet says of itself, as a part of what its study follows from; nothing where nothing is said.
 pub(super) fn of_sheet(cover: &SheetCover, inches: bool) -> String {
     if cover.is_unset() && !inches { String::new() } else { format!(" {cover:?} {inches}") }
+}
+
+/// How many cases of a campaign in this folder were walked by an earlier call with another cover, which their
+/// own pages keep.
+pub(super) fn with_other_cover(campaign: &CampaignPlan, walks: &Path) -> usize {
+    let is_other = |planned: &&PlannedCase| {
+        let scene = walks.join(CASES).join(planned.folder_name()).join("scene.toml");
+        Scene::read(&scene, &[]).is_ok_and(|there| there.about.cover() != planned.scene.about.cover())
+    };
+    campaign.cases.iter().filter(is_other).count()
 }
 
 /// A study of cases.

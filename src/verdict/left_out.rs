@@ -26,9 +26,7 @@ impl ModelLimit {
             Self::PartialClogging => {
                 ("partial clogging", "a constriction is open at its full size or blocked")
             }
-            Self::Supply => {
-                ("a limit to what enters", "all base particles of the scene are offered to the filter")
-            }
+            Self::Supply => ("a limit to what enters", "all base particles are offered to the filter"),
             Self::Excessive => (
                 "the excessive-erosion class of Foster and Fell",
                 "the verdict knows no, some and continuing erosion",

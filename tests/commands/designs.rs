@@ -265,7 +265,10 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     for (mm, inches) in mm.split(" to ").zip(inches.split(" to ")) {
         assert!(page.contains(&format!("{mm} ({inches}\u{202f}in)")), "{answer}");
     }
-    assert!(page.contains("in), by practice.") && !page.contains("<title>Specification of a filter ("));
+    assert!(
+        page.contains("in), Cu from 2 to 6, by practice.")
+            && !page.contains("<title>Specification of a filter (")
+    );
     let csv = fs::read_to_string(at.join("s/specification.csv")).unwrap();
     assert!(csv.contains("No. 200") && !csv.contains("in)"), "{csv}");
     let walk = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--units", "us", "--out", "w"];

@@ -92,6 +92,7 @@ fn every_page_has_the_cover_that_was_stated() {
         let program = program.split('<').next().unwrap().to_owned();
         assert_eq!(program, *programs.get_or_insert(program.clone()), "{command}");
         assert_eq!(page.contains("<dt>Seed</dt>"), !command.contains("--steps"), "{command}");
+        can_be_signed(page, !command.contains("--steps"), root.path());
         // The page that is made again from the folder alone is the same.
         done(&call(root.path(), &["report", folder]));
         assert!(fs::read_to_string(root.path().join(folder).join(file)).unwrap() == *page, "{command}");
@@ -112,6 +113,11 @@ fn every_page_has_the_cover_that_was_stated() {
         call(root.path(), &[&each[..], &SMALL, &FEW, &["--set", client]].concat())
     };
     refused(&other("batch", "about.client=Other"), "holds another batch");
+    // Where it does, walks that are kept keep their own pages, and that is said.
+    let each = ["judge", "samples.csv", "fine.csv", "--each", "--governing", "--overwrite", "--out", "batch"];
+    let again = call(root.path(), &[&each[..], &SMALL, &FEW, &["--set", "about.client=Other"]].concat());
+    let said = String::from_utf8(again.stdout).unwrap();
+    assert!(said.contains("walks were kept from an earlier call; their own pages have the cover"), "{said}");
     // What would have no effect on a specification is no setting of it.
     for other in ["base.cu=3", "about.authority=nrcs", "about.coarse_left=true"] {
         let steps = ["design", "samples.csv", "--steps", "--out", "x", "--set", other];
@@ -119,6 +125,21 @@ fn every_page_has_the_cover_that_was_stated() {
                      about.purpose, about.client, about.author, about.checker, about.revision, about.date, \
                      about.units";
         refused(&call(root.path(), &steps), &format!("--set {other}: {takes}"));
+    }
+}
+
+/// Three places to sign, the project's number at the foot of every printed page, what the model is before
+/// anything is said by it, and nothing of the machine.
+fn can_be_signed(page: &str, is_walked: bool, at: &Path) {
+    for part in ["data-foot=\"D-2031\"", "Prepared</th><td><bdi>N. N.<", "Checked</th>", "Approved</th>"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let main = page.find("<main").unwrap();
+    let model = page.find("moved through a network of voids packed to the filter’s gradation");
+    assert_eq!(model.is_some_and(|at| at < main), is_walked);
+    let folder = at.to_str().unwrap();
+    for machine in [folder, "Wall time", "threads", ">Machine<", "of this scene", "built-in scene"] {
+        assert!(!page.contains(machine), "{machine}");
     }
 }
 
@@ -131,7 +152,7 @@ fn a_page_has_the_day_of_its_results_where_no_date_is_stated() {
     let ended = day(root.path());
     for (page, (command, ..)) in all.iter().zip(some) {
         assert!(has(page, "Date", &begun) || has(page, "Date", &ended), "{command}");
-        assert!(!page.contains("<dt>Project</dt>"), "{command}");
+        assert!(page.contains("<div class=\"blank\" aria-hidden=\"true\"><dt>Project</dt>"), "{command}");
     }
     // The day of the walks that a table rests on, not of the table.
     let at = root.path().join("compare");

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
+use voidwalk::report::numbers::{rounded_down, rounded_up};
 use voidwalk::run::FolderKind;
 
 use crate::program::{call, done, figures_are_listed, refused};
@@ -108,5 +109,20 @@ fn a_design_has_the_specification_of_its_answer() {
     assert!((most / answer - 1.0).abs() < 1e-6, "{most} {answer}");
     let page = fs::read_to_string(out.join("design.html")).unwrap();
     assert!(page.contains("The specification, step by step") && out.join("specification.csv").is_file());
+    // One band: that of the last step stands on the first sheet, on the figures and on the terminal.
+    let steps = specification["steps"].as_array().unwrap();
+    let of = |name: &str| {
+        let values = steps.last().unwrap()["values"].as_array().unwrap();
+        values.iter().find(|value| value["name"] == name).unwrap()["value"].as_f64().unwrap()
+    };
+    let [least, greatest] = [rounded_up(of("least D15F")), rounded_down(of("greatest D15F"))];
+    let band = format!("D15F from {least} to {greatest} mm, Cu from 2 to 6");
+    assert!(page.replace('\u{202f}', " ").contains(&format!("<b>Band to specify: {band}</b>")), "{band}");
+    assert!(page.contains(&format!("Thick bar: the band to specify, {band}.")));
+    assert!(page.contains(&format!("as its limits at the sieves have it: {band}.")));
+    let place = |what: &str| page.find(what).unwrap();
+    for size in ["D5F", "D15F", "D60F", "D90F", "D100F"] {
+        assert!(place(&format!("<th class=\"n\">{size}</th>")) < place("Figure 1."), "{size}");
+    }
     figures_are_listed(FolderKind::Design, &out);
 }

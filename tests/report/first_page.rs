@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::{RuleQuantity, RuleRole};
+use voidwalk::outcome::record::{Direction, FindingRecord, RuleQuantity, RuleRole, Topic, Weight};
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::PairRules;
@@ -15,20 +15,26 @@ use super::{made, words};
 #[test]
 fn the_page_says_for_whom_and_by_whom_it_is() {
     let mut plan = Plan::usual();
-    let before = words(&made(&plan).0);
-    assert!(!before.contains("Client") && !before.contains("Author"));
+    let page = made(&plan).0;
+    let before = words(&page);
+    // A blank line on paper for what nobody stated.
+    let blank =
+        |page: &str, name: &str| page.contains(&format!("aria-hidden=\"true\"><dt>{name}</dt> <dd></dd>"));
+    assert!(blank(&page, "Client") && blank(&page, "Author"));
     assert!(before.contains("Date 2026-11-21Program voidwalk 0.1.0 (4f2c43f)Seed 2016"));
     plan.scene.push_str(
         "[about]\nproject = \"Dam <script>alert(1)</script>\"\nclient = \"turned \u{202e} & Co\"\n",
     );
     let page = made(&plan).0;
     let header = page.split("<main").next().unwrap();
-    assert!(header.contains("Dam &lt;script&gt;alert(1)&lt;/script&gt;") && !header.contains("Author"));
+    assert!(header.contains("Dam &lt;script&gt;alert(1)&lt;/script&gt;") && blank(header, "Author"));
+    // Without a number the project stands at the foot.
+    assert!(page.contains("data-foot=\"Dam &lt;script&gt;alert(1)&lt;/script&gt;\""));
     assert!(header.contains("turned \u{fffd} &amp; Co"));
     // a scene that says it in another way, or is none, has a page all the same
     for scene in ["[about]\nproject = 3\n", "about = 1\n", "no scene at all"] {
         plan.scene = scene.into();
-        assert!(!words(&made(&plan).0).contains("Project"), "{scene}");
+        assert!(blank(&made(&plan).0, "Project"), "{scene}");
     }
 }
 
@@ -41,12 +47,20 @@ fn soils_go_by_their_names_and_not_their_files() {
     assert!(page.contains("<title>tillh on C33 sand</title>"));
     let text = words(&page);
     assert!(text.contains("Base tillh against filter C33 sand"));
-    assert!(
-        text.contains("Name csv/tillh.csv") || text.contains("Namecsv/tillh.csv"),
-        "the file, with the inputs"
-    );
+    assert!(text.contains("Nametillh.csv") && !text.contains("csv/tillh"), "the file, with the inputs");
     let (_, gradations) = figures.iter().find(|(name, _)| name == "gradations.svg").unwrap();
     assert!(gradations.contains(">tillh</text>") && !gradations.contains("csv/"));
+    // A name that says no more than what the soil is, is none.
+    plan.outcome.inputs.base.name = "/lab/base.csv".into();
+    plan.outcome.inputs.filter.name = "/lab/ring.xlsx#Filter".into();
+    let (page, figures, _folder) = made(&plan);
+    assert!(
+        !page.contains("<p class=\"names\">") && !page.contains("/lab/"),
+        "no “Base base against filter”"
+    );
+    assert!(page.contains("<title>Will this filter hold this soil?</title>"));
+    let (_, gradations) = figures.iter().find(|(name, _)| name == "gradations.svg").unwrap();
+    assert!(gradations.contains(">base</text>") && !gradations.contains(">base:</text>"));
 }
 
 #[test]
@@ -114,14 +128,65 @@ fn every_rule_is_in_short() {
     let mut plan = Plan::usual();
     assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("continuing erosion"));
     plan.outcome.rules[0].met = None;
-    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("no result"));
+    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("No result: "));
     plan.outcome.rules[0].applies = false;
-    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("does not apply"));
+    assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("Does not apply: "));
     // What checks the walk is no rule of the filter.
     plan.outcome.rules[2].role = RuleRole::Walk;
     assert!(!short(&plan).contains("continuing erosion"));
     plan.outcome.rules.clear();
     assert!(short(&plan).contains("No rule was applied."));
+}
+
+/// What decides stands first, in bold; then what is not met; what has no result stands below the table.
+#[test]
+fn the_rules_that_decide_come_first() {
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let (base, filter) = (soil(&[(0.2, 0.0), (0.6, 100.0)]), soil(&[(8.0, 0.0), (16.0, 100.0)]));
+    let mut plan = Plan::usual();
+    plan.outcome.rules = PairRules::of(&base, &filter).rules;
+    plan.outcome.rules.reverse();
+    let page = made(&plan).0;
+    let short = page.split("Rules of practice, in short").nth(1).unwrap();
+    let rows: Vec<&str> = short.split("</table>").next().unwrap().split("<tr><th>").skip(1).collect();
+    let rows: Vec<&str> = rows.into_iter().filter(|row| row.contains("<td>")).collect();
+    for (row, name) in
+        rows.iter().zip(["Sherard and Dunnigan", "no erosion rather than some", "Permeability"])
+    {
+        assert!(row.starts_with("<b>") && row.contains(name), "{name}: {row}");
+    }
+    let met: Vec<bool> = rows[3..].iter().map(|row| row.contains("✓ met")).collect();
+    assert!(met.is_sorted() && !rows[3..].iter().any(|row| row.starts_with("<b>")), "{rows:?}");
+    assert!(rows.iter().all(|row| row.contains("met</span>")), "{rows:?}");
+}
+
+/// How thick the filter is, and what the mass eroded does not count, each once and where it is first asked.
+#[test]
+fn thickness_and_what_is_not_counted_are_said_once() {
+    let mut plan = Plan::usual();
+    let found = |id: &str, sentence: &str| FindingRecord {
+        id: id.into(),
+        about: Topic::Filter,
+        label: String::new(),
+        direction: Direction::Open,
+        weight: Weight::Note,
+        against: false,
+        numbers: serde_json::Map::new(),
+        sentence: sentence.into(),
+        to_do: String::new(),
+    };
+    plan.outcome.findings = vec![
+        found("modelled_thickness", "The modelled filter is 296 mm thick along the flow."),
+        found("stays_with_thickness", "The verdict stays with thickness."),
+        found("pan_of_filter", "The finest 6 % of the filter is not counted."),
+    ];
+    let text = words(&made(&plan).0);
+    for said in ["Thickness modelled: 296 mm", "The verdict stays with thickness.", "is not counted."] {
+        assert_eq!(text.matches(said).count(), 1, "{said}: {text}");
+    }
+    assert!(!text.contains("296 mm thick") && !text.contains("filter thickness: "), "{text}");
+    let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
+    assert!(place("Walk: ") < place("is not counted.") && place("is not counted.") < place("Next: "));
 }
 
 /// Three findings stand on the first sheet, and all others below it, once.
@@ -148,9 +213,11 @@ fn a_sheet_can_be_signed() {
          M.\"\nrevision = \"A\"\ndate = \"2026-11-25\"\n",
     );
     let text = words(&made(&plan).0);
-    let cover = "Project DamNumber D-1Purpose DesignAuthor N. N.Checked by M. M.Revision ADate \
+    let cover = "Project DamNumber D-1Purpose DesignClient Author N. N.Checked by M. M.Revision ADate \
                  2026-11-25Program";
     assert!(text.contains(cover), "{text}");
+    assert!(text.contains("NameDateSignaturePreparedN. N.CheckedM. M.Approved"), "{text}");
+    assert!(made(&plan).0.contains("<html lang=\"en\" data-foot=\"D-1\">"));
     let begin = text.find("mmFilterBase").unwrap_or_else(|| panic!("{text}"));
     let sizes = &text[begin..begin + text[begin..].find("Rules of practice").unwrap()];
     // A straight line from 4 mm, Cu 1.5: D15 is 4 x 1.5^0.3.

@@ -48,6 +48,7 @@ fn the_page_says_what_an_engineer_reads_first() {
     let text = words(&page);
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
+        "Model (“the walk”): base particles are moved through a network of voids",
         "Some erosion",
         "Practice: ",
         "Walk: some erosion; eroded ",
@@ -59,13 +60,13 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Thickness modelled: 296 mm",
         "The model leaves out: ",
         "Hydraulics: no gradient",
-        "The walk",
+        "What the model found",
         "What the model leaves out",
         "Figure 2.",
         "Figure 5.",
         "Filter rules beside the verdict",
         "Largest particle eroded, over D15F",
-        "Modelled filter thickness: 296 mm",
+        "Inputs",
         "21 443 871 (Eq. 2)",
         "Appendix: the two gradations",
         "0.1.0 (commit 4f2c43f)",

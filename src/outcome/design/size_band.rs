@@ -79,6 +79,13 @@ impl SizeBand {
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
     }
 
+    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down to
+    /// 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
+    pub fn drawn_fine_side(&self) -> Vec<[f64; 2]> {
+        let foot = [[FINES_MM, 0.0], [FINES_MM, MOST_FINES_PERCENT]];
+        foot.into_iter().chain(self.fine_side.iter().copied()).collect()
+    }
+
     /// The size (mm) at which the fine side has this percent finer; its end where it does not reach it.
     pub fn least_size(&self, percent: f64) -> f64 {
         size_at(&self.fine_side, percent)
@@ -191,6 +198,25 @@ mod tests {
         assert_eq!((of("3/4 in"), of("1/2 in").0), ((100.0, 100.0), 96.0));
         let iso = band().limits(SieveSeries::Iso);
         assert_eq!((iso[0].sieve.as_str(), iso.last().unwrap().max_percent_finer), ("16 mm", 5.0));
+    }
+
+    /// Both sides begin at 0 %, and no row allows more or less than they do.
+    #[test]
+    fn no_sieve_allows_more_than_the_sides_that_are_drawn() {
+        // D5 of the fine side lies above No. 200, and at it.
+        for band in [band(), SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap()] {
+            let fine = band.drawn_fine_side();
+            assert_eq!([fine[0][1], band.coarse_side[0][1]], [0.0, 0.0]);
+            assert!(fine.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]));
+            for series in [SieveSeries::Us, SieveSeries::Iso] {
+                assert_eq!(series.openings().last(), Some(&FINES_MM));
+                for limit in band.limits(series) {
+                    let [least, most] =
+                        [&band.coarse_side, &fine].map(|side| percent_at(side, limit.opening_mm));
+                    assert!(limit.max_percent_finer <= most + 1e-6 && limit.min_percent_finer > least - 1e-6);
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
 
 use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
+use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
     DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, TERZAGHI, TESTS_CONTINUING,
@@ -13,6 +13,9 @@ use crate::report::figures::{
 };
 use crate::report::numbers::SizeUnit;
 use crate::report::shell::Drawn;
+
+/// Where the band to specify is drawn (percent of the base eroded).
+const BAR: f64 = 1.5;
 
 /// Names of rules beside their lines.
 const NAMES: [(&str, &str); 8] = [
@@ -70,6 +73,12 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     }
     figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
+    let specified = design.specification.as_ref().filter(|_| !unit.is_empty());
+    if let Some(band) = specified.and_then(|of| of.band.as_ref()) {
+        let [least, greatest] = band.d15_mm();
+        let bar = Line::new(vec![(least, BAR), (greatest, BAR)], BLACK).width(6.0).stays();
+        figure.add(bar.label("band to specify"));
+    }
     let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
     let mut caption = format!(
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
@@ -84,6 +93,9 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
             caption += " Of all that were searched this one holds least.";
         }
         caption += " The other densities and thicknesses are in the table.";
+    }
+    if let Some(band) = specified.and_then(Specification::band_in_words) {
+        caption += &format!(" Thick bar: the band to specify, {band}.");
     }
     // As in the tables: no more than a greatest, and no less than a least.
     let shown = SizeUnit::of(unit.is_empty(), design.inches);

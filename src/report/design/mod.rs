@@ -11,11 +11,12 @@ use maud::{Markup, html};
 use super::cover::program;
 use super::error::ReportError;
 use super::files::{json, rows};
-use super::names::soil_name;
-use super::numbers::{duration, threshold, whole};
+use super::first_page::NOT_COUNTED;
+use super::names::{is_named, soil_name, titled};
+use super::numbers::{threshold, whole};
 use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
-use super::specification::Stated;
+use super::specification::{Stated, to_specify};
 use super::written::Written;
 use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::Confidence;
@@ -38,8 +39,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         true => "How fine may the base be?",
     };
     let names = html! {
-        "Base " b { bdi { (clean(&soil_name(&design.base.name))) } } ", filter of the shape "
-        b { bdi { (clean(&filter_name(&design.filter))) } }
+        (titled("Base", &design.base.name)) ", " (filter_words(&design.filter))
     };
     let findings = told(&design);
     let (foremost, rest) = findings.split_at(findings.len().min(FOREMOST));
@@ -51,7 +51,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     let footer = html! {
         (citation())
         p { "The classes: Foster and Fell, as that paper uses them." }
-        p.small { "voidwalk " (design.version) ", " (duration(design.seconds)) "." }
+        p.small { "voidwalk " (design.version) "." }
     };
     #[cfg(feature = "xlsx")]
     if let Some(specification) = &design.specification {
@@ -59,6 +59,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
     Sections::new(title, title, &names)
+        .model()
         .cover(&design.cover, &program(&design.version, design.commit.as_deref()), Some(design.seed))
         .inches(design.inches)
         .words(&sheet)
@@ -66,7 +67,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .contents()
         .section("Other findings", &others(rest))
         .section("Boundaries of the model", &tables::boundaries(&design))
-        .section("The band of a specification", &tables::bands(&design))
+        .section("D15F between drainage and retention", &tables::bands(&design))
         .section("Standard products", &tables::products(&design))
         .section("The specification, step by step", &stated.words)
         .figures(stated.figure)
@@ -79,10 +80,14 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
 }
 
 /// The soil and the curve of the filter, without the name of a file.
-fn filter_name(filter: &str) -> String {
+fn filter_words(filter: &str) -> Markup {
     let (soil, curve) = filter.split_once(CURVE).unwrap_or((filter, ""));
-    let comma = if curve.is_empty() { "" } else { CURVE };
-    format!("{}{comma}{curve}", soil_name(soil))
+    html! {
+        @if is_named("filter", soil) {
+            "filter of the shape " b { bdi { (clean(&soil_name(soil))) } }
+            @if !curve.is_empty() { (CURVE) (clean(curve)) }
+        } @else if curve.is_empty() { "filter" } @else { "filter’s constrictions " (clean(curve)) }
+    }
 }
 
 /// What stands between the names of a filter and of its curve.
@@ -93,7 +98,10 @@ fn told(design: &Design) -> Vec<String> {
     // Why a row has no band stands in the answer itself.
     let notes = design.boundaries.iter().filter_map(|row| row.band_note.as_ref());
     let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
-    let is_said = |of: &&DesignFinding| notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
+    let is_said = |of: &&DesignFinding| {
+        let is_noted = notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
+        is_noted || of.finding.id == NOT_COUNTED
+    };
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
         of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
@@ -105,6 +113,12 @@ fn told(design: &Design) -> Vec<String> {
     let more = |said: &'_ [String]| said.iter().filter(is_found).cloned().collect::<Vec<String>>();
     let against = more(&design.reasons).into_iter().chain(against.into_iter().map(words));
     against.chain(more(&design.warnings)).chain(others.into_iter().map(words)).collect()
+}
+
+/// What is said of a part of the filter that the mass eroded does not know of, once.
+fn not_counted(design: &Design) -> Option<&str> {
+    let of = design.findings.iter().find(|of| of.finding.id == NOT_COUNTED)?;
+    Some(&of.finding.sentence)
 }
 
 /// The findings that do not stand on the first sheet: folded on a screen, and open in print.
@@ -164,8 +178,19 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     }
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
-                @if let Some(band) = design.band_of(row) {
+                @if let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
+                @if let Some(of) = &design.specification {
+                    @match of.band_in_words() {
+                        Some(band) => p { b { "Band to specify: " (clean(&band)) } "." },
+                        None => p {
+                            b { "No band to specify." } " " (clean(of.no_band.as_deref().unwrap_or_default()))
+                        },
+                    }
+                    (to_specify(of))
+                } @else if let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.words())) } "." }
+                }
+                @if let Some(band) = design.band_of(row) {
                     // Where practice sets the coarse side, the band says so.
                     @let of_walk = |limit: &f64| !band.is_empty && *limit != band.greatest_of_both();
                     @if let Some(practice) = band.practice.filter(of_walk) {

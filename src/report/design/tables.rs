@@ -7,6 +7,7 @@ use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, trimmed, whole};
 use crate::report::rules;
 use crate::report::shell::{clean, fact};
@@ -92,7 +93,8 @@ pub(super) fn bands(design: &Design) -> Markup {
             p {
                 "D15F from the least that drains the base to the greatest that both allow: the walk, in \
                  which \
-                 all but 5 % of networks show no erosion, and the strictest rule of retention. It is empty \
+                 all but 5 % of networks show no erosion, and the strictest rule of retention. The band to \
+                 specify lies within it and may be narrower. It is empty \
                  if the least exceeds the greatest. If the constriction curve is known only within a range, \
                  the whole range must hold."
             }
@@ -106,7 +108,7 @@ pub(super) fn bands(design: &Design) -> Markup {
                 .number("Greatest", |row| size(row, false, |band| Some(band.greatest_of_both())))
                 .text("Set by", |row| set_by(row))
                 .number("Practice allows", |row| size(row, false, |band| band.practice))
-                .text("", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
+                .text("Result", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
                     true => html! { span.breaks { "✗ empty" } },
                     false => html! { span.keeps { "✓" } },
                 })
@@ -156,7 +158,7 @@ pub(super) fn products(design: &Design) -> Markup {
                 })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("", |fit| match (fit.fits(), design.may_fit()) {
+                .number("Result", |fit| match (fit.fits(), design.may_fit()) {
                     (true, true) => html! { b { "fits" } },
                     (true, false) if design.fits_by_practice() => html! { "fits by practice" },
                     (true, false) => html! { "in doubt" },
@@ -212,10 +214,10 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
     let [low, high] = design.bracket;
     let size = |value: Option<f64>| value.map_or_else(|| "no unit".to_owned(), |mm| format!("{mm:.4} mm"));
     let grains = design.boundaries.iter().find_map(|row| row.grains_per_void);
-    let asked = design.settings.join(" ");
+    let asked = design.settings.iter().map(|said| option_words(said)).collect::<Vec<_>>().join(" ");
     html! {
         table.facts { tbody {
-            (fact("Base", &design.base.name))
+            (fact("Base", file_name(&design.base.name)))
             (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(
                 "{}; {}, {}",
                 design.base.cu.map_or_else(|| "not known".to_owned(), trimmed),
@@ -223,7 +225,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 size(design.base.d85_mm)
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
-            (fact("Filter", &design.filter))
+            (fact("Filter", file_name(&design.filter)))
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
             (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), trimmed)))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
@@ -234,7 +236,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 trimmed(100.0 * design.step),
                 whole(walks.len() as u64)
             )))
-            (fact("Asked for", if asked.is_empty() { "the built-in scene" } else { &asked }))
+            (fact("Asked for", if asked.is_empty() { "nothing in particular" } else { &asked }))
         } }
     }
 }

@@ -10,6 +10,8 @@ pub enum Size {
     Wide,
     /// For a telephone: 358 pixels wide unless the figure says otherwise.
     Narrow,
+    /// For the first printed sheet, beside a table; as for a page unless the figure says otherwise.
+    Sheet,
 }
 
 /// How curves get their names.
@@ -35,6 +37,7 @@ pub struct Figure {
     pub(super) sieves: bool,
     pub(super) wide: (f64, f64),
     pub(super) narrow: (f64, f64),
+    pub(super) sheet: Option<(f64, f64)>,
 }
 
 impl Figure {
@@ -53,6 +56,7 @@ impl Figure {
             sieves: false,
             wide: (720.0, 440.0),
             narrow: (358.0, 380.0),
+            sheet: None,
         }
     }
 
@@ -60,6 +64,17 @@ impl Figure {
     pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
         (self.wide, self.narrow) = (wide, narrow);
         self
+    }
+
+    /// Width and height in pixels on the first printed sheet, where it stands beside a table.
+    pub fn sheet(mut self, size: (f64, f64)) -> Figure {
+        self.sheet = Some(size);
+        self
+    }
+
+    /// Whether it has a size of its own on the first printed sheet.
+    pub fn has_sheet(&self) -> bool {
+        self.sheet.is_some()
     }
 
     /// A square frame, as large as there is room for: equal axes then have equal scales.

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use super::days::last_day;
 use super::kept::hash_of;
-use super::of_cases::{StudyOfCases, of_sheet, outcome};
+use super::of_cases::{StudyOfCases, of_sheet, outcome, with_other_cover};
 use crate::campaign::cases::{CASES, PreparedCase};
 use crate::campaign::{CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::leaves_out_of_all;
@@ -84,6 +84,12 @@ impl BatchPlan {
         let outcome = outcome(&folder.join(&place)).ok()?;
         let walk = SampleWalk::of(&outcome, place, self.in_full.contains(&line.case));
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
+    }
+
+    /// How many of its walks in this folder were kept from an earlier call with another cover, which their own
+    /// pages have.
+    pub fn with_other_cover(&self, folder: &Path) -> usize {
+        with_other_cover(&self.campaign, &folder.join(WALKS))
     }
 
     fn study<'a>(&'a self, work: &'a dyn Fn(&[PreparedCase]) -> String) -> StudyOfCases<'a> {

@@ -10,8 +10,8 @@ pub use plan::{ComparePlan, Compared};
 
 use super::days::last_day;
 use super::kept::hash_of;
-use super::of_cases::{StudyOfCases, of_sheet, outcome};
-use std::path::PathBuf;
+use super::of_cases::{StudyOfCases, of_sheet, outcome, with_other_cover};
+use std::path::{Path, PathBuf};
 
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
@@ -78,6 +78,12 @@ pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Com
 }
 
 impl ComparePlan {
+    /// How many of its walks in this folder were kept from an earlier call with another cover, which their own
+    /// pages have.
+    pub fn with_other_cover(&self, folder: &Path) -> usize {
+        with_other_cover(&self.campaign, &folder.join(WALKS))
+    }
+
     fn study<'a>(&'a self, work: &'a dyn Fn(&[PreparedCase]) -> String) -> StudyOfCases<'a> {
         StudyOfCases { kind: FolderKind::Comparison, walks: WALKS, campaign: &self.campaign, work }
     }

@@ -1,6 +1,6 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
-use crate::gradation::{GRAVEL_MM, Gradation};
+use crate::gradation::{FINES_MM, GRAVEL_MM, Gap, Gradation};
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::record::{AppliedRule, IfDispersive};
@@ -15,6 +15,8 @@ pub(super) struct ReadCurve {
     pub of: SpecifiedCurve,
     pub soil: BaseSoil,
     pub percent_no_4: f64,
+    /// Where it is flattest, which may be a gap.
+    pub flattest: Option<Gap>,
     pub design: Option<AppliedRule>,
     pub retention: Option<AppliedRule>,
     pub drainage: Option<AppliedRule>,
@@ -48,6 +50,7 @@ impl ReadCurve {
                 d15f_min_mm: drainage.and_then(|rule| rule.limit),
             },
             percent_no_4: base.percent_finer_by_mass(GRAVEL_MM),
+            flattest: base.flattest(FINES_MM),
             design: rules.iter().find(|rule| rule.id == DESIGN && rule.applies).cloned(),
             retention: strictest.map(|(rule, _)| rule.clone()),
             drainage: drainage.cloned(),

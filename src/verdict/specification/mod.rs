@@ -12,7 +12,7 @@ use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{SheetCover, commit};
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND};
 use curve::ReadCurve;
-use steps::{Control, D15_OVER_D10, Found};
+use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
 
 /// What a specification is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -98,13 +98,44 @@ pub(super) fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<S
 }
 
 impl Specification {
+    /// The band to specify, in words: D15F of both sides, and Cu. `None` without a band.
+    ///
+    /// ```
+    /// use voidwalk::Gradation;
+    /// use voidwalk::outcome::design::Specification;
+    /// use voidwalk::verdict::SpecificationOptions;
+    /// let clay = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None)?;
+    /// let of = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+    /// assert_eq!(of.band_in_words().as_deref(), Some("D15F from 0.140 to 0.700 mm, Cu from 2 to 6"));
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn band_in_words(&self) -> Option<String> {
+        let [least, greatest] = self.band.as_ref()?.d15_mm();
+        let [least, greatest] = [rounded_up(least), rounded_down(greatest)];
+        Some(format!("D15F from {least} to {greatest} mm, Cu from {LEAST_CU} to {MOST_CU}"))
+    }
+
+    /// Why the band begins above the least D15F that drains the base, in a sentence without its end; `None`
+    /// where it does not.
+    pub fn raised_in_words(&self) -> Option<String> {
+        let [least, _] = self.band.as_ref()?.d15_mm();
+        let drains = self.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
+        let at_most = if self.d15f_min_at_most { "not known, and at most " } else { "" };
+        let [drains, least] = [drains, least].map(rounded_up);
+        Some(format!(
+            "The least D15F that drains the base is {at_most}{drains} mm; it is raised to {least} mm, so \
+             that the band is no wider than {WIDEST_BAND} to 1"
+        ))
+    }
+
     /// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band
     /// or have a gap. `None` without a band.
     pub fn beside_limits(&self) -> Option<String> {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
         Some(format!(
             "The limits alone are not enough: D15F of each delivery must lie between {} and {} mm, its Cu \
-             must be at most {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
+             between {LEAST_CU} and {MOST_CU}, and it must have no gap. Judge each delivery by its own \
+             gradation.",
             rounded_up(least),
             rounded_down(greatest)
         ))

@@ -1,13 +1,17 @@
 //! The steps of a specification, with their numbers, words and sources.
 
 use super::curve::ReadCurve;
-use crate::gradation::FINES_MM;
+use crate::gradation::{FINES_MM, GAP_PERCENT, Gap};
 use crate::outcome::design::specification::{BandSize, SizeBand, SpecificationStep, StepValue};
+use crate::outcome::numbers::significant;
 use crate::outcome::rules::{DESIGN, GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, RULES, WIDEST_BAND};
 use crate::verdict::words::capital;
 
 /// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
 pub(super) const D15_OVER_D10: f64 = 1.2;
+
+/// Least Cu of a filter that is specified.
+pub(super) const LEAST_CU: f64 = 2.0;
 
 /// The control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
 pub(super) struct Control {
@@ -75,9 +79,12 @@ impl Found<'_> {
     }
 
     fn gravel(&self) -> SpecificationStep {
-        let why = |curve: &ReadCurve| match self.read.len() {
-            1 => sentence(&curve.soil.why.words()),
-            _ => format!("{}: {}.", curve.of.curve, curve.soil.why.words()),
+        let why = |curve: &ReadCurve| {
+            let gap = gap_in_words(curve.flattest);
+            match self.read.len() {
+                1 => format!("{} {gap}", sentence(&curve.soil.why.words())),
+                _ => format!("{}: {}. {gap}", curve.of.curve, curve.soil.why.words()),
+            }
         };
         let said: Vec<String> = self.read.iter().map(why).collect();
         SpecificationStep {
@@ -213,8 +220,8 @@ impl Found<'_> {
                 named("least D60F", d60(0), "mm"),
             ],
             note: format!(
-                "Cu of each side is at most {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side that is straight \
-                 on the form and has this Cu."
+                "Cu of each delivery lies between {LEAST_CU} and {MOST_CU}. {D15_OVER_D10} is D15/D10 of a \
+                 side that is straight on the form and has a Cu of {MOST_CU}."
             ),
             source: with_own_factor(&source_of("filter-uniformity")),
             ..step("Keep both sides uniform, without gaps")
@@ -232,7 +239,8 @@ impl Found<'_> {
                 named("greatest D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
             ],
             note: format!(
-                "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm. These fines must not be plastic."
+                "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the least D5F. These \
+                 fines must not be plastic."
             ),
             source: source_of("filter-fines"),
             ..step("Limit the fines and the greatest size")
@@ -264,7 +272,7 @@ impl Found<'_> {
             values: sizes.iter().flat_map(both).collect(),
             note:
                 "The control points are joined by straight lines on the form. Above 60 % finer both sides go \
-                   on straight."
+                   on straight. Below its D5 the fine side runs level to the No. 200 sieve."
                     .into(),
             source: "a drawing of this program; no text was read for the sides above 60 % finer".into(),
             ..step("Draw both sides of the band")
@@ -293,6 +301,20 @@ fn step(does: &str) -> SpecificationStep {
 
 fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
     StepValue { name: name.into(), value, unit: unit.into() }
+}
+
+/// Whether a base is gap-graded, with the sizes between which it has least.
+fn gap_in_words(flattest: Option<Gap>) -> String {
+    let Some(of) = flattest else { return "Gap-graded: no.".into() };
+    let [from, to] = [of.from_mm, 4.0 * of.from_mm].map(significant);
+    let within = significant(of.within);
+    match of.within < GAP_PERCENT {
+        true => format!("Gap-graded: yes, with {within} % of the mass between {from} and {to} mm."),
+        false => format!(
+            "Gap-graded: no. Between {from} and {to} mm, where it has least, lies {within} % of the mass; \
+             less than {GAP_PERCENT} % would be a gap."
+        ),
+    }
 }
 
 /// A part of a sentence as one of its own.

@@ -86,7 +86,42 @@ fn what_set_the_answer_and_what_a_delivery_must_keep_is_said() {
     let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     assert_eq!(core.set_by(), Some(core.curves[0].d15f_max_rule.as_str()));
     let beside = core.beside_limits().unwrap();
-    assert!(beside.contains("between 0.140 and 0.700 mm") && beside.contains("at most 6"), "{beside}");
+    assert!(beside.contains("between 0.140 and 0.700 mm") && beside.contains("its Cu between 2 and 6"));
+    let raised = core.raised_in_words().unwrap();
+    assert!(raised.contains("drains the base is 0.100 mm; it is raised to 0.140 mm"), "{raised}");
+    // The ratio of 2 needs no raising.
+    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    assert_eq!(sand.raised_in_words(), None);
+    assert_eq!(sand.band_in_words().as_deref(), Some("D15F from 1.00 to 2.00 mm, Cu from 2 to 6"));
+}
+
+/// One band on every page: what is said first is what the last step draws.
+#[test]
+fn the_band_that_is_said_is_the_one_of_the_last_step() {
+    for points in [
+        &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)][..],
+        &[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)],
+    ] {
+        let of = of(points);
+        let last = of.steps.last().unwrap();
+        let said = |name: &str| last.values.iter().find(|of| of.name == name).unwrap().words().unwrap();
+        let [least, greatest] = ["least D15F", "greatest D15F"].map(said);
+        let band = format!("D15F from {} to {greatest}, Cu", least.trim_end_matches(" mm"));
+        assert!(of.band_in_words().unwrap().starts_with(&band), "{band}");
+    }
+}
+
+#[test]
+fn the_step_of_gravel_and_gap_answers_both() {
+    let note = |points: &[(f64, f64)]| of(points).steps[1].note.clone();
+    let gap = note(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]);
+    assert!(gap.contains("Gap-graded: yes, with ") && gap.contains("between 0.300 and 1.20 mm."), "{gap}");
+    // 12 % over a factor of 8.33.
+    let flat = note(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
+    let within = crate::outcome::numbers::significant(12.0 * 4f64.ln() / (5.0f64 / 0.6).ln());
+    assert!(flat.contains(&format!(
+        "Gap-graded: no. Between 0.600 and 2.40 mm, where it has least, lies {within} %"
+    )));
 }
 
 #[test]
