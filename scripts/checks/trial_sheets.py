@@ -74,7 +74,7 @@ def regraded(soil):
 
 
 def design_limit(soil, dispersive=False):
-    """Sherard and Dunnigan's greatest D15F (mm); of a dispersive base the most that it can be."""
+    """Sherard and Dunnigan's maximum D15F (mm); of a dispersive base the most that it can be."""
     soil = regraded(soil)
     fines, d85 = finer(soil, 0.075), d(soil, 85)
     if fines > 85:

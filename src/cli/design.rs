@@ -115,6 +115,9 @@ fn words(design: &Design) -> String {
             (false, _) if design.fits_by_practice() && !by_practice.is_empty() => {
                 format!("D15 within the band by practice: {}", by_practice.join(", "))
             }
+            (false, _) if design.fits_by_practice() && design.products.iter().any(|of| of.may_fit()) => {
+                "of the standard products none is known to fit within the band".into()
+            }
             (false, _) if design.fits_by_practice() => {
                 "none of the standard products fits within the band".into()
             }

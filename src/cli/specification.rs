@@ -120,12 +120,12 @@ fn words(of: &Specification) -> String {
 /// How a product compares with both limits of D15F.
 fn margins(of: &ProductMargin) -> String {
     let finest = match of.drains_by {
-        Some(margin) => format!("its finest D15 is {} times the least D15F", significant(margin)),
-        None => "the least D15F is not known".into(),
+        Some(margin) => format!("its finest D15 is {} times the minimum D15F", significant(margin)),
+        None => "the minimum D15F is not known".into(),
     };
     let coarsest = match of.holds_by {
-        Some(margin) => format!("the greatest D15F is {} times its coarsest D15", significant(margin)),
-        None => "the greatest D15F is not known".into(),
+        Some(margin) => format!("the maximum D15F is {} times its coarsest D15", significant(margin)),
+        None => "the maximum D15F is not known".into(),
     };
     format!("{finest}; {coarsest}")
 }

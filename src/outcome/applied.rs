@@ -181,6 +181,11 @@ impl Confidence {
     pub const DOUBTS: [Self; 5] =
         [Self::Contradicted, Self::Unstable, Self::MayNotDrain, Self::Outside, Self::MaySegregate];
 
+    /// Whether a probability would say more than anybody can answer for.
+    pub fn hides_probability(self) -> bool {
+        matches!(self, Self::Outside | Self::Contradicted)
+    }
+
     /// Its name in `outcome.json`.
     pub fn words(self) -> &'static str {
         match self {

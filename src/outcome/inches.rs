@@ -187,7 +187,7 @@ mod tests {
             ("the minimum D15F is 0.14 mm, the maximum 0.7 mm", up, down),
             ("D15F 0.14 mm or more; limit of design is 0.7 mm", up, down),
             ("the greatest is not known; D85B 0.14 mm, D95B 0.7 mm", low, nearest),
-            ("      least D15F of the band: 0.14 mm; greatest D60F: 0.7 mm", up, down),
+            ("      minimum D15F of the band: 0.14 mm; maximum D60F: 0.7 mm", up, down),
         ] {
             let said = with_inches(text);
             assert!(said.contains(&format!("({of_range}")), "{said}");

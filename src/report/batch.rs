@@ -177,14 +177,17 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              link to the page of the walk. Below a number its 95 % interval over the replicates; the \
              threshold between the classes is "
             (threshold(batch.threshold))
-            ". Probability of no erosion in a test: by the published range of tests alone, and by what the \
-             walk is worth for soils of this kind; beyond the boundary that tests saw, the lower of the two."
+            ". Probability of no erosion in a test (none outside the checked range or against practice): by \
+             the published range of tests alone, and by what the walk is worth for soils of this kind; \
+             beyond the boundary that tests saw, the lower of the two."
         }
     }
 }
 
 fn notes(batch: &WalkedBatch) -> Markup {
-    html! { @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } } }
+    html! {
+        @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } }
+    }
 }
 
 /// The limit of every sample against its D85B, with the D15F of the filters; none without a limit.

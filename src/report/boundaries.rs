@@ -5,6 +5,7 @@ use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, PUR
 use super::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{Outcome, RuleQuantity};
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
+use crate::verdict::practice::is_beyond_unclear;
 
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
@@ -23,6 +24,9 @@ type Boundary = (usize, f64, bool);
 pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
     let limit = |id: &str| {
         let rule = outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?;
+        if id == TESTS_CONTINUING && is_beyond_unclear(&outcome.rules) {
+            return None;
+        }
         let limit = rule
             .limit
             .filter(|limit| rule.quantity == RuleQuantity::D15F && *limit > 0.0 && limit.is_finite())?;

@@ -100,7 +100,9 @@ fn walked(of: &DesignedWalks) -> Markup {
 }
 
 fn notes(all: &DesignedSamples) -> Markup {
-    html! { @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(&note_words(note))) } } } } }
+    html! {
+        @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(&note_words(note))) } } } }
+    }
 }
 
 fn table(folder: &Path, all: &DesignedSamples) -> Markup {
@@ -120,7 +122,7 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
         @if all.rows.len() > LISTED { p.small { "The rest is in designs.csv." } }
         p.small {
             "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
-             least D15F that drains it. "
+             minimum D15F that drains it. "
             @if !all.filter.is_empty() {
                 "No erosion by walk up to: the D15F that nearly all networks hold. "
             }
@@ -134,7 +136,7 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
     }
 }
 
-/// The limit of practice and the greatest D15F of every sample against its D85B; none without a number.
+/// The limit of practice and the maximum D15F of every sample against its D85B; none without a number.
 fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let of = |row: &DesignedSample, mm: Option<f64>| Some((row.d85b_mm?, mm?, row.governs == Some(1)));
     let practice: Vec<_> = all.rows.iter().filter_map(|row| of(row, row.limit_mm)).collect();
@@ -146,7 +148,7 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
     let (low, high) = positive_range(both().map(|(_, mm, _)| *mm));
     let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
-    let what = "Greatest D15F by practice and by the walk against D85B of each sample";
+    let what = "Maximum D15F by practice and by the walk against D85B of each sample";
     let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
     let governs = all.governing().first().and_then(|row| row.bound());
     if let Some(mm) = governs {

@@ -19,7 +19,7 @@ use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{Standing, standing};
+use crate::verdict::practice::{NOT_A_LIMIT, Standing, standing};
 use crate::verdict::words::capital;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
@@ -181,7 +181,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             @if !shown.is_empty() { (table(&shown, unit)) }
             @for said in ["no limit", "no result", "does not apply"] {
                 @let of_kind: Vec<&str> =
-                    others.iter().filter(|rule| without_result(rule) == said).map(|rule| &*rule.name).collect();
+                    others.iter().filter(|of| without_result(of) == said).map(|of| &*of.name).collect();
                 @if !of_kind.is_empty() {
                     p.others { b { (capital(said)) } ": " (clean(&of_kind.join("; "))) "." }
                 }
@@ -219,6 +219,7 @@ fn result(rule: &AppliedRule) -> Option<bool> {
 /// Why a rule found nothing.
 fn without_result(rule: &AppliedRule) -> &'static str {
     match (rule.applies, rule.needs.is_empty()) {
+        (false, true) if rule.note.to_string().starts_with(NOT_A_LIMIT) => NOT_A_LIMIT,
         (false, true) => "does not apply",
         (true, true) if rule.value.is_some() && rule.limit.is_none() => "no limit",
         _ => "no result",

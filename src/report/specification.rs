@@ -137,9 +137,9 @@ fn steps(of: &Specification) -> Markup {
     let unit = SizeUnit::of(false, of.inches);
     html! {
         p.small {
-            "The order of the steps is ours, as procedures commonly have it. The text of the handbook of \
-             NRCS (National Engineering Handbook, Part 633, Chapter 26) could not be read. Each step names \
-             the text in which its numbers were read, or says that they are this program’s own."
+            "The order of the steps is ours, as procedures commonly have it, and not that of the NRCS \
+             handbook (National Engineering Handbook, Part 633, Chapter 26). Each step names the text that \
+             its numbers come from, or says that they are this program’s own."
         }
         (Table::of(&of.steps).class("study steps")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
@@ -204,8 +204,8 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
             let size = |mm: f64| significant(mm) + &unit.beside(mm);
             format!("{} to {}", size(of.d15_fine_mm), size(of.d15_coarse_mm))
         })
-        .number("Drains: finest D15 / least D15F", |of| margin(of.drains_by))
-        .number("Retains: greatest D15F / coarsest D15", |of| margin(of.holds_by))
+        .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
+        .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
         .text("Leaves the band by most", beyond);
     if says_fit {
         table = table.text("", |of| match of.fits() {
@@ -267,9 +267,9 @@ fn figure(of: &Specification, band: &SizeBand) -> Drawn {
     };
     let d15 = of.band_in_words().map_or(String::new(), |said| format!(": {said}"));
     let caption = format!(
-        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points are \
-         joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine side \
-         runs level: no more than 5 % may be finer.{more}"
+        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points \
+         are joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine \
+         side runs level: no more than 5 % may be finer.{more}"
     );
     Drawn::new("specification", figure, caption)
 }

@@ -313,33 +313,43 @@ mod tests {
     fn the_next_step_names_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.02,87\n0.063,95\n0.63,100\n";
         let next = |d15f, set: &[&str]| walked_base(CLAY, d15f, set).next_in_words();
-        let take = "take a filter with a D15F of at most 0.200 mm (the floor of the limit of design) and at \
-                    least 0.100 mm; tests saw no erosion up to 0.156 mm";
+        let floor = "the limit of design alone is 0.200 mm (its floor): above 0.156 mm have the pair tested";
         let exists = "for a filter that exists, have this pair tested";
+        let take = |dispersive: &str| {
+            format!(
+                "take a filter with a D15F of at most 0.156 mm{dispersive} and at least 0.100 mm; {floor}"
+            )
+        };
         assert_eq!(
             next(2.2, &[]),
             format!(
-                "{take}; whether the base is dispersive is not stated, and 6.4 D85B is 0.111 mm, below that \
-                 floor: have the base tested for dispersion, and if it is dispersive take a filter in two \
-                 stages or have this pair tested in the laboratory; {exists}"
+                "{}; have the base tested for dispersion: if it is dispersive, take a filter in two stages \
+                 or have the pair tested in the laboratory; {exists}",
+                take(" (0.111 mm if the base is dispersive, which is not stated)")
             )
         );
-        assert_eq!(next(2.2, &["base.dispersive=false"]), format!("{take}; {exists}"));
-        // Of a base that is dispersive no size beyond what tests of such soils held is recommended.
+        for d15f in [2.2, 0.18] {
+            assert_eq!(next(d15f, &["base.dispersive=false"]), format!("{}; {exists}", take("")));
+        }
+        // Of a base that is dispersive no size beyond what tests of such soils held is named.
         assert_eq!(
             next(2.2, &["base.dispersive=true"]),
             format!("take a filter with a D15F of at most 0.111 mm and at least 0.100 mm; {exists}")
         );
-        let between = next(0.18, &["base.dispersive=false"]);
-        assert_eq!(
-            between,
-            "have this pair tested: D15F meets the limit of design, whose floor is 0.200 mm, and tests saw \
-             no erosion up to 0.156 mm"
-        );
         let fine = Outcome { verdict: Verdict::None, ..walked_base(CLAY, 0.08, &["base.dispersive=false"]) };
-        assert_eq!(
-            fine.next_in_words(),
-            "take a coarser filter, D15F 0.100 to 0.200 mm; tests saw no erosion up to 0.156 mm"
+        assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.156 mm");
+        // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on. The floor is no limit.
+        const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
+        for d15f in [0.18, 1.8] {
+            let said = walked_base(FAT, d15f, &["base.dispersive=false"]).next_in_words();
+            assert!(said.starts_with("take a filter with a D15F of at most 0.0450 mm (to drain"), "{said}");
+            assert!(!said.contains("0.200"), "{said}");
+        }
+        let said = Outcome { verdict: Verdict::None, ..walked_base(FAT, 0.04, &["base.dispersive=false"]) };
+        assert!(
+            said.next_in_words().ends_with("no D15F both retains and drains"),
+            "{}",
+            said.next_in_words()
         );
     }
 }

@@ -339,7 +339,7 @@ const ROLES = [["retention", "The filter retains the base"],
 function result(rule) {
   if (rule.met === true) return el("span", { class: "keeps" }, "met");
   if (rule.met === false) return el("span", { class: rule.applies ? "breaks" : "none" }, rule.applies ? "NOT MET" : "not met");
-  if (!rule.applies) return el("span", { class: "none" }, "not for it");
+  if (!rule.applies) return el("span", { class: "none" }, (rule.note || "").startsWith("not a limit") ? "not a limit" : "not for it");
   return el("span", { class: "none" }, !rule.needs && rule.limit === null ? "no limit" : "no result");
 }
 

@@ -1,4 +1,4 @@
-//! The band of a specification: from the least D15F that drains the base to the greatest that holds it.
+//! The band of a specification: from the minimum D15F that drains the base to the greatest that holds it.
 
 use super::entry::Finding;
 use super::finding;
@@ -10,7 +10,7 @@ use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{PERMEABILITY, RULES};
 
 impl Band {
-    /// From the rules of a filter of this D15F and the greatest D15F that holds, in the unit of the rules;
+    /// From the rules of a filter of this D15F and the maximum D15F that holds, in the unit of the rules;
     /// `None` where the least is not known, or of the limit of practice only the most.
     pub fn new(rules: &[AppliedRule], d15f: f64, held: f64, unit: &str) -> Option<Self> {
         if open_retention(rules).is_some() {
@@ -52,7 +52,7 @@ impl Band {
         }
     }
 
-    /// That nothing lies between the least D15F that drains a base and the greatest that holds it.
+    /// That nothing lies between the minimum D15F that drains a base and the greatest that holds it.
     pub fn empty(&self) -> Option<Finding> {
         let size = |rounded: String| format!("{rounded} {}", self.unit);
         let (least, greatest) = (size(rounded_up(self.least)), size(rounded_down(self.greatest)));

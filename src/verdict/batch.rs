@@ -50,7 +50,7 @@ pub struct BatchRow {
     /// Whether the filter keeps every rule of drainage; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drains: Option<bool>,
-    /// The least D15F that drains the sample.
+    /// The minimum D15F that drains the sample.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d15f_min_mm: Option<f64>,
     /// Whether the true least is not known, and is at most that.
@@ -283,7 +283,7 @@ pub fn counts_in_words(rows: &[BatchRow], filter: &str) -> String {
     format!("of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result{drainage}")
 }
 
-/// The sample that asks a filter for the greatest D15F to drain, in words; `None` where it drains all, or
+/// The sample that asks a filter for the maximum D15F to drain, in words; `None` where it drains all, or
 /// without a limit.
 pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
     let of_filter = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));

@@ -65,11 +65,11 @@ impl Outcome {
         Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
-    /// The probability that a test would show no erosion. Outside the checked range nobody can answer for
-    /// one: there stands where D15F lies beside the range of tests.
+    /// The probability that a test would show no erosion. Outside the checked range, and against practice,
+    /// nobody can answer for one: there stands where D15F lies beside the range of tests.
     fn beside_tests(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
-        if self.confidence != Confidence::Within {
+        if self.confidence.hides_probability() {
             return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?));
         }
         let each = evidence.probabilities(is_beyond_tests(&self.rules))?;

@@ -283,7 +283,7 @@ impl Sizes {
 
     /// A ratio as a size.
     fn size(&self, ratio: f64) -> String {
-        // The greatest D15F, or the least D85B.
+        // The maximum D15F, or the minimum D85B.
         let within = if self.inverse { rounded_up } else { rounded_down };
         self.mm(ratio)
             .map_or_else(|| format!("{} D85B", rounded_down(ratio)), |mm| format!("{} mm", within(mm)))
@@ -407,7 +407,7 @@ mod tests {
             "{json}"
         );
         assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
-        // The least D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
+        // The minimum D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
         let below = design(&till(), None).answer();
         assert!(below.d15f_max_mm.is_none() && below.said.starts_with("Practice allows D15F up to 0.700 mm"));
         assert!(below.said.contains("searched from a D15F of 0.765 mm only"), "{}", below.said);

@@ -120,7 +120,7 @@ pub struct DesignedSample {
     pub limit_mm: Option<f64>,
     /// Whose limit it is.
     pub rule: String,
-    /// The least D15F that drains the sample.
+    /// The minimum D15F that drains the sample.
     pub d15f_min_mm: Option<f64>,
     /// Whether the true least is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -129,7 +129,7 @@ pub struct DesignedSample {
     /// where it has few fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// Greatest D15F that both practice and walk allow; `None` where none is known.
+    /// Maximum D15F that both practice and walk allow; `None` where none is known.
     pub d15f_max_mm: Option<f64>,
     /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -220,12 +220,12 @@ impl DesignedSample {
         self.d15f_max_mm.into_iter().chain(self.limit_mm).min_by(f64::total_cmp)
     }
 
-    /// Whether its greatest D15F is known, by the walk where others were walked, and it has a band.
+    /// Whether its maximum D15F is known, by the walk where others were walked, and it has a band.
     pub fn is_settled(&self) -> bool {
         self.d15f_max_mm.is_some() && self.not_walked.is_empty() && self.no_band.is_empty()
     }
 
-    /// What set the greatest D15F; `None` without one.
+    /// What set the maximum D15F; `None` without one.
     pub fn set_by(&self) -> Option<&'static str> {
         self.d15f_max_mm?;
         Some(match &self.design {
@@ -235,7 +235,7 @@ impl DesignedSample {
         })
     }
 
-    /// The rule that set the greatest D15F, or that limits it.
+    /// The rule that set the maximum D15F, or that limits it.
     pub(super) fn rule_of_answer(&self) -> &str {
         let of_design = self.design.as_ref().map(|of| of.rule.as_str()).filter(|rule| !rule.is_empty());
         of_design.unwrap_or(&self.rule)
@@ -298,8 +298,8 @@ impl DesignedSample {
 }
 
 impl DesignedSamples {
-    /// Of these rows, with those that govern: the least D15F first that is known to be too coarse beyond, and
-    /// of equal ones the finer base.
+    /// Of these rows, with those that govern: the minimum D15F first that is known to be too coarse beyond,
+    /// and of equal ones the finer base.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
         let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].bound().is_some()).collect();
         let key = |row: &DesignedSample| [row.bound(), row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));

@@ -11,7 +11,7 @@ fn counted(samples: usize) -> String {
     format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
-/// The sample with the greatest least D15F to drain, and that D15F (mm); `None` where none has any.
+/// The sample with the greatest minimum D15F to drain, and that D15F (mm); `None` where none has any.
 fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
     limits.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -24,7 +24,7 @@ fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(
 }
 
 impl DesignedSample {
-    /// The greatest D15F, and what set it, in words.
+    /// The maximum D15F, and what set it, in words.
     fn greatest_in_words(&self) -> String {
         let rule = self.rule_of_answer();
         match (self.d15f_max_mm, self.limit_mm, self.set_by()) {
@@ -41,7 +41,7 @@ impl DesignedSample {
         }
     }
 
-    /// Why its greatest D15F is not known.
+    /// Why its maximum D15F is not known.
     fn open_in_words(&self) -> String {
         let why = self.design.as_ref().map_or(&self.no_band, |of| &of.said);
         let why = if why.is_empty() { &self.not_walked } else { why };
@@ -175,7 +175,7 @@ impl DesignedSamples {
         ))
     }
 
-    /// For how many samples each of practice and walk sets the greatest D15F.
+    /// For how many samples each of practice and walk sets the maximum D15F.
     fn set_in_words(&self) -> Option<String> {
         let mut counts: Vec<(&str, usize)> = Vec::new();
         for by in self.rows.iter().filter_map(DesignedSample::set_by) {

@@ -196,7 +196,10 @@ impl Evidence {
             && match verdict {
                 Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
                 Verdict::Some => erodes,
-                Verdict::Continuing => erodes && practice::met_of(rules, TESTS_CONTINUING) == Some(false),
+                Verdict::Continuing => {
+                    let is_beyond = practice::met_of(rules, TESTS_CONTINUING) == Some(false);
+                    erodes && is_beyond && !practice::is_beyond_unclear(rules)
+                }
                 Verdict::Undecided => false,
             }
     }

@@ -120,7 +120,7 @@ findings! {
         "A few particles decide where the filter begins to erode{at}. Of {eroding:network} that erode, \
          {held} held in the first run at a larger D15F/D85B than one at which they erode. With other random \
          numbers a filter may erode at a smaller D15F/D85B than the one given; a wider network is steadier.";
-    /// A least D15F that drains above the greatest that holds.
+    /// A minimum D15F that drains above the greatest that holds.
     empty_band(least: Text, greatest: Text, set_by: Text): Study, Open, Limits;
         "band", "design.md",
         "No filter of this shape both drains and holds this base. To drain it D15F must be at least {least}, \

@@ -65,7 +65,7 @@ impl<'de> Deserialize<'de> for ModelLimit {
 }
 
 /// What no rule covers, as no text was read that gives its numbers.
-pub const NOT_COVERED: &str = "Not covered by the rules: segregation, excessive erosion.";
+pub const NOT_COVERED: &str = "Not covered by the rules: segregation by D90F and D10F, excessive erosion.";
 
 /// What the model does not contain and what no rule covers, in two sentences.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
@@ -332,7 +332,7 @@ mod tests {
         );
         assert!(brief.ends_with(
             "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter. \
-             Not covered by the rules: segregation, excessive erosion."
+             Not covered by the rules: segregation by D90F and D10F, excessive erosion."
         ));
     }
 }

@@ -6,7 +6,9 @@ use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
-use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, authority};
+use crate::outcome::rules::{
+    DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority,
+};
 use crate::outcome::undecided::UndecidedBy;
 
 /// Reasons that are named of those for which a pair is to be tested.
@@ -39,7 +41,7 @@ impl Outcome {
     /// Which D15F a filter is to have that retains the base, and what to do with one that exists.
     fn of_retention(&self) -> String {
         const EXISTS: &str = "for a filter that exists, have this pair tested";
-        let (unit, d15f) = (self.unit(), self.inputs.filter.d15_mm);
+        let unit = self.unit();
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {} {unit}, and is not \
@@ -48,78 +50,74 @@ impl Outcome {
                 self.if_dispersive_in_words(limit)
             ),
             None => format!("take a finer filter; {EXISTS}"),
-            Some((limit, false)) => match self.floor_beyond(limit) {
-                Some(floor) if d15f > floor => format!(
-                    "take a filter with a D15F of at most {} {unit} (the floor of the limit of design){}; \
-                     tests saw no erosion up to {} {unit}{}; {EXISTS}",
-                    rounded_down(floor),
-                    self.and_least(floor),
-                    rounded_down(limit),
-                    self.if_dispersive_at_floor(floor)
-                ),
-                Some(floor) => format!(
-                    "have this pair tested: D15F meets the limit of design, whose floor is {} {unit}, and \
-                     tests saw no erosion up to {} {unit}{}",
-                    rounded_down(floor),
-                    rounded_down(limit),
-                    self.if_dispersive_at_floor(floor)
-                ),
-                None => format!(
-                    "take a filter with a D15F of at most {} {unit}{}{}; {EXISTS}",
-                    rounded_down(limit),
-                    self.if_dispersive_in_words(limit),
-                    self.and_least(limit)
-                ),
-            },
+            Some((limit, false)) => format!("{}{}; {EXISTS}", self.finer(limit), self.beside_floor(limit)),
         }
+    }
+
+    /// A filter with a D15F of at most so much, and of at least what drains the base.
+    fn finer(&self, most: f64) -> String {
+        let unit = self.unit();
+        let dispersive = self.if_dispersive_in_words(most);
+        let finer = format!("take a filter with a D15F of at most {} {unit}{dispersive}", rounded_down(most));
+        match self.least() {
+            Some(least) if least <= most => format!("{finer} and at least {} {unit}", rounded_up(least)),
+            Some(least) => format!(
+                "{finer} (to drain the base it would be at least {} {unit}: compare the permeabilities of \
+                 filter and base)",
+                rounded_up(least)
+            ),
+            None => finer,
+        }
+    }
+
+    /// The floor of the limit of design, where it lies beyond what tests held.
+    fn beside_floor(&self, most: f64) -> String {
+        let said = |floor| {
+            format!(
+                "; the limit of design alone is {} mm (its floor): above {} mm have the pair tested",
+                rounded_down(floor),
+                rounded_down(most)
+            )
+        };
+        self.floor_beyond(most).map_or_else(String::new, |floor| said(floor) + self.two_stages(floor))
     }
 
     fn unit(&self) -> &'static str {
         if self.inputs.scale_free { "D0F" } else { "mm" }
     }
 
-    /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
+    /// The maximum D15F that every rule of retention allows, and whether the limit itself is lower and not
     /// known.
     fn greatest(&self) -> Option<(f64, bool)> {
         greatest(&self.rules, self.inputs.filter.d15_mm)
     }
 
-    /// The floor of the limit of design, where the boundary that tests saw is below it. That of a dispersive
-    /// base is no size to recommend.
+    /// The floor of the limit of design, where the boundary that tests saw is below it, and that of
+    /// continuing erosion is not. That of a dispersive base is no size to name.
     fn floor_beyond(&self, tested: f64) -> Option<f64> {
+        let of = |id: &str| self.rules.iter().find(|rule| rule.id == id && rule.applies && rule.unit == "mm");
         let is_dispersive = self.findings.iter().any(|finding| finding.id == "dispersive_base");
-        let design = self.rules.iter().find(|rule| rule.id == DESIGN && rule.applies && rule.unit == "mm")?;
-        let limit = design.limit.filter(|limit| *limit == DESIGN_FLOOR_MM && !design.limit_at_most);
-        limit.filter(|limit| !is_dispersive && tested < *limit)
+        let floor = of(DESIGN).filter(|rule| rule.limit == Some(DESIGN_FLOOR_MM) && !rule.limit_at_most);
+        let continuing = of(TESTS_CONTINUING).and_then(|rule| rule.limit);
+        let is_between = tested < DESIGN_FLOOR_MM && continuing.is_none_or(|limit| limit >= DESIGN_FLOOR_MM);
+        (floor.is_some() && is_between && !is_dispersive).then_some(DESIGN_FLOOR_MM)
     }
 
-    /// What a dispersive base changes where the floor of the limit of design is recommended.
-    fn if_dispersive_at_floor(&self, floor: f64) -> String {
-        let below = self.if_dispersive.filter(|of| of.d15f_max_mm < floor);
-        below.map_or_else(String::new, |of| {
-            format!(
-                "; whether the base is dispersive is not stated, and 6.4 D85B is {} mm, below that floor: \
-                 have the base tested for dispersion, and if it is dispersive take a filter in two stages \
-                 or have this pair tested in the laboratory",
-                rounded_down(of.d15f_max_mm)
-            )
-        })
-    }
-
-    /// The D15F that a recommended filter has at the least, to drain the base; empty where that is not known.
-    fn and_least(&self, most: f64) -> String {
-        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
-        let least = rule.filter(|rule| !rule.limit_at_most).and_then(|rule| rule.limit);
-        match least {
-            Some(least) if least <= most => format!(" and at least {} {}", rounded_up(least), self.unit()),
-            Some(least) => format!(
-                " (to drain the base it would be at least {} {}: compare the permeabilities of filter and \
-                 base)",
-                rounded_up(least),
-                self.unit()
-            ),
-            None => String::new(),
+    /// What to do where the base may be dispersive, and its limit then is below the floor.
+    fn two_stages(&self, floor: f64) -> &'static str {
+        match self.if_dispersive {
+            Some(of) if of.d15f_max_mm < floor => {
+                "; have the base tested for dispersion: if it is dispersive, take a filter in two stages or \
+                 have the pair tested in the laboratory"
+            }
+            _ => "",
         }
+    }
+
+    /// The D15F that drains the base; `None` where it is not known.
+    fn least(&self) -> Option<f64> {
+        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
+        rule.filter(|rule| !rule.limit_at_most).and_then(|rule| rule.limit)
     }
 
     /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
@@ -140,16 +138,9 @@ impl Outcome {
             // Where a base erodes in the walk no coarser filter is asked for.
             (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
                 .then(|| {
-                    let (allowed, dispersive) = match self.floor_beyond(most) {
-                        Some(floor) => (floor, self.if_dispersive_at_floor(floor)),
-                        None => (most, self.if_dispersive_in_words(most)),
-                    };
-                    let tested = match allowed > most {
-                        true => format!("; tests saw no erosion up to {} {unit}", rounded_down(most)),
-                        false => String::new(),
-                    };
-                    let [least, most] = [rounded_up(least), rounded_down(allowed)];
-                    format!("take a coarser filter, D15F {least} to {most} {unit}{clean}{tested}{dispersive}")
+                    let [least, upper] = [rounded_up(least), rounded_down(most)];
+                    let dispersive = self.if_dispersive_in_words(most);
+                    format!("take a coarser filter, D15F {least} to {upper} {unit}{dispersive}{clean}")
                 }),
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
@@ -227,7 +218,7 @@ fn few_fines(most: f64) -> String {
     format!("at most {most} % finer than {FINES_MM} mm in place")
 }
 
-/// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
+/// The maximum D15F that every rule of retention allows, and whether the limit itself is lower and not
 /// known.
 fn greatest(rules: &[AppliedRule], d15f: f64) -> Option<(f64, bool)> {
     let (_, limit) = retention(rules, d15f)?;

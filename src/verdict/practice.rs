@@ -333,6 +333,12 @@ fn first_clause(needs: &str) -> String {
     needs.split([':', ';']).next().unwrap_or_default().to_owned()
 }
 
+/// Whether the filter lies beyond 9 D95B of a base for which tests found no clear boundary.
+pub fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
+    let note = RuleText::Of(vec![RuleNote::BeyondUnclearBoundary]);
+    rules.iter().any(|rule| rule.id == TESTS_CONTINUING && rule.note == note)
+}
+
 /// The class that tests give the pair, with the boundaries between which it lies.
 fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     let limit = |id: &str| {
@@ -344,7 +350,8 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     let is_unclear = rules.iter().any(|rule| {
         rule.id == TESTS_CONTINUING && rule.note == RuleText::Of(vec![RuleNote::NoClearBoundary])
     });
-    let beyond = limit(TESTS_CONTINUING);
+    let beside = if is_beyond_unclear(rules) { ", where tests found no clear boundary" } else { "" };
+    let beyond = limit(TESTS_CONTINUING).map(|of| format!("{of}{beside}"));
     let from = beyond.as_ref().map(|of| format!("continuing erosion beyond {of}"));
     let unclear = "for such bases tests found no clear boundary of continuing erosion";
     let from = from.or_else(|| is_unclear.then(|| unclear.into()));

@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
 use crate::gradation::{RegradeCause, RegradeReason};
-use crate::outcome::numbers::significant;
+use crate::outcome::numbers::{rounded_down, rounded_up, significant};
 use crate::outcome::record::{RuleNote, RuleText};
 
 impl RuleNote {
@@ -45,11 +45,15 @@ impl RuleNote {
                 "not a limit: for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear \
                  boundary"
             }
+            Self::BeyondUnclearBoundary => {
+                "beyond 9 D95B, though for bases with 15 to 85 % fines and D95B above 2 mm tests found no \
+                 clear boundary"
+            }
             Self::FloorGoverns(times, size) => {
-                return format!("the floor: {} D85B is {} mm", given(times), fixed(size, 3));
+                return format!("its floor: {} D85B would be {} mm", given(times), rounded_down(size));
             }
             Self::LeastGoverns(times, size) => {
-                return format!("the floor: {} D15B is below {} mm", given(times), fixed(size, 3));
+                return format!("its floor: {} D15B is below {} mm", given(times), rounded_up(size));
             }
             Self::D15FAtMost => "D15F is finer than the finest sieve: at most this",
             Self::LimitAtMost => "D15B is finer than the finest sieve: the limit is at most this",

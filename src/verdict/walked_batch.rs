@@ -155,9 +155,9 @@ impl SampleWalk {
     }
 
     /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`;
-    /// `None` outside the checked range, where no number is to be relied on.
+    /// `None` where [`Confidence::hides_probability`].
     pub fn probability_in_words(&self) -> Option<String> {
-        if self.confidence != Confidence::Within {
+        if self.confidence.hides_probability() {
             return None;
         }
         let of_walk = (self.probability_no_erosion, self.probability_bound);

@@ -226,7 +226,7 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
     assert!(!at.join("d").exists() && !at.join("voidwalk-designs").exists());
 }
 
-/// That no greatest D15F has more inches than mm, and no least fewer.
+/// That no maximum D15F has more inches than mm, and no least fewer.
 fn assert_inches_lie_within(page: &str) {
     let mut found = inches_within(page);
     let bands = page.match_indices("D15F from ").chain(page.match_indices("lie between "));
@@ -318,7 +318,7 @@ fn samples_without_a_band_of_their_own_are_named_and_not_served() {
     }
     assert!(said.contains("No filter is known that serves all 2 samples") && !said.contains("A filter for"));
     assert!(all["inches"] == true && said.contains("\u{202f}in)") && page.contains("\u{202f}in)"), "{said}");
-    // Of one whose greatest D15F is not known practice says no more than the most.
+    // Of one whose maximum D15F is not known practice says no more than the most.
     fs::write(at.join("mix.csv"), "mm,Coarse,Cut\n4,100,100\n2,90,90\n1,60,60\n0.5,20,45\n0.25,0,30\n")
         .unwrap();
     designed(at, &["design", "mix.csv", "--each", "--steps", "--out", "m"]);

@@ -174,7 +174,7 @@ fn day(at: &Path) -> String {
     humantime::format_rfc3339_seconds(moment).to_string().split('T').next().unwrap().to_owned()
 }
 
-/// That no greatest D15F has more inches than mm, and no least fewer; how many were looked at.
+/// That no maximum D15F has more inches than mm, and no least fewer; how many were looked at.
 pub fn inches_within(page: &str) -> usize {
     let number = |text: &str| {
         let start = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();

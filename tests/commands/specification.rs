@@ -33,7 +33,7 @@ fn steps_limits_and_products_fill_a_folder() {
         "limit of design, for north.",
         "No. 200",
         "The limits alone are not enough: D15F of each delivery",
-        "times the least D15F; the greatest D15F is",
+        "times the minimum D15F; the maximum D15F is",
         "ASTM C33 fine aggregate",
         "report: ",
     ] {
@@ -42,7 +42,7 @@ fn steps_limits_and_products_fill_a_folder() {
     let out = root.path().join("voidwalk-specification");
     let found = json(&out);
     assert_eq!(found["format"], "voidwalk-specification/1");
-    // The finer sand sets the greatest D15F: 4 times its D85B, which is a sieve of its table.
+    // The finer sand sets the maximum D15F: 4 times its D85B, which is a sieve of its table.
     assert!((found["d15f_max_mm"].as_f64().unwrap() - 4.0 * 0.6).abs() < 1e-9, "{found}");
     // The coarser one sets the least: 5 times its D15B, between 0.15 and 0.3 mm.
     let d15b = 0.15 * 2f64.powf(9.0 / 24.0);
@@ -90,7 +90,7 @@ fn what_needs_a_walk_or_a_base_is_refused_beside_steps() {
     assert!(!root.path().join("voidwalk-specification").exists());
 }
 
-/// The answer of a walk has the same steps, its greatest D15F no larger.
+/// The answer of a walk has the same steps, its maximum D15F no larger.
 #[test]
 fn a_design_has_the_specification_of_its_answer() {
     let root = root();
@@ -115,7 +115,7 @@ fn a_design_has_the_specification_of_its_answer() {
         let values = steps.last().unwrap()["values"].as_array().unwrap();
         values.iter().find(|value| value["name"] == name).unwrap()["value"].as_f64().unwrap()
     };
-    let [least, greatest] = [rounded_up(of("least D15F")), rounded_down(of("greatest D15F"))];
+    let [least, greatest] = [rounded_up(of("minimum D15F")), rounded_down(of("maximum D15F"))];
     let band = format!("D15F from {least} to {greatest} mm, Cu from 2 to 6");
     assert!(page.replace('\u{202f}', " ").contains(&format!("<b>Band to specify: {band}</b>")), "{band}");
     assert!(page.contains(&format!("Thick bar: the band to specify, {band}.")));

@@ -254,13 +254,13 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     let of_book = rows(&all["Steps"]).into_iter().filter(|row| row["Quantity"] != Cell::Empty);
     let of_book: Vec<Option<f64>> = of_book.map(|row| row["Value"].number()).collect();
     assert_eq!(of_book, values.map(|value| value["value"].as_f64()).collect::<Vec<_>>());
-    assert_eq!(item(&all["Specification"], "Greatest D15F, which retains the base").number(), Some(0.7));
+    assert_eq!(item(&all["Specification"], "Maximum D15F, which retains the base").number(), Some(0.7));
     let first_sheet = &all["Specification"];
     let d15 =
         ["D15F of the band, fine side", "D15F of the band, coarse side"].map(|of| item(first_sheet, of));
     assert_eq!(d15.map(|cell| cell.number()), [Some(0.7 / 5.0), Some(0.7)]);
     assert_eq!(
-        item(first_sheet, "Greatest D15F set by").words(),
+        item(first_sheet, "Maximum D15F set by").words(),
         json["curves"][0]["d15f_max_rule"].as_str().unwrap()
     );
     assert_eq!(item(first_sheet, "Basis").words(), "By the rules of practice alone, without a walk.");

@@ -125,7 +125,7 @@ pub fn specification(
     format::SPECIFICATION.json(&found).map_err(failed)
 }
 
-/// The answer in short, what a delivery must keep beside the limits, what set the greatest D15F, and whether D15 of
+/// The answer in short, what a delivery must keep beside the limits, what set the maximum D15F, and whether D15 of
 /// each product fits.
 type Said = (String, Option<String>, Option<String>, Vec<Option<bool>>);
 

@@ -20,18 +20,18 @@ pub enum SetBy {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Band {
-    /// Least D15F, of the rule of permeability.
+    /// Minimum D15F, of the rule of permeability.
     pub least: f64,
     /// Whether the true least is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub least_at_most: bool,
-    /// Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
+    /// Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
     /// of networks, and practice. Files of earlier versions hold that of the walk alone.
     pub greatest: f64,
     /// Which of the two set it; `None` in files of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set_by: Option<SetBy>,
-    /// Greatest D15F that the strictest rule of retention allows, which was made for this base.
+    /// Maximum D15F that the strictest rule of retention allows, which was made for this base.
     pub practice: Option<f64>,
     /// Name of that rule.
     pub practice_rule: String,
@@ -82,7 +82,7 @@ pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)
 }
 
 impl Band {
-    /// Greatest D15F that both walk and practice allow.
+    /// Maximum D15F that both walk and practice allow.
     pub fn greatest_of_both(&self) -> f64 {
         self.practice.map_or(self.greatest, |practice| practice.min(self.greatest))
     }

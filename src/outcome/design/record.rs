@@ -69,7 +69,7 @@ pub struct Design {
     pub rules_at: f64,
     /// Standard products beside the narrowest band.
     pub products: Vec<Fit>,
-    /// How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk
+    /// How far it can be relied on that a product fits: as `confidence`, but at the maximum D15F that walk
     /// and practice both allow; `None` without products.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub products_confidence: Option<Confidence>,
@@ -117,7 +117,7 @@ impl DesignFinding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DesignAnswer {
-    /// Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has
+    /// Maximum D15F (mm) that both walk and practice allow; `None` where none is known, where the base has
     /// no size, and for the inverse.
     pub d15f_max_mm: Option<f64>,
     /// Finest D85B (mm) that both allow, for the inverse.
@@ -338,10 +338,12 @@ impl Design {
         self.products_confidence.unwrap_or(self.confidence) == Confidence::Within
     }
 
-    /// Whether products fit by practice: it alone set the answer, and only how far the walk can be relied on,
-    /// which sets no tighter limit, is in doubt.
+    /// Whether products fit by practice: it alone set the answer, the walk has one that is no tighter, and
+    /// nothing is in doubt but whether the walk was checked for such soils.
     pub fn fits_by_practice(&self) -> bool {
-        !self.may_fit() && self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice)
+        let is_set = self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice);
+        let confidence = self.products_confidence.unwrap_or(self.confidence);
+        is_set && confidence == Confidence::Outside && self.least_held().is_some()
     }
 
     /// Whether a standard product is said to fit; `None` where that is in doubt or not known.

@@ -50,7 +50,7 @@ pub struct SieveLimit {
 const SIZES: [f64; 5] = [5.0, 15.0, 60.0, 90.0, 100.0];
 
 impl SizeBand {
-    /// From the control points of its sides: least and greatest D15 and D60 (mm).
+    /// From the control points of its sides: least and maximum D15 and D60 (mm).
     ///
     /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
     /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
@@ -79,8 +79,8 @@ impl SizeBand {
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
     }
 
-    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down to
-    /// 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
+    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down
+    /// to 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
     pub fn drawn_fine_side(&self) -> Vec<[f64; 2]> {
         let foot = [[FINES_MM, 0.0], [FINES_MM, MOST_FINES_PERCENT]];
         foot.into_iter().chain(self.fine_side.iter().copied()).collect()
@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(whole([3.2, 9.9]), [4.0, 9.0]);
     }
 
-    /// No sieve has a least above its greatest, down to the greatest D15F at which the coarse side has 5 %
+    /// No sieve has a least above its greatest, down to the maximum D15F at which the coarse side has 5 %
     /// finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
     #[test]
     fn no_band_is_inside_out() {

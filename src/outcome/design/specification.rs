@@ -36,12 +36,12 @@ pub struct Specification {
     pub curves: Vec<SpecifiedCurve>,
     /// Every step, with its numbers.
     pub steps: Vec<SpecificationStep>,
-    /// Least D15F (mm) that drains the base; `None` where it is not known.
+    /// Minimum D15F (mm) that drains the base; `None` where it is not known.
     pub d15f_min_mm: Option<f64>,
     /// Whether the true least is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
-    /// Greatest D15F (mm) that is allowed; `None` where it is not known.
+    /// Maximum D15F (mm) that is allowed; `None` where it is not known.
     pub d15f_max_mm: Option<f64>,
     /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
     /// where it has few fines.
@@ -79,11 +79,11 @@ pub struct SpecifiedCurve {
     pub fines_percent: Option<f64>,
     /// Category of NRCS, 1 to 4.
     pub category: Option<u8>,
-    /// Greatest D15F (mm) that retains it; `None` where it is not known.
+    /// Maximum D15F (mm) that retains it; `None` where it is not known.
     pub d15f_max_mm: Option<f64>,
     /// The rule that sets it.
     pub d15f_max_rule: String,
-    /// Least D15F (mm) that drains it.
+    /// Minimum D15F (mm) that drains it.
     pub d15f_min_mm: Option<f64>,
 }
 
@@ -109,7 +109,7 @@ pub struct SpecificationStep {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StepValue {
-    /// What it is, as `greatest D15F`.
+    /// What it is, as `maximum D15F`.
     pub name: String,
     /// The number; `None` where it is not known.
     pub value: Option<f64>,
@@ -151,7 +151,7 @@ pub struct ProductMargin {
     /// D15 of its fine side over the least that drains: at least 1 where it drains. `None` where it is not
     /// known whether it drains.
     pub drains_by: Option<f64>,
-    /// The greatest D15F over D15 of its coarse side: at least 1 where it holds.
+    /// The maximum D15F over D15 of its coarse side: at least 1 where it holds.
     pub holds_by: Option<f64>,
     /// The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
     /// within it.
@@ -188,7 +188,7 @@ impl Specification {
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
-    /// What set the greatest D15F: the name of a rule, or the walk; `None` where it is not known.
+    /// What set the maximum D15F: the name of a rule, or the walk; `None` where it is not known.
     pub fn set_by(&self) -> Option<&str> {
         let greatest = self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
@@ -238,7 +238,7 @@ impl SpecificationStep {
     }
 }
 
-/// Every standard product beside the least D15F (mm) and whether that is one at most, the greatest, and a
+/// Every standard product beside the minimum D15F (mm) and whether that is one at most, the greatest, and a
 /// band.
 pub fn margins(
     (d15f_min, at_most): (Option<f64>, bool),
@@ -278,11 +278,11 @@ mod tests {
     fn a_least_size_is_rounded_up_and_a_greatest_down() {
         let of =
             |name: &str, value, unit: &str| StepValue { name: name.into(), value, unit: unit.into() }.words();
-        assert_eq!(of("least D10F", Some(0.11661), "mm").unwrap(), "0.117 mm");
-        assert_eq!(of("greatest D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
-        assert_eq!(of("greatest D15F / least D15F, as found", Some(6.999), "").unwrap(), "7.00");
+        assert_eq!(of("minimum D10F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
+        assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
         assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
-        assert_eq!(of("least D15F", None, "mm"), None);
+        assert_eq!(of("minimum D15F", None, "mm"), None);
     }
 
     #[test]
@@ -299,7 +299,7 @@ mod tests {
         assert!(sand.worst_sieve_mm.is_some() && sand.leaves_band_by.unwrap() > 0.0, "{sand:?}");
         let none = margins((Some(0.5), false), Some(0.6), None);
         assert!(none.iter().all(|of| of.fits() == Some(false) && of.leaves_band_by.is_none()));
-        // What drains may or may not hold where the greatest D15F is not known.
+        // What drains may or may not hold where the maximum D15F is not known.
         let open = margins((Some(0.2), false), None, None);
         assert_eq!((open[0].fits(), open[1].fits()), (Some(false), None));
         assert!(margins((None, false), None, None).is_empty());

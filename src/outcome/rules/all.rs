@@ -23,7 +23,7 @@ pub const PERMEABILITY: &str = "permeability";
 /// The rule by which a filter has few fines.
 pub const FILTER_FINES: &str = "filter-fines";
 
-/// The least D15F that an older manual asks for.
+/// The minimum D15F that an older manual asks for.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
 
 /// The paper's own boundary of no erosion.

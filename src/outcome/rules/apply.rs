@@ -46,13 +46,13 @@ pub type NamedCurve = (String, Gradation);
 /// Which curves of a filter and a base are their finest and coarsest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sides {
-    /// The filter with the least D15F.
+    /// The filter with the minimum D15F.
     pub finest_filter: usize,
-    /// The filter with the greatest D15F.
+    /// The filter with the maximum D15F.
     pub coarsest_filter: usize,
-    /// The base with the least D85B after regrading.
+    /// The base with the minimum D85B after regrading.
     pub finest_base: usize,
-    /// The base with the greatest D15B before regrading.
+    /// The base with the maximum D15B before regrading.
     pub coarsest_base: usize,
 }
 

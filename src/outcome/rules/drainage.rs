@@ -12,7 +12,7 @@ const TIMES: f64 = 5.0;
 /// The same by EM 1110-2-1901, which asks for 3 to 5.
 const LEAST_TIMES: f64 = 3.0;
 
-/// The least D15F whatever the base (mm).
+/// The minimum D15F whatever the base (mm).
 const LEAST_MM: f64 = 0.1;
 
 /// Most fines of a filter (%).

@@ -148,23 +148,28 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
 /// erosion.
 const CLEAR_TO_MM: f64 = 2.0;
 
-/// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit, and
-/// where nobody knows whether they did it has no result.
+/// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit to
+/// keep, and where nobody knows whether they did it has no result; beyond it a rule is broken all the same.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.d15f(), inputs.size_of_base(95.0));
-    match inputs.fines() {
-        _ if d95b.most <= CLEAR_TO_MM => {}
-        Fines::Percent(percent) if (FEW_FINES..=85.0).contains(&percent) => {
-            return Judged::of(d15f, None).not_for(RuleNote::NoClearBoundary);
-        }
-        Fines::Unknown => return Judged::of(d15f, None).lacking(RuleNote::NeedsFinesOfBase),
-        _ => {}
-    }
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
+    let is_beyond = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
+    let fines = inputs.fines();
+    let is_unclear = d95b.most > CLEAR_TO_MM
+        && match fines {
+            Fines::Percent(percent) => (FEW_FINES..=85.0).contains(&percent),
+            Fines::Unknown => true,
+            Fines::Few | Fines::Assumed => false,
+        };
+    match fines {
+        _ if !is_unclear => {}
+        _ if is_beyond => return judged.noted(RuleNote::BeyondUnclearBoundary),
+        Fines::Unknown => return Judged::of(d15f, None).lacking(RuleNote::NeedsFinesOfBase),
+        _ => return Judged::of(d15f, None).not_for(RuleNote::NoClearBoundary),
+    }
     if !d95b.is_known {
         let judged = judged.at_most().noted(base_as_read(inputs));
-        let is_broken = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
-        return if is_broken { judged } else { judged.lacking(RuleNote::NeedsD95B) };
+        return if is_beyond { judged } else { judged.lacking(RuleNote::NeedsD95B) };
     }
     judged.noted(base_as_read(inputs))
 }

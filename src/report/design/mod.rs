@@ -179,15 +179,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                 }
                 @if let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
-                @if let Some(of) = &design.specification {
-                    @match of.band_in_words() {
-                        Some(band) => p { b { "Band to specify: " (clean(&band)) } "." },
-                        None => p {
-                            b { "No band to specify." } " " (clean(of.no_band.as_deref().unwrap_or_default()))
-                        },
-                    }
-                    (to_specify(of))
-                } @else if let Some(band) = design.band_of(row) {
+                @if design.specification.is_none() && let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.words())) } "." }
                 }
                 @if let Some(band) = design.band_of(row) {
@@ -201,6 +193,16 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                         }
                     }
                 }
+            }
+            @if let Some(of) = &design.specification {
+                @match of.band_in_words() {
+                    Some(band) => p { b { "Band to specify: " (clean(&band)) } "." },
+                    None => p {
+                        b { "No band to specify." } " " (clean(of.no_band.as_deref().unwrap_or_default()))
+                    },
+                }
+                @if let Some(said) = of.if_dispersive_in_words() { p { (clean(&said)) "." } }
+                (to_specify(of))
             }
             @for row in &design.boundaries {
                 @if let Some(note) = &row.band_note {
@@ -232,7 +234,7 @@ fn in_doubt(design: &Design) -> Markup {
     let by_practice = is_shown && design.fits_by_practice();
     html! {
         @if by_practice { p { "The limit of practice sets them; the walk sets no tighter one." } }
-        @else if is_shown {
+        @if is_shown {
             p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }
         }
     }

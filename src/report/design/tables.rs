@@ -137,7 +137,7 @@ pub(super) fn products(design: &Design) -> Markup {
                  and practice agrees. D15 is interpolated between sieves. The products’ own shapes were not \
                  walked: another shape holds to another D15."
                 @if design.may_fit() {
-                    " Judged at the greatest D15F that both walk and practice allow, as none that fits is \
+                    " Judged at the maximum D15F that both walk and practice allow, as none that fits is \
                      coarser."
                 } @else if design.fits_by_practice() {
                     " The limit of practice sets the answer: a product fits by practice. The walk sets no \

@@ -21,11 +21,11 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     let mut sheet = Sheet::new("Specification", &["Item", "Value", "Unit"]);
     sheet.item("Base", &of.base, "");
     sheet.item("Dispersive", of.dispersive, "");
-    sheet.item("Least D15F, which drains the base", of.d15f_min_mm, "mm");
-    sheet.item("Greatest D15F, which retains the base", of.d15f_max_mm, "mm");
+    sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
+    sheet.item("Maximum D15F, which retains the base", of.d15f_max_mm, "mm");
     let dispersive = of.if_dispersive.map(|of| of.words());
-    sheet.item("Greatest D15F if the base is dispersive (not stated)", dispersive, "");
-    sheet.item("Greatest D15F set by", of.set_by(), "");
+    sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
+    sheet.item("Maximum D15F set by", of.set_by(), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
@@ -71,8 +71,8 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
         "Product",
         "D15 of the fine side (mm)",
         "D15 of the coarse side (mm)",
-        "D15 of the fine side / least D15F (-)",
-        "Greatest D15F / D15 of the coarse side (-)",
+        "D15 of the fine side / minimum D15F (-)",
+        "Maximum D15F / D15 of the coarse side (-)",
         "D15 fits",
         "Leaves the band by most at sieve (mm)",
         "Leaves the band by (percentage points)",

@@ -20,7 +20,7 @@ pub(super) struct ReadCurve {
     pub design: Option<AppliedRule>,
     pub retention: Option<AppliedRule>,
     pub drainage: Option<AppliedRule>,
-    /// Why its greatest D15F is not known.
+    /// Why its maximum D15F is not known.
     pub unknown: Option<String>,
 }
 
@@ -63,7 +63,7 @@ impl ReadCurve {
         self.of.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
-    /// Whether the true least D15F is not known, and is at most the one that is given.
+    /// Whether the true minimum D15F is not known, and is at most the one that is given.
     pub fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }

@@ -21,7 +21,7 @@ pub struct SpecificationOptions {
     pub dispersive: Option<bool>,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// Greatest D15F (mm) that the walk holds, where a base was walked.
+    /// Maximum D15F (mm) that the walk holds, where a base was walked.
     pub walked_mm: Option<f64>,
 }
 
@@ -84,14 +84,14 @@ impl Specification {
     }
 }
 
-/// The control points of a band between a least and a greatest D15F (mm); `None` where the least is above.
+/// The control points of a band between a least and a maximum D15F (mm); `None` where the least is above.
 fn control(min: f64, max: f64) -> Option<Control> {
     let d60_max = MOST_CU * max / D15_OVER_D10;
     let of = Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] };
     (min <= max).then_some(of)
 }
 
-/// Why no filter between a least and a greatest D15F (mm) has a band; `None` where one has.
+/// Why no filter between a least and a maximum D15F (mm) has a band; `None` where one has.
 pub(super) fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<String> {
     let band = control(min, max).and_then(|of| SizeBand::of(of.d15, of.d60));
     no_band((Some(min), at_most), Some(max), None, band.is_some())
@@ -111,11 +111,18 @@ impl Specification {
     /// ```
     pub fn band_in_words(&self) -> Option<String> {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
-        let [least, greatest] = [rounded_up(least), rounded_down(greatest)];
-        Some(format!("D15F from {least} to {greatest} mm, Cu from {LEAST_CU} to {MOST_CU}"))
+        let [lower, upper] = [rounded_up(least), rounded_down(greatest)];
+        let is_open = self.d15f_min_at_most && self.d15f_min_mm.is_some_and(|drains| drains >= least);
+        let open = match is_open {
+            true => {
+                " (what drains the base is not known and at most the lower D15F: a hydrometer test tells)"
+            }
+            false => "",
+        };
+        Some(format!("D15F from {lower} to {upper} mm{open}, Cu from {LEAST_CU} to {MOST_CU}"))
     }
 
-    /// Why the band begins above the least D15F that drains the base, in a sentence without its end; `None`
+    /// Why the band begins above the minimum D15F that drains the base, in a sentence without its end; `None`
     /// where it does not.
     pub fn raised_in_words(&self) -> Option<String> {
         let [least, _] = self.band.as_ref()?.d15_mm();
@@ -123,7 +130,7 @@ impl Specification {
         let at_most = if self.d15f_min_at_most { "not known, and at most " } else { "" };
         let [drains, least] = [drains, least].map(rounded_up);
         Some(format!(
-            "The least D15F that drains the base is {at_most}{drains} mm; it is raised to {least} mm, so \
+            "The minimum D15F that drains the base is {at_most}{drains} mm; it is raised to {least} mm, so \
              that the band is no wider than {WIDEST_BAND} to 1"
         ))
     }
@@ -143,7 +150,7 @@ impl Specification {
 }
 
 impl Specification {
-    /// What the greatest D15F is if the base is dispersive, in a sentence without its end; `None` where that
+    /// What the maximum D15F is if the base is dispersive, in a sentence without its end; `None` where that
     /// is the same, or somebody has said whether it is.
     pub fn if_dispersive_in_words(&self) -> Option<String> {
         let of =
@@ -162,7 +169,7 @@ fn no_band(
     match (min, max) {
         _ if has_band => None,
         (Some(min), Some(max)) if min > max && at_most => Some(format!(
-            "The least D15F that drains this base is not known. It is at most {} mm, and D15F must be at \
+            "The minimum D15F that drains this base is not known. It is at most {} mm, and D15F must be at \
              most {} mm to retain the base: a hydrometer test of the base is needed.",
             rounded_up(min),
             rounded_down(max)
@@ -177,11 +184,11 @@ fn no_band(
             "The coarse side would have more than {MOST_FINES_PERCENT} % finer than {FINES_MM} mm."
         )),
         (Some(_), Some(max)) => Some(format!(
-            "The greatest D60F is {} mm and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
+            "The maximum D60F is {} mm and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
             rounded_down(MOST_CU * max / D15_OVER_D10)
         )),
         _ => Some(match unknown.and_then(|curve| curve.unknown.as_ref().map(|why| (&curve.of.curve, why))) {
-            Some((curve, why)) => format!("The greatest D15F is not known for {curve}: {why}."),
+            Some((curve, why)) => format!("The maximum D15F is not known for {curve}: {why}."),
             None => "No rule of retention covers this base.".into(),
         }),
     }

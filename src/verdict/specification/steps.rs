@@ -21,13 +21,13 @@ pub(super) struct Control {
 
 /// What the steps say.
 pub(super) struct Found<'a> {
-    /// Greatest D15F (mm) that the walk holds.
+    /// Maximum D15F (mm) that the walk holds.
     pub walked_mm: Option<f64>,
     pub read: &'a [ReadCurve],
-    /// The curve that allows the least D15F.
+    /// The curve that allows the minimum D15F.
     pub strictest: Option<&'a ReadCurve>,
     pub unknown: Option<&'a ReadCurve>,
-    /// The curve that asks for the greatest D15F.
+    /// The curve that asks for the maximum D15F.
     pub coarsest: Option<&'a ReadCurve>,
     pub by_practice: Option<f64>,
     pub d15f_max: Option<f64>,
@@ -123,7 +123,7 @@ impl Found<'_> {
     }
 
     fn retention(&self) -> SpecificationStep {
-        let what = "Find the greatest D15F that retains the base";
+        let what = "Find the maximum D15F that retains the base";
         let rule = self.strictest.and_then(|curve| curve.retention.as_ref());
         let mut notes: Vec<String> = Vec::new();
         if let (Some(curve), Some(_)) = (self.strictest, self.by_practice) {
@@ -133,16 +133,16 @@ impl Found<'_> {
         if let Some(why) = self.unknown.and_then(|curve| curve.unknown.as_ref()) {
             notes.push(sentence(why));
         }
-        let mut values = vec![named("greatest D15F by practice", self.by_practice, "mm")];
+        let mut values = vec![named("maximum D15F by practice", self.by_practice, "mm")];
         if let Some(limit) = self.limit_of_design() {
             values.insert(
                 0,
-                named("greatest D15F by Sherard and Dunnigan's limit of design", Some(limit), "mm"),
+                named("maximum D15F by Sherard and Dunnigan's limit of design", Some(limit), "mm"),
             );
         }
         if let Some(walked) = self.walked_mm {
-            values.push(named("greatest D15F that the walk holds", Some(walked), "mm"));
-            values.push(named("greatest D15F", self.d15f_max, "mm"));
+            values.push(named("maximum D15F that the walk holds", Some(walked), "mm"));
+            values.push(named("maximum D15F", self.d15f_max, "mm"));
             notes.push("The smaller of practice and walk counts.".into());
         }
         SpecificationStep {
@@ -170,17 +170,17 @@ impl Found<'_> {
         }
         let open = rule.filter(|rule| rule.limit_at_most && rule.note.is_empty());
         notes.extend(open.map(|_| {
-            "D15B is finer than the finest sieve. The least D15F is not known, and is at most this.".into()
+            "D15B is finer than the finest sieve. The minimum D15F is not known, and is at most this.".into()
         }));
         notes.extend(
             rule.map(|rule| rule.note.to_string()).filter(|note| !note.is_empty()).map(|n| sentence(&n)),
         );
         SpecificationStep {
             formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
-            values: vec![named("least D15F", self.coarsest.and_then(|curve| curve.of.d15f_min_mm), "mm")],
+            values: vec![named("minimum D15F", self.coarsest.and_then(|curve| curve.of.d15f_min_mm), "mm")],
             note: notes.join(" "),
             source: rule.map_or_else(String::new, |rule| rule.source.clone()),
-            ..step("Find the least D15F that drains the base")
+            ..step("Find the minimum D15F that drains the base")
         }
     }
 
@@ -190,18 +190,18 @@ impl Found<'_> {
         let narrow = self.control.as_ref().map(|of| of.d15[0]);
         SpecificationStep {
             formula: format!(
-                "greatest D15F / least D15F <= {WIDEST_BAND}; the least is raised where the ratio is larger"
+                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the least is raised where the ratio is larger"
             ),
             values: vec![
                 named(
-                    "greatest D15F / least D15F, as found",
+                    "maximum D15F / minimum D15F, as found",
                     self.d15f_max.zip(least).map(|(a, b)| a / b),
                     "",
                 ),
-                named("least D15F of the band", narrow, "mm"),
-                named("greatest D15F of the band", self.control.as_ref().map(|of| of.d15[1]), "mm"),
+                named("minimum D15F of the band", narrow, "mm"),
+                named("maximum D15F of the band", self.control.as_ref().map(|of| of.d15[1]), "mm"),
             ],
-            note: if raised { "The least D15F is raised.".into() } else { String::new() },
+            note: if raised { "The minimum D15F is raised.".into() } else { String::new() },
             source: source_of("filter-band"),
             ..step("Keep the band narrow at 15 % finer")
         }
@@ -211,13 +211,13 @@ impl Found<'_> {
         let d60 = |side: usize| self.control.as_ref().map(|of| of.d60[side]);
         SpecificationStep {
             formula: format!(
-                "greatest D10F = greatest D15F / {D15_OVER_D10}; greatest D60F = {MOST_CU} x greatest D10F; \
-                 least D60F = greatest D60F / {WIDEST_BAND}"
+                "maximum D10F = maximum D15F / {D15_OVER_D10}; maximum D60F = {MOST_CU} x maximum D10F; \
+                 minimum D60F = maximum D60F / {WIDEST_BAND}"
             ),
             values: vec![
-                named("greatest D10F", self.control.as_ref().map(|of| of.d15[1] / D15_OVER_D10), "mm"),
-                named("greatest D60F", d60(1), "mm"),
-                named("least D60F", d60(0), "mm"),
+                named("maximum D10F", self.control.as_ref().map(|of| of.d15[1] / D15_OVER_D10), "mm"),
+                named("maximum D60F", d60(1), "mm"),
+                named("minimum D60F", d60(0), "mm"),
             ],
             note: format!(
                 "Cu of each delivery lies between {LEAST_CU} and {MOST_CU}. {D15_OVER_D10} is D15/D10 of a \
@@ -231,12 +231,12 @@ impl Found<'_> {
     fn ends(&self) -> SpecificationStep {
         SpecificationStep {
             formula: format!(
-                "least D5F = greatest D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; greatest D100F \
+                "least D5F = greatest D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; maximum D100F \
                  {GREATEST_SIZE_MM} mm"
             ),
             values: vec![
                 named("least D5F allowed", Some(FINES_MM), "mm"),
-                named("greatest D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
+                named("maximum D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
             ],
             note: format!(
                 "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the least D5F. These \
@@ -251,9 +251,9 @@ impl Found<'_> {
         let d10 = band.map(|band| (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0)));
         SpecificationStep {
             formula: format!(
-                "least D10F = the smaller of least D15F / {D15_OVER_D10} and D10F of the fine side"
+                "minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side"
             ),
-            values: vec![named("least D10F", d10, "mm"), named("greatest D90F", None, "mm")],
+            values: vec![named("minimum D10F", d10, "mm"), named("maximum D90F", None, "mm")],
             note: "Not covered here. The maximum D90F follows from this minimum D10F by a table of FEMA and \
                    NRCS. Take it from there."
                 .into(),

@@ -28,10 +28,10 @@ fn a_core_with_60_percent_of_fines_by_hand() {
     let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     assert_eq!(core.curves[0].category, Some(2));
     assert!(near(core.d15f_max_mm, 0.7) && near(core.d15f_min_mm, 0.1));
-    assert!(near(value(&core, "least D15F of the band"), 0.14));
-    assert!(near(value(&core, "greatest D10F"), 0.7 / 1.2));
-    assert!(near(value(&core, "greatest D60F"), 3.5) && near(value(&core, "least D60F"), 0.7));
-    assert!(near(value(&core, "least D10F"), 0.14 / 1.2));
+    assert!(near(value(&core, "minimum D15F of the band"), 0.14));
+    assert!(near(value(&core, "maximum D10F"), 0.7 / 1.2));
+    assert!(near(value(&core, "maximum D60F"), 3.5) && near(value(&core, "minimum D60F"), 0.7));
+    assert!(near(value(&core, "minimum D10F"), 0.14 / 1.2));
     let sizes = &core.band.as_ref().unwrap().sizes;
     assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0, 90.0, 100.0]);
     assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=11).collect::<Vec<_>>());
@@ -52,7 +52,7 @@ fn the_limits_of_the_other_categories_by_hand() {
     let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     assert!(near(sand.d15f_max_mm, 2.0) && near(sand.d15f_min_mm, 1.0));
     // The ratio of 2 needs no narrowing.
-    assert!(near(value(&sand, "least D15F of the band"), 1.0));
+    assert!(near(value(&sand, "minimum D15F of the band"), 1.0));
 }
 
 /// The till of the first trial: D85B 1.53 mm on No. 4, 38 % of fines.
@@ -64,7 +64,7 @@ fn a_till_is_regraded_and_both_limits_of_its_fines_are_shown() {
     assert_eq!(value(&till, "regraded on"), Some(4.75));
     let d85b = till.curves[0].d85_mm.unwrap();
     let design = (40.0 - fines) / 25.0 * (4.0 * d85b - 0.7) + 0.7;
-    assert!(near(value(&till, "greatest D15F by Sherard and Dunnigan's limit of design"), design));
+    assert!(near(value(&till, "maximum D15F by Sherard and Dunnigan's limit of design"), design));
     assert!(near(till.d15f_max_mm, 0.7));
     // D15B is finer than the finest sieve: the limit is at most five times that.
     assert!(near(till.d15f_min_mm, 5.0 * 0.075));
@@ -76,7 +76,7 @@ fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
     // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
     let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     let d10 = (2.0 * 5f64.powf(-10.0 / 45.0) / 5.0).sqrt();
-    assert!(d10 < 1.0 / 1.2 && near(value(&sand, "least D10F"), d10), "{d10}");
+    assert!(d10 < 1.0 / 1.2 && near(value(&sand, "minimum D10F"), d10), "{d10}");
     let sources = [7, 9, 10].map(|at| sand.steps[at].source.as_str());
     assert!(sources.iter().all(|source| source.contains("this program")), "{sources:?}");
 }
@@ -105,7 +105,7 @@ fn the_band_that_is_said_is_the_one_of_the_last_step() {
         let of = of(points);
         let last = of.steps.last().unwrap();
         let said = |name: &str| last.values.iter().find(|of| of.name == name).unwrap().words().unwrap();
-        let [least, greatest] = ["least D15F", "greatest D15F"].map(said);
+        let [least, greatest] = ["minimum D15F", "maximum D15F"].map(said);
         let band = format!("D15F from {} to {greatest}, Cu", least.trim_end_matches(" mm"));
         assert!(of.band_in_words().unwrap().starts_with(&band), "{band}");
     }

@@ -71,17 +71,17 @@ class Specification:
 
     @property
     def d15f_min_mm(self) -> Optional[float]:
-        """Least D15F (mm) that drains the base; ``None`` where it is not known."""
+        """Minimum D15F (mm) that drains the base; ``None`` where it is not known."""
         return self.outcome["d15f_min_mm"]
 
     @property
     def d15f_max_mm(self) -> Optional[float]:
-        """Greatest D15F (mm) that retains the base; ``None`` where it is not known."""
+        """Maximum D15F (mm) that retains the base; ``None`` where it is not known."""
         return self.outcome["d15f_max_mm"]
 
     @property
     def set_by(self) -> Optional[str]:
-        """The rule that sets the greatest D15F; ``None`` where it is not known."""
+        """The rule that sets the maximum D15F; ``None`` where it is not known."""
         return self._set_by
 
     @property
@@ -111,7 +111,7 @@ class Specification:
 
     @property
     def fits(self) -> Dict[str, Optional[bool]]:
-        """Whether D15 of both sides of each product lies between least and greatest D15F, by its name; ``None``
+        """Whether D15 of both sides of each product lies between least and maximum D15F, by its name; ``None``
         where a limit that is not known decides."""
         return {of["product"]: fits for of, fits in zip(self.products, self._fits)}
 

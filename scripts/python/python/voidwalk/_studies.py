@@ -152,7 +152,7 @@ class Design:
 
     @property
     def d15f_max_mm(self) -> Optional[float]:
-        """Greatest D15F (mm) that walk and practice both allow; ``None`` where none is known."""
+        """Maximum D15F (mm) that walk and practice both allow; ``None`` where none is known."""
         answer = self.outcome.get("answer")
         return None if answer is None else answer["d15f_max_mm"]
 

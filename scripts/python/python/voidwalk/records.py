@@ -1375,7 +1375,7 @@ class DesignAnswer(_DesignAnswer, total=False):
     Keys
     ----
     d15f_max_mm
-        Greatest D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
+        Maximum D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
         size, and for the inverse.
     d85b_min_mm
         Finest D85B (mm) that both allow, for the inverse.
@@ -1475,16 +1475,16 @@ class Band(_Band, total=False):
     Keys
     ----
     least
-        Least D15F, of the rule of permeability.
+        Minimum D15F, of the rule of permeability.
     least_at_most
         Whether the true least is not known, and is at most that.
     greatest
-        Greatest D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
+        Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
         networks, and practice. Files of earlier versions hold that of the walk alone.
     set_by
         Which of the two set it; `None` in files of earlier versions.
     practice
-        Greatest D15F that the strictest rule of retention allows, which was made for this base.
+        Maximum D15F that the strictest rule of retention allows, which was made for this base.
     practice_rule
         Name of that rule.
     practice_rule_id
@@ -1749,11 +1749,11 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
     category
         Category of NRCS, 1 to 4.
     d15f_max_mm
-        Greatest D15F (mm) that retains it; `None` where it is not known.
+        Maximum D15F (mm) that retains it; `None` where it is not known.
     d15f_max_rule
         The rule that sets it.
     d15f_min_mm
-        Least D15F (mm) that drains it.
+        Minimum D15F (mm) that drains it.
     """
 
     regraded: List[List[float]]
@@ -1765,7 +1765,7 @@ class StepValue(TypedDict):
     Keys
     ----
     name
-        What it is, as `greatest D15F`.
+        What it is, as `maximum D15F`.
     value
         The number; `None` where it is not known.
     unit
@@ -1877,7 +1877,7 @@ class ProductMargin(TypedDict):
         D15 of its fine side over the least that drains: at least 1 where it drains. `None` where it is not
         known whether it drains.
     holds_by
-        The greatest D15F over D15 of its coarse side: at least 1 where it holds.
+        The maximum D15F over D15 of its coarse side: at least 1 where it holds.
     worst_sieve_mm
         The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
         within it.
@@ -1935,11 +1935,11 @@ class Specification(_Specification, total=False):
     steps
         Every step, with its numbers.
     d15f_min_mm
-        Least D15F (mm) that drains the base; `None` where it is not known.
+        Minimum D15F (mm) that drains the base; `None` where it is not known.
     d15f_min_at_most
         Whether the true least is not known, and is at most that.
     d15f_max_mm
-        Greatest D15F (mm) that is allowed; `None` where it is not known.
+        Maximum D15F (mm) that is allowed; `None` where it is not known.
     if_dispersive
         What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
         it has few fines.
@@ -2047,7 +2047,7 @@ class Design(_Design, total=False):
     products
         Standard products beside the narrowest band.
     products_confidence
-        How far it can be relied on that a product fits: as `confidence`, but at the greatest D15F that walk and
+        How far it can be relied on that a product fits: as `confidence`, but at the maximum D15F that walk and
         practice both allow; `None` without products.
     warnings
         The sentences of all others.

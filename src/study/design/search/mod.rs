@@ -1,4 +1,4 @@
-//! The search of one network: the least D15F/D85B at which its first run, and its second, erodes 7.5 %.
+//! The search of one network: the minimum D15F/D85B at which its first run, and its second, erodes 7.5 %.
 //!
 //! # Method
 //! Ratios are tried on one fixed scale, steps of 0.5 %, whatever the bracket; every sixteenth step (8 %) is a
