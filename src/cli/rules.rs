@@ -10,6 +10,7 @@ use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
+use crate::verdict::left_out::NOT_COVERED;
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -105,13 +106,13 @@ fn words(
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
         (RuleRole::Drainage, "The filter drains the base"),
         (RuleRole::Placing, "The filter can be placed"),
-        (RuleRole::Stability, "The filter holds its finer part"),
+        (RuleRole::Stability, "Internal stability of the filter"),
     ] {
         if by != Authority::All && listed.iter().all(|rule| rule.role != role) {
             continue;
         }
         line(String::new());
-        line(format!("{heading} (a rule that is not met speaks against {})", role.speaks_against()));
+        line(format!("{heading} (a rule that is not met argues against {})", role.speaks_against()));
         for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
@@ -125,8 +126,9 @@ fn words(
             wrapped(&rule.source, INDENT).into_iter().for_each(&mut line);
         }
     }
+    line(String::new());
+    line(NOT_COVERED.into());
     if let Some(stated) = &pair.by_authority {
-        line(String::new());
         line(stated.said.clone());
     }
     text

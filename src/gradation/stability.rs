@@ -24,6 +24,9 @@ use super::Gradation;
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
 
+/// Percent finer up to which grains of a widely graded soil may be loose.
+const WIDE_LOOSE_PERCENT: f64 = 20.0;
+
 /// Percent finer than d'85 over which Kezdi's ratio is judged.
 pub const KEZDI_RANGE: [f64; 2] = [15.0, 55.0];
 
@@ -35,15 +38,28 @@ const BETWEEN: f64 = 15.0;
 pub struct ShapeIndex {
     /// Its value.
     pub value: f64,
-    /// Percent finer where it is: F of Kenney and Lau, the split of Kezdi.
+    /// Percent finer where it is: F of Kenney and Lau.
     pub percent: f64,
+}
+
+/// A split of a soil in two, with Terzaghi's ratio of the coarser part over the finer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoilSplit {
+    /// D'15 / d'85.
+    pub value: f64,
+    /// Percent of the soil that is finer than the split.
+    pub percent: f64,
+    /// D'15 (mm): 15 % of the coarser part alone is finer.
+    pub coarse_d15_mm: f64,
+    /// d'85 (mm): 85 % of the finer part alone is finer.
+    pub fine_d85_mm: f64,
 }
 
 impl Gradation {
     /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not
     /// known.
     pub fn loose_percent(&self) -> Option<f64> {
-        Some(if self.cu()? > NARROW_CU { 20.0 } else { 30.0 })
+        Some(if self.cu()? > NARROW_CU { WIDE_LOOSE_PERCENT } else { 30.0 })
     }
 
     /// Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
@@ -59,7 +75,15 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
-        self.least_of_next(|finer| finer)
+        self.least_of_next(self.loose_percent()?, |finer| finer)
+    }
+
+    /// The same of as much of the curve as sieves tell: where D10 lies in a pan fraction, and Cu is more than
+    /// 3 all the same, from there up to F = 20 %. What it finds below 1 is not met, whatever the pan hides.
+    pub fn known_kenney_lau(&self) -> Option<ShapeIndex> {
+        let is_wide = self.d(60.0)? > NARROW_CU * self.smallest_mm();
+        let limit = self.loose_percent().or(is_wide.then_some(WIDE_LOOSE_PERCENT))?;
+        self.least_of_next(limit, |finer| finer)
     }
 
     /// Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
@@ -74,12 +98,11 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn li_fannin(&self) -> Option<ShapeIndex> {
-        self.least_of_next(|finer| finer.min(BETWEEN))
+        self.least_of_next(self.loose_percent()?, |finer| finer.min(BETWEEN))
     }
 
-    /// The least H / `over(F)` for F up to [`Gradation::loose_percent`].
-    fn least_of_next(&self, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
-        let limit = self.loose_percent()?;
+    /// The least H / `over(F)` for F up to `limit` (%).
+    fn least_of_next(&self, limit: f64, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
         let last = self.highest_size_at(limit)?;
         let between = self.highest_size_at(BETWEEN);
         let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]).chain(between);
@@ -87,7 +110,8 @@ impl Gradation {
             let finer = self.percent_finer_by_mass(d);
             let next = self.percent_finer_by_mass(4.0 * d) - finer;
             let of = over(finer);
-            (finer > 0.0 && finer <= limit).then_some(ShapeIndex { value: next / of, percent: finer })
+            (finer > 0.0 && finer <= limit * (1.0 + 1e-9))
+                .then_some(ShapeIndex { value: next / of, percent: finer })
         };
         candidates
             .filter(|d| (self.smallest_mm()..=last).contains(d))
@@ -98,7 +122,17 @@ impl Gradation {
     /// Kezdi: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
     /// `None` for a single size, or where a pan fraction hides all of that range.
-    pub fn kezdi(&self) -> Option<ShapeIndex> {
+    ///
+    /// ```
+    /// use voidwalk::gradation::Gradation;
+    /// // Half of the soil is finer than 1 mm: d'85 of that half is D42.5, D'15 of the other half is D57.5.
+    /// let soil = Gradation::linear_from_d0(0.1, 10.0)?;
+    /// let split = soil.kezdi().unwrap();
+    /// assert_eq!(soil.d(0.85 * split.percent), Some(split.fine_d85_mm));
+    /// assert!((split.value - split.coarse_d15_mm / split.fine_d85_mm).abs() < 1e-12);
+    /// # Ok::<(), voidwalk::gradation::GradationError>(())
+    /// ```
+    pub fn kezdi(&self) -> Option<SoilSplit> {
         // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
         if self.size_mm.len() < 2 {
             return None;
@@ -106,8 +140,9 @@ impl Gradation {
         let [low, high] = [KEZDI_RANGE[0].max(self.percent[0]), KEZDI_RANGE[1]];
         let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([low, high]);
         let index = |finer: f64| {
-            let value = self.highest_size_at(finer + BETWEEN)? / self.d(finer)?;
-            Some(ShapeIndex { value, percent: finer / 0.85 })
+            let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
+            let percent = finer / 0.85;
+            Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
         };
         candidates
             .filter(|&finer| (low..=high).contains(&finer))
@@ -146,6 +181,21 @@ mod tests {
             assert!((kenney_lau.percent - limit).abs() < 1e-9);
             assert!((g.kezdi().unwrap().value - libm::pow(cu, 0.3)).abs() < 1e-9, "{cu}");
         }
+    }
+
+    /// A size at F = 20 % may read as a hair more than 20 % finer, and is looked at all the same.
+    #[test]
+    fn the_end_of_the_loose_part_is_looked_at_whatever_its_last_digit() {
+        let mut beyond = 0;
+        for n in 1..400 {
+            let soil = points(&[(0.1, 0.0), (2.0 + 0.01 * f64::from(n), 40.0), (19.0, 100.0)]);
+            let d20 = soil.d(20.0).unwrap();
+            let finer = soil.percent_finer_by_mass(d20);
+            beyond += usize::from(finer > 20.0);
+            let at_end = (soil.percent_finer_by_mass(4.0 * d20) - finer) / finer;
+            assert!(soil.kenney_lau().unwrap().value <= at_end, "{n}");
+        }
+        assert!(beyond > 10, "{beyond}");
     }
 
     /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but
@@ -218,10 +268,41 @@ mod tests {
         assert!(gap.kezdi().unwrap().value > 10.0);
     }
 
+    /// ASTM C33 sand, split at 17.65 %: 85 % of the finer part is 15 % of the whole, and 15 % of the coarser
+    /// part with the finer one 30 %. Both parts are worked out by themselves here, each as 100 %.
+    #[test]
+    fn a_split_is_that_of_both_parts_by_themselves() {
+        let sizes = [0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
+        let percents = [6.0, 20.0, 42.5, 67.5, 90.0, 97.5, 100.0];
+        let sand = points(&sizes.into_iter().zip(percents).collect::<Vec<_>>());
+        let split = sand.kezdi().unwrap();
+        assert!((split.percent - 15.0 / 0.85).abs() < 1e-9, "{split:?}");
+        // D15 = 0.15 x 2^(9/14), D30 = 0.3 x 2^(10/22.5).
+        let (fine, coarse) = (0.15 * libm::pow(2.0, 9.0 / 14.0), 0.3 * libm::pow(2.0, 10.0 / 22.5));
+        assert!((split.fine_d85_mm - fine).abs() < 1e-9 && (split.coarse_d15_mm - coarse).abs() < 1e-9);
+        assert!((split.value - 1.743).abs() < 1e-3 && split.value == split.coarse_d15_mm / split.fine_d85_mm);
+        let at = sand.d(split.percent).unwrap();
+        let (share, rows) = (split.percent, || sizes.into_iter().zip(percents));
+        let finer = rows().filter(|row| row.0 < at).map(|(size, of)| (size, 100.0 * of / share));
+        let finer = points(&finer.chain([(at, 100.0)]).collect::<Vec<_>>());
+        assert!((finer.d(85.0).unwrap() - fine).abs() < 1e-9);
+        let coarser = rows().filter(|row| row.0 > at);
+        let coarser = coarser.map(|(size, of)| (size, 100.0 * (of - share) / (100.0 - share)));
+        let coarser = points(&[(at, 0.0)].into_iter().chain(coarser).collect::<Vec<_>>());
+        assert!((coarser.d(15.0).unwrap() - coarse).abs() < 1e-9);
+    }
+
     #[test]
     fn what_a_tail_hides_is_not_guessed() {
         let tail = points(&[(0.1, 35.0), (1.0, 60.0), (10.0, 100.0)]);
         assert_eq!(tail.kenney_lau(), None);
+        assert_eq!(tail.known_kenney_lau(), None);
+        // 14 % below the finest sieve, and 46 % straight over the next two decades: H is least at F = 20 %.
+        let clayey = points(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
+        let found = clayey.known_kenney_lau().unwrap();
+        let h = 46.0 * libm::log(4.0) / libm::log(100.0);
+        assert!(clayey.kenney_lau().is_none() && (found.value - h / 20.0).abs() < 1e-9, "{found:?}");
+        assert!((found.percent - 20.0).abs() < 1e-9);
         assert!(tail.kezdi().is_some());
         assert_eq!(Gradation::single(1.0).unwrap().kezdi(), None);
         assert_eq!(Gradation::single(1.0).unwrap().kenney_lau(), None);

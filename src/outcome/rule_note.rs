@@ -47,8 +47,6 @@ notes! {
     NeedsCurveOfFilterInMm,
     /// A test of a dispersive base with 15 to 40 % fines.
     NeedsTestOfDispersive,
-    /// A source of the boundary of excessive erosion.
-    NeedsNumbersOfBoundary,
     /// A first run that erodes something.
     NeedsErosion,
 
@@ -69,8 +67,13 @@ notes! {
     // What is known of a limit or a value.
     /// The filter is coarser than any limit that the base can have.
     BeyondAnyLimit,
-    /// Tests found no clear boundary for such bases.
+    /// Tests found no clear boundary for such bases: it is not a limit.
     NoClearBoundary,
+    /// The limit of design is its floor: so many times D85B are less (mm).
+    FloorGoverns(f64, f64),
+    /// D15B lies in the base's finest part, and so many times it are less (mm) than the least that any filter
+    /// is asked for.
+    LeastGoverns(f64, f64),
     /// D15F lies in the filter's finest part, and is at most the value.
     D15FAtMost,
     /// D15B lies in the base's finest part: the limit is at most the one given.
@@ -89,8 +92,10 @@ notes! {
     ChecksWalk,
 
     // What the filter's own stability was judged by.
-    /// F (%) of Kezdi's ratio, and the range of F that was searched (%).
+    /// The split (%) of Kezdi's ratio, D'15 of the coarser part and d'85 of the finer part.
     KezdiAt(f64, f64, f64),
+    /// The splits that were judged (%).
+    KezdiSplits(f64, f64),
     /// The share (%) of the filter that hides something of Kezdi's ratio.
     KezdiHidden(f64),
     /// F (%) of an index of shape, and the most that F can be (%).

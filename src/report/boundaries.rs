@@ -1,19 +1,18 @@
 //! The boundaries of practice at the row of D15F, as engineers know them from Foster and Fell: short vertical
 //! lines on the sheet of gradations.
 
-use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule};
+use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, PURPLE, Rule};
 use super::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{Outcome, RuleQuantity};
-use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION};
+use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
 
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
 /// The rules whose limit is a D15F: what stands beside the line, its colour, and what the caption says of it.
-const LIMITS: [(&str, &str, Colour, &str); 4] = [
+const LIMITS: [(&str, &str, Colour, &str); 3] = [
     (DESIGN, "design", GREY, "design (Sherard and Dunnigan)"),
     (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
-    (TESTS_EXCESSIVE, "EE", ORANGE, "excessive erosion (EE)"),
     (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 

@@ -7,6 +7,8 @@ use super::shell::clean;
 use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::verdict::by_authority::listed;
+use crate::verdict::practice::NOT_A_LIMIT;
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
 const DIGITS: i32 = 3;
@@ -14,7 +16,7 @@ const DIGITS: i32 = 3;
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        outcome.rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+        listed(&outcome.rules).into_iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
@@ -72,6 +74,11 @@ fn without_zeros(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
 
+/// What stands in the place of a limit that is not there.
+fn no_limit(rule: &AppliedRule) -> &'static str {
+    if rule.note.to_string().starts_with(NOT_A_LIMIT) { NOT_A_LIMIT } else { "–" }
+}
+
 /// Rules as a table.
 pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
@@ -81,7 +88,7 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
                 @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
-                    br; span.small { "If not met, it speaks against " (clean(&rule.speaks_against)) "." }
+                    br; span.small { "If not met, it argues against " (clean(&rule.speaks_against)) "." }
                 }
                 @for text in [&rule.note, &rule.needs] {
                     @if !text.is_empty() { br; span.small { b { (clean(&text.to_string())) } } }
@@ -99,7 +106,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let is_open = rule.at_least && rule.limit_at_most;
             let sign = if is_open { "not known; at most" } else { sign };
             let [_, limit] = value_and_limit(rule, unit);
-            let limit = clean(&limit.map_or_else(|| "–".to_owned(), |limit| format!("{sign} {limit}")));
+            let limit =
+                clean(&limit.map_or_else(|| no_limit(rule).to_owned(), |limit| format!("{sign} {limit}")));
             html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }
         })
         .text("", |rule| match (rule.role, rule.met) {

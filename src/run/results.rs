@@ -266,10 +266,14 @@ mod tests {
 
     /// What comes of a soil with so many percent of fines and a uniform filter of this D15F.
     fn walked(fines: f64, d15f: f64, set: &[&str]) -> Outcome {
+        walked_base(&format!("0.01,0\n0.075,{fines}\n0.3,92\n0.6,100\n"), d15f, set)
+    }
+
+    /// What comes of a soil with these rows and a uniform filter of this D15F.
+    fn walked_base(rows: &str, d15f: f64, set: &[&str]) -> Outcome {
         let folder = tempfile::tempdir().unwrap();
         let sheet = folder.path().join("base.csv");
-        let rows = format!("size_mm,percent_finer\n0.01,0\n0.075,{fines}\n0.3,92\n0.6,100\n");
-        std::fs::write(&sheet, rows).unwrap();
+        std::fs::write(&sheet, format!("size_mm,percent_finer\n{rows}")).unwrap();
         let soils = [
             format!("base.sieve={}", sheet.display()),
             "filter.curve=shire2016-cu1.5-loose".into(),
@@ -287,18 +291,55 @@ mod tests {
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
         let next = coarse.next_in_words();
-        let beside = "at most 0.700 mm (0.500 mm if the base is dispersive, which nobody has said); for";
+        let beside =
+            "at most 0.700 mm (0.500 mm if the base is dispersive, which is not stated) and at least ";
         assert!(next.contains(beside), "{:?}: {next}", coarse.verdict);
         let fine = Outcome { verdict: Verdict::None, ..walked(45.0, 0.06, &[]) };
         let next = fine.next_in_words();
-        let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which nobody has said)";
+        let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = walked(25.0, 9.0, &[]).next_in_words();
-        let beside = "(if the base is dispersive, which nobody has said, the limit is not known, and ";
+        let beside = "(if the base is dispersive, which is not stated, the limit is not known, and ";
         assert!(open.contains(beside), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
             assert!(said.if_dispersive.is_none() && !said.next_in_words().contains("dispersive"), "{set}");
         }
+    }
+
+    /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
+    /// it 0.111 mm, and neither the limit of design nor that of drainage follows it below its floor.
+    #[test]
+    fn the_next_step_names_the_floor_of_the_limit_of_design() {
+        const CLAY: &str = "0.002,51\n0.006,70\n0.02,87\n0.063,95\n0.63,100\n";
+        let next = |d15f, set: &[&str]| walked_base(CLAY, d15f, set).next_in_words();
+        let take = "take a filter with a D15F of at most 0.200 mm (the floor of the limit of design) and at \
+                    least 0.100 mm; tests saw no erosion up to 0.156 mm";
+        let exists = "for a filter that exists, have this pair tested";
+        assert_eq!(
+            next(2.2, &[]),
+            format!(
+                "{take}; whether the base is dispersive is not stated, and 6.4 D85B is 0.111 mm, below that \
+                 floor: have the base tested for dispersion, and if it is dispersive take a filter in two \
+                 stages or have this pair tested in the laboratory; {exists}"
+            )
+        );
+        assert_eq!(next(2.2, &["base.dispersive=false"]), format!("{take}; {exists}"));
+        // Of a base that is dispersive no size beyond what tests of such soils held is recommended.
+        assert_eq!(
+            next(2.2, &["base.dispersive=true"]),
+            format!("take a filter with a D15F of at most 0.111 mm and at least 0.100 mm; {exists}")
+        );
+        let between = next(0.18, &["base.dispersive=false"]);
+        assert_eq!(
+            between,
+            "have this pair tested: D15F meets the limit of design, whose floor is 0.200 mm, and tests saw \
+             no erosion up to 0.156 mm"
+        );
+        let fine = Outcome { verdict: Verdict::None, ..walked_base(CLAY, 0.08, &["base.dispersive=false"]) };
+        assert_eq!(
+            fine.next_in_words(),
+            "take a coarser filter, D15F 0.100 to 0.200 mm; tests saw no erosion up to 0.156 mm"
+        );
     }
 }

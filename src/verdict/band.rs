@@ -68,7 +68,7 @@ impl Band {
         let (least, greatest, unit) = (rounded_up(self.least), rounded_down(greatest), &self.unit);
         match self.least_at_most {
             true => format!(
-                "D15F up to {greatest} {unit}, by {set_by}; the least that drains is not known, and at \
+                "D15F up to {greatest} {unit}, by {set_by}; the minimum that drains is not known, and at \
                  most {least} {unit}: the base needs a hydrometer test"
             ),
             false => format!("D15F from {least} to {greatest} {unit}, the coarse side by {set_by}"),

@@ -2,7 +2,7 @@
 //! govern.
 
 use super::pair::{Mistake, PairOptions, PairRules};
-use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested, tested_words};
+use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested_words};
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{SizeUnit, rounded_up};
@@ -166,7 +166,7 @@ impl BatchRow {
             limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
             rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
             met,
-            tests: tested_words(tested(rules)).into(),
+            tests: tested_words(rules).into(),
             drains,
             d15f_min_mm: drainage.and_then(|rule| rule.limit),
             d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),
@@ -290,7 +290,7 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
     let limits = of_filter.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let limit = match row.d15f_min_at_most {
-        true => format!("the least D15F is not known, and at most {} mm", rounded_up(least)),
+        true => format!("the minimum D15F is not known, and at most {} mm", rounded_up(least)),
         false => format!("D15F {} mm or more", rounded_up(least)),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))

@@ -169,8 +169,11 @@ mod tests {
             "no erosion in the model, within checked range. Probability of no erosion in a test: 88 % by the \
              published range, 93 % by the walk"
         );
+        // Outside the checked range no number is to be relied on.
+        assert_eq!(rows[1].answer_in_words(), "no erosion in the model, contradicted by practice");
+        assert_eq!(rows[2].answer_in_words(), "some erosion in the model, outside checked range");
         // Beyond the boundary that tests saw nothing more favourable than the range is said.
-        let beyond = rows[1].answer_in_words();
+        let beyond = walked("E", false, Some((Verdict::None, Confidence::Within, false))).answer_in_words();
         assert!(
             beyond.contains("no erosion in a test: 88 % by the published range (the lower of two; "),
             "{beyond}"

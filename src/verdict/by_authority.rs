@@ -1,15 +1,32 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::pair::{PairRules, StatedByAuthority};
-use super::practice::{against, tested, tested_words};
+use super::practice::{against, tested_words};
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
-use crate::outcome::rules::{Authority, TESTS_CONTINUING, authority, is_stated_by};
+use crate::outcome::rules::{
+    Authority, PERMEABILITY, PERMEABILITY_LEAST, TESTS_CONTINUING, authority, is_stated_by,
+};
 
-/// The rules of practice that one authority states, in their order; those of the walk are none of them.
+/// The rules of practice that one authority states, in their order, as a sheet lists them; those of the walk
+/// are none of them.
 pub fn stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
+    listed(&all_stated_by(rules, by)).into_iter().cloned().collect()
+}
+
+fn all_stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
     rules.iter().filter(|rule| rule.role != RuleRole::Walk && is_stated_by(rule, by)).cloned().collect()
+}
+
+/// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first.
+pub fn listed(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
+    let repeats = |rule: &&AppliedRule| {
+        let is_said =
+            |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
+        rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_said)
+    };
+    rules.iter().filter(|rule| !repeats(rule)).collect()
 }
 
 impl PairRules {
@@ -26,7 +43,7 @@ impl PairRules {
     pub fn stated_by(mut self, by: Authority) -> Self {
         self.by_authority = of_pair(&self.rules, by, self.filter.d15_mm).map(|said| StatedByAuthority {
             authority: by.word().to_owned(),
-            rules: stated_by(&self.rules, by).into_iter().map(|rule| rule.id).collect(),
+            rules: all_stated_by(&self.rules, by).into_iter().map(|rule| rule.id).collect(),
             said,
         });
         self
@@ -145,7 +162,7 @@ fn without_result(left: &[&AppliedRule]) -> Vec<String> {
 /// How many rules are left out, the class of tests where that is one of them, and what is said of them.
 fn left_out(rules: &[AppliedRule], left: &[&AppliedRule], said: &[String]) -> String {
     let classes = match left.iter().any(|rule| rule.id == TESTS_CONTINUING) {
-        true => format!(", with Foster and Fell's classes ({})", tested_words(tested(rules))),
+        true => format!(", with Foster and Fell's classes ({})", tested_words(rules)),
         false => String::new(),
     };
     let begin = format!("Left out: {} rules of others{classes}", left.len());
@@ -193,6 +210,21 @@ mod tests {
                     assert!(is_listed || said.contains(&rule.name), "{by:?} at {scale}: {}", rule.name);
                 }
             }
+        }
+    }
+
+    /// A clay has the floor of both rules of drainage; of a sand they ask for 5 and 3 times D15B.
+    #[test]
+    fn a_limit_of_drainage_is_listed_once() {
+        let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None).unwrap();
+        let clay = [(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)];
+        for (base, count) in [(&clay[..], 1), (&[(0.1, 0.0), (0.4, 100.0)], 2)] {
+            let pair = PairRules::of(&Gradation::from_points(base, None).unwrap(), &filter);
+            let drains = |rule: &&AppliedRule| rule.id.starts_with(PERMEABILITY);
+            let listed = stated_by(&pair.rules, Authority::Usace);
+            assert_eq!(listed.iter().filter(drains).count(), count);
+            let named = pair.clone().stated_by(Authority::Usace).by_authority.unwrap().rules;
+            assert_eq!(named.iter().filter(|id| id.starts_with(PERMEABILITY)).count(), 2);
         }
     }
 
@@ -251,7 +283,7 @@ mod tests {
         let without = PairRules::of_envelopes(&base, &filter, PairOptions::default());
         let said = of_pair(&without.rules, Authority::Nrcs, without.filter.d15_mm).unwrap();
         assert!(
-            said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 4.")
+            said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 2.")
         );
         // Fines that nobody sieved.
         let open =

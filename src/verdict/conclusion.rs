@@ -1,17 +1,14 @@
-//! What every face says first: whether the filter holds, the line of practice, the line of the walk, what to
-//! do next, and the three findings that matter most.
+//! What every face says first: whether the filter holds, the line of practice, the line of the walk, and the
+//! three findings that matter most.
 
 use super::beside::is_evidence;
 use super::entry::COHESIVE_FINES;
-use super::practice::{Standing, broken, is_beyond_tests, listed, standing};
-use crate::outcome::design::band::retention;
+use super::practice::{Standing, broken, is_beyond_tests, standing};
+use super::probability::beside_range;
 use crate::outcome::digits::percent;
-use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{
-    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
 };
-use crate::outcome::rules::authority;
-use crate::outcome::undecided::UndecidedBy;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
 pub const FOREMOST: usize = 3;
@@ -33,7 +30,8 @@ impl Outcome {
     }
 
     /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
-    /// on soils of this kind make of it.
+    /// on soils of this kind make of it: within the checked range a probability, else where D15F lies beside
+    /// them.
     pub fn walk_in_words(&self) -> String {
         let mass = self.over_curve_range().map_or_else(
             || {
@@ -48,8 +46,8 @@ impl Outcome {
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
         }
-        match self.probability() {
-            Some(probability) => format!("{said}. {probability}"),
+        match self.beside_tests() {
+            Some(tests) => format!("{said}. {tests}"),
             None => said,
         }
     }
@@ -67,108 +65,15 @@ impl Outcome {
         Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
-    /// The probability that a test would show no erosion.
-    fn probability(&self) -> Option<String> {
-        let each = self.evidence.as_ref()?.probabilities(is_beyond_tests(&self.rules))?;
+    /// The probability that a test would show no erosion. Outside the checked range nobody can answer for
+    /// one: there stands where D15F lies beside the range of tests.
+    fn beside_tests(&self) -> Option<String> {
+        let evidence = self.evidence.as_ref()?;
+        if self.confidence != Confidence::Within {
+            return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?));
+        }
+        let each = evidence.probabilities(is_beyond_tests(&self.rules))?;
         Some(format!("Probability of no erosion in a test: {each}"))
-    }
-
-    /// What to do next, in a sentence without its end.
-    pub fn next_in_words(&self) -> String {
-        let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
-        match standing(&self.rules) {
-            Standing::Fails | Standing::NoMargin => {
-                let mut finer = match greatest(&self.rules, self.inputs.filter.d15_mm) {
-                    Some((limit, false)) => {
-                        format!("take a filter with a D15F of at most {} {unit}", rounded_down(limit))
-                    }
-                    Some((limit, true)) => format!(
-                        "take a finer filter; the limit lies below a D15F of {} {unit}, and is not known",
-                        rounded_down(limit)
-                    ),
-                    None => "take a finer filter".into(),
-                };
-                finer += &self.if_dispersive_in_words();
-                format!("{finer}; for a filter that exists, have this pair tested")
-            }
-            Standing::Unstable => {
-                let mut whose: Vec<String> = Vec::new();
-                for rule in broken(&self.rules, RuleRole::Stability) {
-                    let name = authority(rule).to_owned();
-                    if !whose.contains(&name) {
-                        whose.push(name);
-                    }
-                }
-                let rules = listed(&whose);
-                format!("take a filter that is stable by {rules}, or have its internal stability tested")
-            }
-            Standing::Unknown(needs) => format!("get {needs}"),
-            Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
-                Some(said) => said,
-                None => self.of_walk(),
-            },
-        }
-    }
-
-    /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
-    /// has said whether it is.
-    fn if_dispersive_in_words(&self) -> String {
-        let most = greatest(&self.rules, self.inputs.filter.d15_mm).map(|(most, _)| most);
-        let said = most.zip(self.if_dispersive).and_then(|(most, of)| of.beside(most));
-        said.map_or_else(String::new, |said| format!(" ({said})"))
-    }
-
-    fn of_drainage(&self) -> Option<String> {
-        let broken = broken(&self.rules, RuleRole::Drainage);
-        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-            broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
-        let fewer = if of_fines.is_empty() { "" } else { " with fewer fines" };
-        let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
-        match (least, greatest(&self.rules, self.inputs.filter.d15_mm)) {
-            // Where a base erodes in the walk no coarser filter is asked for.
-            (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
-                .then(|| {
-                    let [least, most] = [rounded_up(least), rounded_down(most)];
-                    let dispersive = self.if_dispersive_in_words();
-                    format!("take a coarser filter{fewer}, D15F {least} to {most} {unit}{dispersive}")
-                }),
-            (Some(_), _) => {
-                Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
-            }
-            (None, _) => (!of_fines.is_empty()).then(|| "take a filter with fewer fines".into()),
-        }
-    }
-
-    fn of_placing(&self) -> Option<String> {
-        (self.verdict == Verdict::None && breaks(&self.rules, RuleRole::Placing))
-            .then(|| "narrow the filter's range of sizes, or specify how it is placed".into())
-    }
-
-    fn of_walk(&self) -> String {
-        match (self.undecided_by(), self.verdict, self.confidence) {
-            (Some(UndecidedBy::Pan), ..) => "have the base's finest part tested with a hydrometer".into(),
-            (Some(UndecidedBy::Curve), ..) => {
-                "pack this filter at its density, so that its own constrictions are known".into()
-            }
-            (Some(UndecidedBy::SecondRun), ..) => "walk a second run".into(),
-            (Some(UndecidedBy::Replicates), ..) => "walk more replicates".into(),
-            (None, Verdict::None, confidence) => {
-                let next = match confidence {
-                    Confidence::Within => {
-                        "check what the model leaves out: cracks, segregation, placing, gradients"
-                    }
-                    _ => "have this pair tested: the findings say why",
-                };
-                self.of_dispersion().map_or(next.into(), |first| format!("{first}; {next}"))
-            }
-            (None, ..) => "have this pair tested: practice and walk differ".into(),
-        }
-    }
-
-    /// What to find out of a base of which nobody has said whether it is dispersive.
-    fn of_dispersion(&self) -> Option<String> {
-        let then = self.if_dispersive?.of_filter(self.inputs.filter.d15_mm);
-        Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 
     /// The findings that matter most, at most [`FOREMOST`], and how many more there are.
@@ -202,14 +107,6 @@ fn unfold(all: &mut [FindingRecord]) {
     keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
     keep(FOREMOST - 2, &|finding| finding.id == "dispersive_would_not_hold");
     keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
-}
-
-/// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
-/// known.
-fn greatest(rules: &[AppliedRule], d15f: f64) -> Option<(f64, bool)> {
-    let (_, limit) = retention(rules, d15f)?;
-    let is_of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && rule.applies;
-    Some((limit, rules.iter().any(|rule| is_of_role(rule) && rule.limit_at_most)))
 }
 
 /// Beyond the limit of design, and within the boundary of no erosion.
@@ -266,7 +163,7 @@ fn reservation(confidence: Confidence) -> &'static str {
         Confidence::MayNotDrain => "the filter may not drain the base",
         Confidence::MaySegregate => "the filter may segregate when placed",
         Confidence::Unstable => "the filter may lose its finer part",
-        Confidence::Contradicted => "another rule speaks against it",
+        Confidence::Contradicted => "another rule argues against it",
         Confidence::Within | Confidence::Outside => {
             "the walk agrees, outside the range in which it was checked"
         }
@@ -295,7 +192,6 @@ fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
     use crate::verdict::{PairRules, judge};
 
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
@@ -380,24 +276,6 @@ mod tests {
         assert!(
             hidden.starts_with("nobody can say yet: practice needs finer sieves of the base; "),
             "{hidden}"
-        );
-    }
-
-    /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
-    #[test]
-    fn no_advice_goes_beyond_what_tests_saw() {
-        let base = [(0.01, 10.0), (0.075, 38.0), (0.425, 60.0), (2.0, 90.0), (4.75, 100.0)];
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
-        let rules = PairRules::of(&soil(&base), &soil(&[(0.7, 0.0), (3.0, 100.0)])).rules;
-        let limit = |id: &str| rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
-        assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
-        let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap();
-        assert_eq!(greatest(&rules, d15f), Some((limit(TESTS_NO_EROSION), false)));
-        let practice = crate::verdict::practice::practice_in_words(&rules);
-        assert!(practice.starts_with("not met: D15F "), "{practice}");
-        assert!(
-            practice.contains("is more than the 0.700 mm up to which tests saw no erosion"),
-            "{practice}"
         );
     }
 }

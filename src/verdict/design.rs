@@ -177,7 +177,7 @@ impl<'a> Case<'a> {
                 cited_rule(rule)
             ),
             Self::Open(limit, rule, held) => format!(
-                "The greatest D15F is not known: the limit of practice is at most {} ({}; {}){}",
+                "The maximum D15F is not known: the limit of practice is at most {} ({}; {}){}",
                 sizes.size(limit.ratio),
                 cited_rule(limit.rule),
                 if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() },
@@ -446,7 +446,7 @@ mod tests {
             let answer = open.answer();
             assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b, &answer.rule), (None, None, &None));
             assert!(
-                answer.said.starts_with("The greatest D15F is not known: the limit of practice is at most 7")
+                answer.said.starts_with("The maximum D15F is not known: the limit of practice is at most 7")
             );
             assert_eq!(
                 answer.said.contains("the walk alone holds D15F up to"),

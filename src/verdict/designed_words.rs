@@ -28,9 +28,9 @@ impl DesignedSample {
     fn greatest_in_words(&self) -> String {
         let rule = self.rule_of_answer();
         match (self.d15f_max_mm, self.limit_mm, self.set_by()) {
-            (None, None, _) => "no greatest D15F is known".into(),
+            (None, None, _) => "no maximum D15F is known".into(),
             (None, Some(limit), _) => format!(
-                "no greatest D15F is known; practice allows {} mm at most ({})",
+                "no maximum D15F is known; practice allows {} mm at most ({})",
                 rounded_down(limit),
                 self.rule
             ),
@@ -49,7 +49,7 @@ impl DesignedSample {
             Some(limit) => format!("limit of practice {} mm", rounded_down(limit)),
             None => "limit of practice not known".into(),
         };
-        format!("May govern, as no greatest D15F is known: {} ({limit}): {}", self.sample, within_line(why))
+        format!("May govern, as no maximum D15F is known: {} ({limit}): {}", self.sample, within_line(why))
     }
 }
 
@@ -78,7 +78,7 @@ impl DesignedSamples {
                     row.sample,
                     rounded_down(mm)
                 ),
-                None => "No greatest D15F is known for any sample".into(),
+                None => "No maximum D15F is known for any sample".into(),
             };
         };
         let cap = cap.filter(|(_, mm)| *mm < own);
@@ -94,7 +94,7 @@ impl DesignedSamples {
         let within = cap.map_or_else(String::new, |(row, _)| format!(" within the limit of {}", row.sample));
         let mm = rounded_down(greatest);
         let Some((row, least)) = drainage(settled.iter().copied()) else {
-            return format!("A filter for {of}{within}: D15F up to {mm} mm; no least D15F is known");
+            return format!("A filter for {of}{within}: D15F up to {mm} mm; no minimum D15F is known");
         };
         let (at_most, from) = (row.d15f_min_at_most, rounded_up(least));
         let and = if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
@@ -130,7 +130,7 @@ impl DesignedSamples {
             let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
             let limit = rounded_up(least);
             said.push(format!(
-                "Drainage is governed by {}: least D15F {at_most}{limit} mm{open}",
+                "Drainage is governed by {}: minimum D15F {at_most}{limit} mm{open}",
                 row.sample
             ));
         }
@@ -186,7 +186,7 @@ impl DesignedSamples {
         }
         let each = |(by, count): &(&str, usize)| format!("for {} by {by}", counted(*count));
         let each: Vec<String> = counts.iter().map(each).collect();
-        (!each.is_empty()).then(|| format!("The greatest D15F is set {}", each.join(", ")))
+        (!each.is_empty()).then(|| format!("The maximum D15F is set {}", each.join(", ")))
     }
 
     /// The confidences below the best, once each.
@@ -264,13 +264,13 @@ mod tests {
         let said = all.in_words().join("\n");
         for words in [
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
-            "Governing sample silt: no greatest D15F is known; practice allows ",
+            "Governing sample silt: no maximum D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
             "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is, practice allows it \
              D15F up to ",
-            "The greatest D15F is set for 1 sample by the walk, for 1 sample by practice",
+            "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",
             "Outside checked range: 2 of 2 samples",
-            "May govern, as no greatest D15F is known: silt (limit of practice ",
+            "May govern, as no maximum D15F is known: silt (limit of practice ",
             "mm): No ratio is known",
         ] {
             assert!(said.contains(words), "{words}: {said}");
@@ -292,7 +292,7 @@ mod tests {
         let said = all.for_all_in_words();
         assert!(said.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{said}");
         let none = DesignedSamples::new("s".into(), Vec::new());
-        assert_eq!(none.for_all_in_words(), "No greatest D15F is known for any sample");
+        assert_eq!(none.for_all_in_words(), "No maximum D15F is known for any sample");
     }
 
     /// Each of these gravels has a D60F beyond the greatest size; between their limits there is no band.

@@ -28,11 +28,11 @@ impl IfDispersive {
         let limit = rounded_down(self.d15f_max_mm);
         match self.at_most {
             true => Some(format!(
-                "if the base is dispersive, which nobody has said, the limit is not known, and {limit} mm or \
+                "if the base is dispersive, which is not stated, the limit is not known, and {limit} mm or \
                  less"
             )),
             false if self.d15f_max_mm < d15f_mm => {
-                Some(format!("{limit} mm if the base is dispersive, which nobody has said"))
+                Some(format!("{limit} mm if the base is dispersive, which is not stated"))
             }
             false => None,
         }

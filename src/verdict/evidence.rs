@@ -34,10 +34,11 @@ const STEEP: f64 = 4.0;
 const SHARES: [f64; 2] = [0.9, 0.5];
 
 /// Findings that the soils and filters of the study had themselves: they are in its ratio.
-const STUDIED: [&str; 7] = [
+const STUDIED: [&str; 8] = [
     COHESIVE_FINES,
     "broadly_graded",
     "cu_unchecked",
+    "cu_at_least",
     "cu_in_doubt",
     "cu_unknown",
     "library_of_any_density",

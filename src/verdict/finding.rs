@@ -137,14 +137,14 @@ findings! {
     /// Networks that hold every ratio.
     holds_everywhere(ratio: Ratio, at: Text): Study, Open, Limits;
         "search", "design.md",
-        "Nearly all networks hold as far as was searched, to D15F/D85B {ratio}{at}. The greatest D15F is \
+        "Nearly all networks hold as far as was searched, to D15F/D85B {ratio}{at}. The maximum D15F is \
          therefore not known.",
         to do "A higher end of --bracket may find it.";
     /// A median beyond the search.
     median_beyond(ratio: Ratio, eroding: Count, networks: Count, at: Text): Study, Open, Limits;
         "search", "design.md",
         "Nearly all networks hold to D15F/D85B {ratio}{at}; {eroding} of {networks} erode within the search, \
-         and the median lies beyond it. The greatest D15F is therefore not known.",
+         and the median lies beyond it. The maximum D15F is therefore not known.",
         to do "A higher end of --bracket may find it.";
     /// A search that ends while the base erodes.
     erodes_to_end(ratio: Ratio, of: Text): Study, Open, Limits;
@@ -324,6 +324,11 @@ findings! {
     cu_unchecked(soil: Text, cu: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
         "The Cu of the {soil} is {cu}, and the model was checked for {low} to {high}.";
+    /// A Cu of which only the least is known, and that is out of the checked range.
+    cu_at_least(soil: Text, cu: Ratio, d10: Mm, low: Ratio, high: Ratio): Base, Open, Limits;
+        "uniformity", "soils.md",
+        "The Cu of the {soil} is more than {cu} (D10 is finer than {d10}), and the model was checked for \
+         {low} to {high}.";
     /// A Cu between two bounds, of which one is out of the checked range.
     cu_in_doubt(soil: Text, least: Ratio, most: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
@@ -354,7 +359,7 @@ findings! {
     /// Constrictions from the library, at a density that is not known.
     library_of_any_density(off_by: Percent): Constrictions, Open, Limits;
         "density", "uncertainty.md",
-        "How densely the filter lies is not known. Its constrictions come from packings of filters like it: \
+        "The density of the filter is not given. Its constrictions come from packings of filters like it: \
          loose and dense are both walked, and {off_by} beyond either; the worst counts.",
         to do "filter.library says how densely it lies; filter.density packs this very filter.";
     /// Constrictions from the library.
@@ -452,6 +457,12 @@ findings! {
         "The walk errs on the safe side for this pair. D15F/D85B is {ratio}, tests found no erosion up to \
          D15F {limit} (Foster and Fell), and this network retains uniform sands up to a ratio near \
          {holds}.";
+    /// A base that is not stable itself.
+    unstable_base(index: Ratio, finer: Percent): Base, Unsafe, Note;
+        "internal stability of the base", "rules.md",
+        "The base itself is not internally stable by Kenney and Lau: the minimum H/F is {index}, at F = \
+         {finer}, and the limit is 1. That rule is for soils without cohesion. Water may move the finer part \
+         through the base, so that another soil meets the filter.";
     /// Which class the replicates leave open.
     replicates_leave_open(): Walk, Open, Decides, sets Within, against OPEN;
         "replicates", "uncertainty.md",
@@ -531,7 +542,7 @@ findings! {
     /// Studies that were not asked for.
     not_studied(): Study, Open, Note;
         "studies", "uncertainty.md",
-        "How the verdict moves with the amount of base and with the thickness was not studied.";
+        "How the verdict changes with the amount of base and with the thickness was not studied.";
     /// Ratios that hold above one that erodes.
     not_monotone(networks: Count): Study, Open, Note;
         "search", "design.md",
@@ -595,20 +606,20 @@ findings! {
         "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";
     /// A verdict that other thicknesses share.
     stays_with_thickness(each: Text): Thickness, Settled, Note;
-        "thickness", "uncertainty.md", "The verdict stays with thickness ({each}).";
+        "thickness", "uncertainty.md", "The verdict does not change with thickness ({each}).";
     /// A verdict that other thicknesses do not share.
     moves_with_thickness(each: Text): Thickness, Open, Note;
-        "thickness", "uncertainty.md", "The verdict moves with thickness ({each}).";
+        "thickness", "uncertainty.md", "The verdict changes with thickness ({each}).";
     /// Other thicknesses of a verdict that is undecided.
     open_with_thickness(points: Text, each: Text): Thickness, Open, Note;
         "thickness", "uncertainty.md",
         "The verdict is undecided; at other thicknesses{points} ({each}).";
     /// A verdict that other amounts of base share.
     stays_with_amount(each: Text): Amount, Settled, Note;
-        "amount of base", "uncertainty.md", "The verdict stays with the amount of base ({each}).";
+        "amount of base", "uncertainty.md", "The verdict does not change with the amount of base ({each}).";
     /// A verdict that other amounts of base do not share, none of them with a worse class.
     moves_with_amount(each: Text): Amount, Open, Note;
-        "amount of base", "uncertainty.md", "The verdict moves with the amount of base ({each}).";
+        "amount of base", "uncertainty.md", "The verdict changes with the amount of base ({each}).";
     /// Other amounts of base of a verdict that is undecided.
     open_with_amount(points: Text, each: Text): Amount, Open, Note;
         "amount of base", "uncertainty.md",

@@ -64,10 +64,13 @@ impl<'de> Deserialize<'de> for ModelLimit {
     }
 }
 
-/// What the model does not contain, in one sentence.
+/// What no rule covers, as no text was read that gives its numbers.
+pub const NOT_COVERED: &str = "Not covered by the rules: segregation, excessive erosion.";
+
+/// What the model does not contain and what no rule covers, in two sentences.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| limit.parts().0).collect();
-    format!("The model leaves out: {}.", brief.join("; "))
+    format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
 }
 
 /// A part of the program that a scene does not need, or a study of which nothing is walked.
@@ -328,7 +331,8 @@ mod tests {
             "{brief}"
         );
         assert!(brief.ends_with(
-            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter."
+            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter. \
+             Not covered by the rules: segregation, excessive erosion."
         ));
     }
 }

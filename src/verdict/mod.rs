@@ -17,7 +17,8 @@
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
 //!   and [`WalkedBatch`] is them with what their walks say.
-//! - `conclusion` has what every face says first: headline, line of practice, line of the walk, what to do.
+//! - `conclusion` has what every face says first: headline, line of practice, line of the walk; `next` has
+//!   what to do.
 //! - `words` are what a class means.
 
 mod amount;
@@ -37,6 +38,7 @@ mod entry;
 pub(crate) mod evidence;
 pub(crate) mod finding;
 pub(crate) mod left_out;
+mod next;
 mod pair;
 mod planned_walk;
 pub(crate) mod practice;

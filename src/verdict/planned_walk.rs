@@ -58,7 +58,8 @@ impl PlannedWalk<'_> {
             self.fines(),
             self.broad_base(),
             self.cu_of_filter(),
-            not_as_uniform("base", self.base_cu, BASE_CU),
+            self.cu_of_base(),
+            self.unstable_base(),
             self.passive_pan(),
             self.filter.is_none().then(finding::no_filter),
             self.gap(),
@@ -105,6 +106,25 @@ impl PlannedWalk<'_> {
         not_as_uniform("filter", self.filter?.cu().map(|cu| [cu, cu]), FILTER_CU)
     }
 
+    /// Where D10 is finer than the finest sieve and blocks nothing, its size is never looked for: Cu is more
+    /// than with all of that part as coarse as that sieve.
+    fn cu_of_base(&self) -> Option<Finding> {
+        let [low, high] = BASE_CU;
+        match (self.base.cu(), self.base_cu) {
+            (None, Some([least, most])) if least == most && !is_within(least, BASE_CU) => {
+                Some(finding::cu_at_least("base", least, self.base.smallest_mm(), low, high))
+            }
+            (_, cu) => not_as_uniform("base", cu, BASE_CU),
+        }
+    }
+
+    /// A base whose own finer part its coarser part does not hold.
+    fn unstable_base(&self) -> Option<Finding> {
+        let stated = self.regraded_from.unwrap_or(self.base);
+        let found = stated.known_kenney_lau().filter(|found| found.value < 1.0 && !self.scale_free)?;
+        Some(finding::unstable_base(found.value, found.percent))
+    }
+
     fn passive_pan(&self) -> Option<Finding> {
         let percent = 100.0 * self.base.pan_fraction();
         (self.pan_is_passive && percent > 0.0).then(|| finding::pan_passive(percent))
@@ -139,12 +159,15 @@ impl PlannedWalk<'_> {
     }
 }
 
+fn is_within(cu: f64, [low, high]: [f64; 2]) -> bool {
+    (low - 1e-9..=high + 1e-9).contains(&cu)
+}
+
 /// That a soil, whose Cu lies between two bounds, is more or less uniform than those for which the model was
 /// checked.
 fn not_as_uniform(soil: &str, cu: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<Finding> {
-    let is_within = |cu: f64| (low - 1e-9..=high + 1e-9).contains(&cu);
     match cu {
-        Some([least, most]) if is_within(least) && is_within(most) => None,
+        Some([least, most]) if is_within(least, [low, high]) && is_within(most, [low, high]) => None,
         Some([least, most]) if most - least < 0.005 => Some(finding::cu_unchecked(soil, least, low, high)),
         Some([least, most]) => Some(finding::cu_in_doubt(soil, least, most, low, high)),
         None => Some(finding::cu_unknown(soil, low, high)),
@@ -195,14 +218,17 @@ mod tests {
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
             (&hidden, vec!["fines_not_sieved", "pan_passive"], vec!["pan_passive"]),
-            (&till, vec!["not_regraded"], vec![]),
+            (&till, vec!["not_regraded", "unstable_base"], vec![]),
             (&broad, vec!["broadly_graded"], vec![]),
         ] {
             let plan = PlannedWalk { base, ..plan.clone() };
             assert_eq!(ids(&plan), in_mm);
             assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
         }
-        assert_eq!(ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }), [""; 0]);
+        assert_eq!(
+            ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
+            ["unstable_base"]
+        );
         let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
         assert_eq!(ids(&exchanged), ["doubtful_tables"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
@@ -212,6 +238,18 @@ mod tests {
         assert_eq!(of(&|plan| plan.base_cu = None), ["cu_unknown"]);
         assert_eq!(of(&|plan| plan.base_cu = Some([4.6, 4.6])), ["cu_unchecked"]);
         assert_eq!(of(&|plan| plan.base_cu = Some([4.0, 5.0])), ["cu_in_doubt"]);
+        // 14 % finer than 0.002 mm, D60 0.2 mm.
+        let clayey = soil(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
+        let open = PlannedWalk { base: &clayey, base_cu: Some([100.0, 100.0]), ..plan.clone() };
+        let found = open.findings();
+        let cu = found.iter().find(|of| of.id() == "cu_at_least").unwrap();
+        assert_eq!(
+            cu.sentence(),
+            "The Cu of the base is more than 100 (D10 is finer than 0.002 mm), and the model was checked for \
+             1.2 to 4.5."
+        );
+        let within = PlannedWalk { base: &clayey, base_cu: Some([3.0, 3.0]), ..plan.clone() };
+        assert!(!ids(&within).iter().any(|id| id.starts_with("cu_")), "{:?}", ids(&within));
         assert_eq!(of(&|plan| plan.given_voids = Some(7)), ["given_network"]);
         assert_eq!(of(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
         assert_eq!(of(&|plan| plan.flows = true), ["all_on_its_way"]);

@@ -13,6 +13,9 @@ use crate::outcome::rules::{
     DESIGN, PAPER_NO_EROSION, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
 };
 
+/// How the note of a rule begins that is no limit for these soils.
+pub const NOT_A_LIMIT: &str = "not a limit";
+
 /// Said where the rule of drainage has no result.
 pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
@@ -131,8 +134,16 @@ pub(super) fn tested(rules: &[AppliedRule]) -> TestedClass {
     }
 }
 
-/// A class by tests, in words.
-pub(super) fn tested_words(class: TestedClass) -> &'static str {
+/// The class by the tests of Foster and Fell, in words: beyond their boundary of no erosion a base has
+/// erosion, also where they found no clear boundary of the classes beyond.
+pub(super) fn tested_words(rules: &[AppliedRule]) -> &'static str {
+    match tested(rules) {
+        TestedClass::Unknown if is_beyond_tests(rules) => "erosion, class not known",
+        class => class_words(class),
+    }
+}
+
+fn class_words(class: TestedClass) -> &'static str {
     match class {
         TestedClass::None => "no erosion",
         TestedClass::Some => "some or excessive erosion",
@@ -204,10 +215,13 @@ impl Outcome {
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
+        let said = tested_words(&self.rules);
         let tests = match tested(&self.rules) {
-            TestedClass::None => Some((0, "no erosion")),
-            TestedClass::Some | TestedClass::Excessive => Some((1, "some or excessive erosion")),
-            TestedClass::Continuing => Some((2, "continuing erosion")),
+            TestedClass::None => Some((0, said)),
+            TestedClass::Some | TestedClass::Excessive => Some((1, said)),
+            TestedClass::Continuing => Some((2, said)),
+            // At least some erosion.
+            TestedClass::Unknown if is_beyond_tests(&self.rules) => Some((1, said)),
             TestedClass::Unknown => None,
         };
         let walked = severity(self.verdict);
@@ -222,6 +236,7 @@ impl Outcome {
             None => "The limit of design (Sherard and Dunnigan) gives no result. ",
         };
         text += match walked.zip(tests.map(|(class, _)| class)) {
+            _ if tested(&self.rules) == TestedClass::Unknown && walked != Some(0) => "",
             Some((walked, tests)) if walked > tests => {
                 "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
             }
@@ -329,19 +344,21 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     let is_unclear = rules.iter().any(|rule| {
         rule.id == TESTS_CONTINUING && rule.note == RuleText::Of(vec![RuleNote::NoClearBoundary])
     });
-    let unclear = if is_unclear { ", where tests found no clear boundary" } else { "" };
-    let beyond = limit(TESTS_CONTINUING).map(|of| format!("{of}{unclear}"));
+    let beyond = limit(TESTS_CONTINUING);
     let from = beyond.as_ref().map(|of| format!("continuing erosion beyond {of}"));
-    let class = tested(rules);
-    let between = match class {
+    let unclear = "for such bases tests found no clear boundary of continuing erosion";
+    let from = from.or_else(|| is_unclear.then(|| unclear.into()));
+    let between = match tested(rules) {
         TestedClass::None => limit(TESTS_NO_EROSION).map(|of| format!("up to {of}")),
         TestedClass::Continuing => beyond.map(|of| format!("beyond {of}")),
         TestedClass::Excessive => from,
         TestedClass::Some => up_to.zip(from).map(|(a, b)| format!("{a}, {b}")),
-        TestedClass::Unknown => up_to.or(from),
+        TestedClass::Unknown => match (up_to, from) {
+            (Some(up_to), Some(from)) if is_beyond_tests(rules) => Some(format!("{up_to}; {from}")),
+            (up_to, from) => up_to.or(from),
+        },
     };
-    let class = tested_words(class);
-    Some(format!("Foster and Fell: {class} ({})", between?))
+    Some(format!("Foster and Fell: {} ({})", tested_words(rules), between?))
 }
 
 /// Whether a rule that was made for these soils is kept; `None` where it has no result.
@@ -436,10 +453,13 @@ mod tests {
 
     #[test]
     fn the_limit_of_design_and_the_class_of_tests_stand_in_one_line() {
-        let begin = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
-                     (design); Foster and Fell: some or excessive erosion (no erosion up to 0.700 mm, \
-                     continuing erosion beyond ";
-        assert!(said(&GRAVEL, &TILL).starts_with(begin), "{}", said(&GRAVEL, &TILL));
+        // With 38 % fines and a D95B of 2.6 mm tests found no clear boundary of continuing erosion.
+        let whole = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
+                     (design); Foster and Fell: erosion, class not known (no erosion up to 0.700 mm; for \
+                     such bases tests found no clear boundary of continuing erosion)";
+        assert_eq!(said(&GRAVEL, &TILL), whole);
+        let between = said(&[(3.7, 0.0), (8.0, 100.0)], &SAND);
+        assert!(between.contains("Fell: some or excessive erosion (no erosion up to 3.56 mm, continuing"));
         assert_eq!(
             said(&[(1.0, 0.0), (3.0, 100.0)], &SAND),
             "met: D15F 1.18 mm is within the 2.03 mm that Sherard and Dunnigan allow (design); Foster and \

@@ -1,5 +1,7 @@
-//! The probability that a test would show no erosion, in words.
+//! The probability that a test would show no erosion, in words, and a D15F beside the range of tests.
 
+use crate::outcome::apart::digits_of;
+use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Bound;
 
 /// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
@@ -44,9 +46,47 @@ pub fn probabilities(
     (!each.is_empty()).then(|| each.join(", "))
 }
 
+/// Where a D15F (mm) lies beside the range of D15F in which tests on soils with such fines had their boundary
+/// of no erosion: what can be said without any probability.
+pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2]) -> String {
+    let of = |end: f64| digits_of(d15f_mm / end, 2);
+    match d15f_mm {
+        d15f if d15f < low => format!(
+            "D15F is {} of the lowest D15F with erosion in tests on soils with such fines ({} mm)",
+            of(low),
+            rounded_down(low)
+        ),
+        d15f if d15f > high => format!(
+            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm)",
+            of(high),
+            rounded_up(high)
+        ),
+        _ => format!(
+            "D15F lies in the range in which erosion began in tests on soils with such fines ({} to {} mm)",
+            rounded_down(low),
+            rounded_up(high)
+        ),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Tests of bases with 35 to 85 % fines had their boundary at 0.7 to 1.7 mm.
+    #[test]
+    fn a_d15f_stands_beside_the_range_of_tests_without_a_probability() {
+        let said = |d15f| beside_range(d15f, [0.7, 1.7]);
+        assert_eq!(
+            said(0.234),
+            "D15F is 0.33 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm)"
+        );
+        assert!(said(0.7).starts_with("D15F lies in the range in which erosion began"), "{}", said(0.7));
+        assert!(said(1.7).ends_with("(0.700 to 1.70 mm)"), "{}", said(1.7));
+        let coarse = said(2.21);
+        assert!(coarse.starts_with("D15F is 1.3 times the highest D15F without erosion"), "{coarse}");
+        assert!(coarse.ends_with("(1.70 mm)"), "{coarse}");
+    }
 
     #[test]
     fn beyond_the_boundary_of_tests_the_lower_probability_stands_alone() {

@@ -33,9 +33,6 @@ impl RuleNote {
                 "needs a test of this soil: it is dispersive, and no source that was read gives its limit \
                  with so few fines; that of other soils is the most that it can be"
             }
-            Self::NeedsNumbersOfBoundary => {
-                "needs the numbers of this rule: no text that could be read gives them"
-            }
             Self::NeedsErosion => "needs a walk whose first run erodes something",
             Self::Dispersive => "dispersive",
             Self::Category(category) => return format!("base category {category}"),
@@ -45,7 +42,14 @@ impl RuleNote {
             Self::ResultOfModel => "a result of the model, for the base as it is walked",
             Self::BeyondAnyLimit => "beyond the most that the limit can be",
             Self::NoClearBoundary => {
-                "for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear boundary"
+                "not a limit: for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear \
+                 boundary"
+            }
+            Self::FloorGoverns(times, size) => {
+                return format!("the floor: {} D85B is {} mm", given(times), fixed(size, 3));
+            }
+            Self::LeastGoverns(times, size) => {
+                return format!("the floor: {} D15B is below {} mm", given(times), fixed(size, 3));
             }
             Self::D15FAtMost => "D15F is finer than the finest sieve: at most this",
             Self::LimitAtMost => "D15B is finer than the finest sieve: the limit is at most this",
@@ -61,13 +65,16 @@ impl RuleNote {
             }
             Self::LessThanSource => "less than 0.01 %",
             Self::ChecksWalk => "checks the walk against their tests, not the filter",
-            Self::KezdiAt(at, from, to) => {
+            Self::KezdiAt(split, coarse, fine) => {
+                let [coarse, fine] = [coarse, fine].map(significant);
                 return format!(
-                    "at F = {} %, judged from F = {} to {} %",
-                    fixed(at, 0),
-                    given(from),
-                    given(to)
+                    "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part \
+                     {fine} mm",
+                    fixed(split, 1)
                 );
+            }
+            Self::KezdiSplits(from, to) => {
+                return format!("judged over splits at {} to {} % finer", fixed(from, 1), fixed(to, 1));
             }
             Self::KezdiHidden(share) => {
                 let share = fixed(share, 0);

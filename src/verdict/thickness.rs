@@ -104,13 +104,14 @@ mod tests {
         let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)], Verdict::Some, None).unwrap();
         assert_eq!(
             stays,
-            "The verdict stays with thickness (2 times as thick: some erosion, 10.00 % eroded in 1 \
+            "The verdict does not change with thickness (2 times as thick: some erosion, 10.00 % eroded in 1 \
              replicate)."
         );
         let rows = [row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)];
         let moves = sentence(&rows, Verdict::Some, None).unwrap();
         assert!(
-            moves.starts_with("The verdict moves with thickness (0.5 times as thick: some erosion, 20.00 %")
+            moves
+                .starts_with("The verdict changes with thickness (0.5 times as thick: some erosion, 20.00 %")
         );
         assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
         let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };

@@ -154,8 +154,12 @@ impl SampleWalk {
         if self.in_full { "in full" } else { "first look" }
     }
 
-    /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`.
+    /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`;
+    /// `None` outside the checked range, where no number is to be relied on.
     pub fn probability_in_words(&self) -> Option<String> {
+        if self.confidence != Confidence::Within {
+            return None;
+        }
         let of_walk = (self.probability_no_erosion, self.probability_bound);
         probabilities(of_walk, self.probability_by_tests, self.beyond_tests)
     }

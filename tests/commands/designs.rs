@@ -71,8 +71,7 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     assert_eq!(least["governs"], 1);
     let governing = format!("Governing sample {}: D15F up to ", least["sample"].as_str().unwrap());
     let page = fs::read_to_string(at.join("d/designs.html")).unwrap();
-    for words in
-        [governing.as_str(), "The greatest D15F is set for ", "Outside checked range: 3 of 3 samples"]
+    for words in [governing.as_str(), "The maximum D15F is set for ", "Outside checked range: 3 of 3 samples"]
     {
         assert!(said.contains(words) && page.contains(words), "{words}: {said}");
     }
@@ -324,5 +323,5 @@ fn samples_without_a_band_of_their_own_are_named_and_not_served() {
         .unwrap();
     designed(at, &["design", "mix.csv", "--each", "--steps", "--out", "m"]);
     let page = fs::read_to_string(at.join("m/designs.html")).unwrap();
-    assert!(page.contains("May govern, as no greatest D15F is known: Cut (limit of practice not known): "));
+    assert!(page.contains("May govern, as no maximum D15F is known: Cut (limit of practice not known): "));
 }

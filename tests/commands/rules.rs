@@ -34,7 +34,6 @@ fn rules_are_applied_without_a_walk_under_the_names_of_the_contract() {
     for id in [
         "sherard-dunnigan",
         "foster-fell-no-erosion",
-        "foster-fell-excessive",
         "foster-fell-continuing",
         "permeability",
         "terzaghi",

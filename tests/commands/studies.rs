@@ -183,7 +183,7 @@ fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
         let page = fs::read_to_string(root.path().join("u/report.html")).unwrap();
         for face in [&stdout, &page] {
             assert!(
-                !face.contains("The verdict stays") && !face.contains("The verdict moves with"),
+                !face.contains("The verdict does not change") && !face.contains("The verdict changes with"),
                 "{face}"
             );
         }

@@ -338,6 +338,12 @@ impl Design {
         self.products_confidence.unwrap_or(self.confidence) == Confidence::Within
     }
 
+    /// Whether products fit by practice: it alone set the answer, and only how far the walk can be relied on,
+    /// which sets no tighter limit, is in doubt.
+    pub fn fits_by_practice(&self) -> bool {
+        !self.may_fit() && self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice)
+    }
+
     /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
     pub fn says_fit(&self, product: &str) -> Option<bool> {
         let of = self.products.iter().find(|of| of.name == product)?;

@@ -20,6 +20,9 @@ pub const CONSTRICTED_EXIT: &str = "constricted-exit";
 /// The rule by which a filter drains its base.
 pub const PERMEABILITY: &str = "permeability";
 
+/// The rule by which a filter has few fines.
+pub const FILTER_FINES: &str = "filter-fines";
+
 /// The least D15F that an older manual asks for.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
 
@@ -28,9 +31,6 @@ pub const PAPER_NO_EROSION: &str = "paper-no-erosion";
 
 /// Id of the paper's boundary of continuing erosion.
 pub const PAPER_CONTINUING: &str = "paper-continuing";
-
-/// Id of the boundary beyond which tests found excessive erosion.
-pub const TESTS_EXCESSIVE: &str = "foster-fell-excessive";
 
 /// Id of Terzaghi's ratio.
 pub const TERZAGHI: &str = "terzaghi";
@@ -87,28 +87,13 @@ pub const RULES: &[FilterRule] = &[
         judge: retention::no_erosion,
     },
     FilterRule {
-        id: TESTS_EXCESSIVE,
-        authority: "Foster and Fell",
-        stated_by: &[FosterFell, Usace],
-        says: "some erosion rather than excessive",
-        role: RuleRole::Continuation,
-        applies_to: "filters of existing dams",
-        quantity: RuleQuantity::D15F,
-        formula: "",
-        at_least: false,
-        unit: RuleUnit::Size,
-        source: "Foster and Fell (2001); Fell et al. (2008); in figures of the Filter Evaluation manual of \
-                 the U.S. Army Corps of Engineers",
-        pairing: Pairing::CoarseFilterFineBase,
-        judge: retention::excessive,
-    },
-    FilterRule {
         id: TESTS_CONTINUING,
         authority: "Foster and Fell",
         stated_by: &[FosterFell, Usace],
         says: "some erosion rather than continuing",
         role: RuleRole::Continuation,
-        applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading",
+        applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading; not \
+                     bases with 15 to 85 % fines and a D95B above 2 mm",
         quantity: RuleQuantity::D15F,
         formula: "9 D95B",
         at_least: false,
@@ -184,7 +169,7 @@ pub const RULES: &[FilterRule] = &[
         judge: drainage::least_permeability,
     },
     FilterRule {
-        id: "filter-fines",
+        id: FILTER_FINES,
         authority: "",
         stated_by: &[],
         says: "The filter has few fines",
@@ -212,22 +197,6 @@ pub const RULES: &[FilterRule] = &[
         source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::greatest_size,
-    },
-    FilterRule {
-        id: "filter-segregation",
-        authority: "",
-        stated_by: &[Usace],
-        says: "The filter does not segregate: greatest D90F by least D10F",
-        role: RuleRole::Placing,
-        applies_to: "design of filters, as placed",
-        quantity: RuleQuantity::named("D90F"),
-        formula: "",
-        at_least: false,
-        unit: RuleUnit::Size,
-        source: "FEMA (2011), cited without its numbers by U.S. Army Corps of Engineers, Filter Evaluation \
-                 manual (RMC-CPD-2023-04), chapter Filter Gradation",
-        pairing: Pairing::EachFilter,
-        judge: drainage::segregation,
     },
     FilterRule {
         id: "filter-uniformity",
@@ -263,7 +232,7 @@ pub const RULES: &[FilterRule] = &[
         id: "kezdi",
         authority: "Kézdi (1979)",
         stated_by: &[Usace],
-        says: "the filter holds its finer part",
+        says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
         quantity: RuleQuantity::named("greatest D'15/d'85 of the filter"),
@@ -278,7 +247,7 @@ pub const RULES: &[FilterRule] = &[
         id: "kenney-lau",
         authority: "Kenney and Lau (1986)",
         stated_by: &[Usace],
-        says: "the filter holds its finer part",
+        says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
         quantity: RuleQuantity::named("least H/F of the filter"),
@@ -293,7 +262,7 @@ pub const RULES: &[FilterRule] = &[
         id: "li-fannin",
         authority: "Li and Fannin (2008)",
         stated_by: &[Usace],
-        says: "the filter holds its finer part",
+        says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
         quantity: RuleQuantity::named("least H/min(F, 15 %) of the filter"),
@@ -308,7 +277,7 @@ pub const RULES: &[FilterRule] = &[
         id: "burenkova",
         authority: "Burenkova (1993)",
         stated_by: &[Usace],
-        says: "the filter holds its finer part",
+        says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
                      up to 100 mm, Cu up to 200",

@@ -40,8 +40,20 @@ pub fn least_permeability(inputs: &RuleInputs) -> Judged {
 fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_MM };
     let (d15f, d15b) = (inputs.d15f(), inputs.base.d(15.0));
-    let limit = (times * d15b.unwrap_or(inputs.base.smallest_mm())).max(least);
+    let of_base = times * d15b.unwrap_or(inputs.base.smallest_mm());
+    let limit = of_base.max(least);
     let finest = inputs.filter.smallest_mm();
+    if d15b.is_none() && of_base <= least {
+        // However fine D15B is, the least governs.
+        let judged = Judged::of(d15f, Some(limit)).noted(RuleNote::LeastGoverns(times, of_base));
+        return match d15f {
+            Some(_) => judged,
+            None if finest < limit => {
+                Judged { value: Some(finest), met: Some(false), ..judged }.noted(RuleNote::D15FAtMost)
+            }
+            None => judged.lacking(RuleNote::NeedsD15FSieved),
+        };
+    }
     // Where D15B is finer than the finest sieve, the limit lies between the least and this one.
     let surely = if d15b.is_some() { limit } else { least };
     let judged = match (d15f, d15b) {
@@ -81,12 +93,6 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
         true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
         false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
     }
-}
-
-/// The filter does not segregate: no text that could be read gives the numbers of this rule.
-pub fn segregation(inputs: &RuleInputs) -> Judged {
-    let value = inputs.filter_is_measured.then(|| inputs.filter.d(90.0)).flatten();
-    Judged { value, ..Judged::default() }.lacking(RuleNote::NeedsNumbersOfBoundary)
 }
 
 /// The filter is uniform enough: a band of wider curves leaves room for gap-graded ones.

@@ -16,14 +16,14 @@ mod stability;
 mod walk;
 
 pub use all::{
-    CONSTRICTED_EXIT, DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, RULES,
-    TERZAGHI, TESTS_CONTINUING, TESTS_EXCESSIVE, TESTS_NO_EROSION,
+    CONSTRICTED_EXIT, DESIGN, FILTER_FINES, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY,
+    PERMEABILITY_LEAST, RULES, TERZAGHI, TESTS_CONTINUING, TESTS_NO_EROSION,
 };
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
 pub use authority::Authority;
 pub use base::BaseSoil;
 pub use drainage::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
-pub use retention::range_of_tests;
+pub use retention::{DESIGN_FLOOR_MM, range_of_tests};
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 
 #[cfg(doc)]

@@ -26,18 +26,26 @@ impl Limit {
     }
 }
 
+/// The D15F (mm) below which the limit of design never lies: of fine clays 9 D85B is less.
+pub const DESIGN_FLOOR_MM: f64 = 0.2;
+
 /// Sherard and Dunnigan's limit of design; with the limits for dispersive soils where the base is one.
 pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
-        (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(0.2)),
-        (true, fines) if fines > 85.0 => Limit::Is((6.4 * d85b).max(0.2)),
+        (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(DESIGN_FLOOR_MM)),
+        (true, fines) if fines > 85.0 => Limit::Is((6.4 * d85b).max(DESIGN_FLOOR_MM)),
         (false, fines) if fines >= 40.0 => Limit::Is(0.7),
         (true, fines) if fines >= 40.0 => Limit::Is(0.5),
         (true, fines) if fines >= FEW_FINES => Limit::AtMost(between(FEW_FINES, 40.0, fines, d85b)),
         (_, fines) if fines >= FEW_FINES => Limit::Is(between(FEW_FINES, 40.0, fines, d85b)),
         _ => Limit::Is(4.0 * d85b),
     };
-    by_fines(inputs, limit, true)
+    let judged = by_fines(inputs, limit, true);
+    let times = if inputs.dispersive { 6.4 } else { 9.0 };
+    let of_base = times * inputs.size_of_base(85.0).most;
+    let is_floor =
+        !judged.limit_at_most && judged.limit == Some(DESIGN_FLOOR_MM) && of_base < DESIGN_FLOOR_MM;
+    judged.noted(is_floor.then_some(RuleNote::FloorGoverns(times, of_base)))
 }
 
 /// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
@@ -136,24 +144,27 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Foster and Fell's boundary of continuing erosion.
+/// The D95B (mm) up to which tests of bases with 15 to 85 % fines found a clear boundary of continuing
+/// erosion.
+const CLEAR_TO_MM: f64 = 2.0;
+
+/// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit, and
+/// where nobody knows whether they did it has no result.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.d15f(), inputs.size_of_base(95.0));
+    match inputs.fines() {
+        _ if d95b.most <= CLEAR_TO_MM => {}
+        Fines::Percent(percent) if (FEW_FINES..=85.0).contains(&percent) => {
+            return Judged::of(d15f, None).not_for(RuleNote::NoClearBoundary);
+        }
+        Fines::Unknown => return Judged::of(d15f, None).lacking(RuleNote::NeedsFinesOfBase),
+        _ => {}
+    }
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
     if !d95b.is_known {
         let judged = judged.at_most().noted(base_as_read(inputs));
         let is_broken = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
         return if is_broken { judged } else { judged.lacking(RuleNote::NeedsD95B) };
     }
-    match inputs.fines() {
-        Fines::Percent(percent) if percent >= FEW_FINES && d95b.most > 2.0 => {
-            judged.noted(RuleNote::NoClearBoundary)
-        }
-        _ => judged.noted(base_as_read(inputs)),
-    }
-}
-
-/// Foster and Fell's boundary of excessive erosion: its numbers stand in figures that could not be read.
-pub fn excessive(inputs: &RuleInputs) -> Judged {
-    Judged { value: inputs.d15f(), ..Judged::default() }.lacking(RuleNote::NeedsNumbersOfBoundary)
+    judged.noted(base_as_read(inputs))
 }

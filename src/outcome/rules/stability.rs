@@ -6,44 +6,43 @@ use crate::outcome::record::RuleNote;
 
 /// Kezdi's ratio over sensible splits.
 pub fn kezdi(inputs: &RuleInputs) -> Judged {
-    let [from, to] = KEZDI_RANGE;
-    index(inputs, 4.0, Gradation::kezdi, |filter, found| {
-        let tail = 100.0 * filter.pan_fraction();
-        let hidden = (tail > from).then_some(RuleNote::KezdiHidden(tail));
-        [Some(RuleNote::KezdiAt(0.85 * found.percent, from, to)), hidden].into_iter().flatten().collect()
-    })
+    let filter = inputs.filter;
+    let [from, to] = KEZDI_RANGE.map(|of_fine_d85| of_fine_d85 / 0.85);
+    let tail = 100.0 * filter.pan_fraction();
+    let found = filter.kezdi();
+    let notes = found.map(|split| {
+        let at = RuleNote::KezdiAt(split.percent, split.coarse_d15_mm, split.fine_d85_mm);
+        let hidden = (tail > KEZDI_RANGE[0]).then_some(RuleNote::KezdiHidden(tail));
+        [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
+    });
+    index(inputs, 4.0, found.map(|split| split.value), notes.unwrap_or_default())
 }
 
 /// Kenney and Lau's shape curve.
 pub fn kenney_lau(inputs: &RuleInputs) -> Judged {
-    index(inputs, 1.0, Gradation::kenney_lau, at_f)
+    shape(inputs, Gradation::kenney_lau)
 }
 
 /// Li and Fannin: both together.
 pub fn li_fannin(inputs: &RuleInputs) -> Judged {
-    index(inputs, 1.0, Gradation::li_fannin, at_f)
+    shape(inputs, Gradation::li_fannin)
 }
 
-fn at_f(filter: &Gradation, found: ShapeIndex) -> Vec<RuleNote> {
-    vec![RuleNote::ShapeAt(found.percent, filter.loose_percent().unwrap_or(f64::NAN))]
+fn shape(inputs: &RuleInputs, of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
+    let (filter, found) = (inputs.filter, of(inputs.filter));
+    let at_f =
+        |found: ShapeIndex| RuleNote::ShapeAt(found.percent, filter.loose_percent().unwrap_or(f64::NAN));
+    index(inputs, 1.0, found.map(|found| found.value), found.map(at_f).into_iter().collect())
 }
 
 /// An index of the filter's shape, with where it is.
-fn index(
-    inputs: &RuleInputs,
-    limit: f64,
-    of: impl Fn(&Gradation) -> Option<ShapeIndex>,
-    notes: impl Fn(&Gradation, ShapeIndex) -> Vec<RuleNote>,
-) -> Judged {
+fn index(inputs: &RuleInputs, limit: f64, value: Option<f64>, notes: Vec<RuleNote>) -> Judged {
     let lacking = |needs| Judged::of(None, Some(limit)).lacking(needs);
     if !inputs.filter_is_measured {
         return Judged { applies: false, ..lacking(RuleNote::NeedsCurveOfFilter) };
     }
-    match of(inputs.filter) {
-        Some(found) => {
-            let notes = notes(inputs.filter, found);
-            Judged { notes, ..Judged::of(Some(found.value), Some(limit)) }
-        }
+    match value {
+        Some(value) => Judged { notes, ..Judged::of(Some(value), Some(limit)) },
         None => lacking(RuleNote::NeedsFinestPartOfFilter),
     }
 }

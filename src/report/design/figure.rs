@@ -5,7 +5,7 @@ use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
     DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, TERZAGHI, TESTS_CONTINUING,
-    TESTS_EXCESSIVE, TESTS_NO_EROSION,
+    TESTS_NO_EROSION,
 };
 use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Rule,
@@ -18,7 +18,7 @@ use crate::report::shell::Drawn;
 const BAR: f64 = 1.5;
 
 /// Names of rules beside their lines.
-const NAMES: [(&str, &str); 9] = [
+const NAMES: [(&str, &str); 8] = [
     (PERMEABILITY, "drains"),
     (PERMEABILITY_LEAST, "drains (EM 1110-2-1901)"),
     (DESIGN, "design"),
@@ -26,7 +26,6 @@ const NAMES: [(&str, &str); 9] = [
     (PAPER_NO_EROSION, "paper, no erosion"),
     (TESTS_NO_EROSION, "NE"),
     (PAPER_CONTINUING, "paper, continuing"),
-    (TESTS_EXCESSIVE, "EE"),
     (TESTS_CONTINUING, "CE"),
 ];
 

@@ -229,8 +229,13 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
 /// How far limits can be relied on that follow from the answer, where they are in doubt.
 fn in_doubt(design: &Design) -> Markup {
     let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
-    let (label, first) = (capital(design.confidence.words()), told(design).into_iter().next());
-    html! { @if is_shown { p { b { (label) @if let Some(first) = first { ": " (clean(&first)) } } } } }
+    let by_practice = is_shown && design.fits_by_practice();
+    html! {
+        @if by_practice { p { "The limit of practice sets them; the walk sets no tighter one." } }
+        @else if is_shown {
+            p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -405,7 +410,7 @@ mod tests {
         open.base.d85_mm = Some(d85);
         let filter = Gradation::linear_from_dx(15.0, 3.0 * d85, 1.5).unwrap();
         (open.rules, open.rules_at) = (PairRules::of(&base, &filter).rules, 3.0);
-        assert!(open.answer().said.starts_with("The greatest D15F is not known"));
+        assert!(open.answer().said.starts_with("The maximum D15F is not known"));
         let csv = CSV.replace("4.0,", "2.0,");
         let page = written(&open, &csv);
         assert!(page.contains("verdict doubted") && !page.contains("verdict none"), "{page}");

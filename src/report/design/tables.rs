@@ -139,6 +139,9 @@ pub(super) fn products(design: &Design) -> Markup {
                 @if design.may_fit() {
                     " Judged at the greatest D15F that both walk and practice allow, as none that fits is \
                      coarser."
+                } @else if design.fits_by_practice() {
+                    " The limit of practice sets the answer: a product fits by practice. The walk sets no \
+                     tighter limit, and is outside its checked range."
                 } @else {
                     " No product is said to fit here, because the answer is in doubt."
                 }
@@ -157,6 +160,7 @@ pub(super) fn products(design: &Design) -> Markup {
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
                 .number("Result", |fit| match (fit.fits(), design.may_fit()) {
                     (true, true) => html! { b { "fits" } },
+                    (true, false) if design.fits_by_practice() => html! { "fits by practice" },
                     (true, false) => html! { "in doubt" },
                     (false, _) if fit.may_fit() => html! { "not known" },
                     (false, _) => html! { "does not fit" },

@@ -24,7 +24,7 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     sheet.item("Least D15F, which drains the base", of.d15f_min_mm, "mm");
     sheet.item("Greatest D15F, which retains the base", of.d15f_max_mm, "mm");
     let dispersive = of.if_dispersive.map(|of| of.words());
-    sheet.item("Greatest D15F if the base is dispersive, which nobody has said", dispersive, "");
+    sheet.item("Greatest D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Greatest D15F set by", of.set_by(), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");

@@ -148,7 +148,7 @@ impl Specification {
     pub fn if_dispersive_in_words(&self) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
-        Some(format!("If the base is dispersive, which nobody has said: {}", of.words()))
+        Some(format!("If the base is dispersive (not stated): {}", of.words()))
     }
 }
 

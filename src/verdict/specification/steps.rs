@@ -254,11 +254,10 @@ impl Found<'_> {
                 "least D10F = the smaller of least D15F / {D15_OVER_D10} and D10F of the fine side"
             ),
             values: vec![named("least D10F", d10, "mm"), named("greatest D90F", None, "mm")],
-            note:
-                "Not checked here. The greatest D90F follows from the least D10F by a table of FEMA and NRCS \
-                   whose numbers were not read. Take it from there."
-                    .into(),
-            source: with_own_factor(&source_of("filter-segregation")),
+            note: "Not covered here. The maximum D90F follows from this minimum D10F by a table of FEMA and \
+                   NRCS. Take it from there."
+                .into(),
+            source: with_own_factor(SEGREGATION),
             ..step("Keep the filter from segregating")
         }
     }
@@ -280,6 +279,10 @@ impl Found<'_> {
         }
     }
 }
+
+/// Where the manual of the Corps sends for segregation.
+const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, Filter Evaluation manual \
+                           (RMC-CPD-2023-04), chapter Filter Gradation";
 
 /// Where regrading and its sizes were read.
 const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \

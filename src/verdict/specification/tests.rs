@@ -219,11 +219,10 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     };
     let nobody = SpecificationOptions::default();
     let silty = said(&silt, nobody).unwrap();
-    assert_eq!(silty, "If the base is dispersive, which nobody has said: D15F up to 0.500 mm");
+    assert_eq!(silty, "If the base is dispersive (not stated): D15F up to 0.500 mm");
     let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
     assert!(
-        open.contains("nobody has said: a limit of D15F that is not known, and ")
-            && open.ends_with("or less")
+        open.contains("(not stated): a limit of D15F that is not known, and ") && open.ends_with("or less")
     );
     // What is finer anyway, few fines, and what was said.
     assert_eq!(said(&silt, SpecificationOptions { walked_mm: Some(0.4), ..nobody }), None);

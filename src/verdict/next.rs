@@ -1,0 +1,262 @@
+//! What to do next: which D15F a filter is to have, what to test, what to find out.
+
+use super::beside::is_evidence;
+use super::practice::{Standing, broken, listed, standing};
+use crate::gradation::FINES_MM;
+use crate::outcome::design::band::retention;
+use crate::outcome::numbers::{rounded_down, rounded_up};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, authority};
+use crate::outcome::undecided::UndecidedBy;
+
+/// Reasons that are named of those for which a pair is to be tested.
+const REASONS: usize = 3;
+
+impl Outcome {
+    /// What to do next, in a sentence without its end.
+    pub fn next_in_words(&self) -> String {
+        match standing(&self.rules) {
+            Standing::Fails | Standing::NoMargin => self.of_retention(),
+            Standing::Unstable => {
+                let mut whose: Vec<String> = Vec::new();
+                for rule in broken(&self.rules, RuleRole::Stability) {
+                    let name = authority(rule).to_owned();
+                    if !whose.contains(&name) {
+                        whose.push(name);
+                    }
+                }
+                let rules = listed(&whose);
+                format!("take a filter that is stable by {rules}, or have its internal stability tested")
+            }
+            Standing::Unknown(needs) => format!("get {needs}"),
+            Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
+                Some(said) => said,
+                None => self.of_walk() + &self.of_fines(),
+            },
+        }
+    }
+
+    /// Which D15F a filter is to have that retains the base, and what to do with one that exists.
+    fn of_retention(&self) -> String {
+        const EXISTS: &str = "for a filter that exists, have this pair tested";
+        let (unit, d15f) = (self.unit(), self.inputs.filter.d15_mm);
+        match self.greatest() {
+            Some((limit, true)) => format!(
+                "take a finer filter; the limit lies below a D15F of {} {unit}, and is not \
+                 known{}; {EXISTS}",
+                rounded_down(limit),
+                self.if_dispersive_in_words(limit)
+            ),
+            None => format!("take a finer filter; {EXISTS}"),
+            Some((limit, false)) => match self.floor_beyond(limit) {
+                Some(floor) if d15f > floor => format!(
+                    "take a filter with a D15F of at most {} {unit} (the floor of the limit of design){}; \
+                     tests saw no erosion up to {} {unit}{}; {EXISTS}",
+                    rounded_down(floor),
+                    self.and_least(floor),
+                    rounded_down(limit),
+                    self.if_dispersive_at_floor(floor)
+                ),
+                Some(floor) => format!(
+                    "have this pair tested: D15F meets the limit of design, whose floor is {} {unit}, and \
+                     tests saw no erosion up to {} {unit}{}",
+                    rounded_down(floor),
+                    rounded_down(limit),
+                    self.if_dispersive_at_floor(floor)
+                ),
+                None => format!(
+                    "take a filter with a D15F of at most {} {unit}{}{}; {EXISTS}",
+                    rounded_down(limit),
+                    self.if_dispersive_in_words(limit),
+                    self.and_least(limit)
+                ),
+            },
+        }
+    }
+
+    fn unit(&self) -> &'static str {
+        if self.inputs.scale_free { "D0F" } else { "mm" }
+    }
+
+    /// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
+    /// known.
+    fn greatest(&self) -> Option<(f64, bool)> {
+        greatest(&self.rules, self.inputs.filter.d15_mm)
+    }
+
+    /// The floor of the limit of design, where the boundary that tests saw is below it. That of a dispersive
+    /// base is no size to recommend.
+    fn floor_beyond(&self, tested: f64) -> Option<f64> {
+        let is_dispersive = self.findings.iter().any(|finding| finding.id == "dispersive_base");
+        let design = self.rules.iter().find(|rule| rule.id == DESIGN && rule.applies && rule.unit == "mm")?;
+        let limit = design.limit.filter(|limit| *limit == DESIGN_FLOOR_MM && !design.limit_at_most);
+        limit.filter(|limit| !is_dispersive && tested < *limit)
+    }
+
+    /// What a dispersive base changes where the floor of the limit of design is recommended.
+    fn if_dispersive_at_floor(&self, floor: f64) -> String {
+        let below = self.if_dispersive.filter(|of| of.d15f_max_mm < floor);
+        below.map_or_else(String::new, |of| {
+            format!(
+                "; whether the base is dispersive is not stated, and 6.4 D85B is {} mm, below that floor: \
+                 have the base tested for dispersion, and if it is dispersive take a filter in two stages \
+                 or have this pair tested in the laboratory",
+                rounded_down(of.d15f_max_mm)
+            )
+        })
+    }
+
+    /// The D15F that a recommended filter has at the least, to drain the base; empty where that is not known.
+    fn and_least(&self, most: f64) -> String {
+        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
+        let least = rule.filter(|rule| !rule.limit_at_most).and_then(|rule| rule.limit);
+        match least {
+            Some(least) if least <= most => format!(" and at least {} {}", rounded_up(least), self.unit()),
+            Some(least) => format!(
+                " (to drain the base it would be at least {} {}: compare the permeabilities of filter and \
+                 base)",
+                rounded_up(least),
+                self.unit()
+            ),
+            None => String::new(),
+        }
+    }
+
+    /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
+    /// has said whether it is.
+    fn if_dispersive_in_words(&self, most: f64) -> String {
+        let said = self.if_dispersive.and_then(|of| of.beside(most));
+        said.map_or_else(String::new, |said| format!(" ({said})"))
+    }
+
+    fn of_drainage(&self) -> Option<String> {
+        let broken = broken(&self.rules, RuleRole::Drainage);
+        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+            broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
+        let fines = of_fines.iter().find_map(|rule| rule.limit);
+        let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
+        let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
+        match (least, self.greatest()) {
+            // Where a base erodes in the walk no coarser filter is asked for.
+            (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
+                .then(|| {
+                    let (allowed, dispersive) = match self.floor_beyond(most) {
+                        Some(floor) => (floor, self.if_dispersive_at_floor(floor)),
+                        None => (most, self.if_dispersive_in_words(most)),
+                    };
+                    let tested = match allowed > most {
+                        true => format!("; tests saw no erosion up to {} {unit}", rounded_down(most)),
+                        false => String::new(),
+                    };
+                    let [least, most] = [rounded_up(least), rounded_down(allowed)];
+                    format!("take a coarser filter, D15F {least} to {most} {unit}{clean}{tested}{dispersive}")
+                }),
+            (Some(_), _) => {
+                Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
+            }
+            (None, _) => fines.map(|most| format!("wash the filter: {}", few_fines(most))),
+        }
+    }
+
+    /// What to ask of a filter whose fines nobody sieved; empty where they are known.
+    fn of_fines(&self) -> String {
+        let rule = self.rules.iter().find(|rule| rule.id == FILTER_FINES && rule.applies);
+        let most = rule.filter(|rule| rule.met.is_none()).and_then(|rule| rule.limit);
+        most.map_or_else(String::new, |most| {
+            format!("; have the fines of the filter tested, and wash it where needed: {}", few_fines(most))
+        })
+    }
+
+    fn of_placing(&self) -> Option<String> {
+        (self.verdict == Verdict::None && !broken(&self.rules, RuleRole::Placing).is_empty())
+            .then(|| "narrow the filter's range of sizes, or specify how it is placed".into())
+    }
+
+    fn of_walk(&self) -> String {
+        match (self.undecided_by(), self.verdict, self.confidence) {
+            (Some(UndecidedBy::Pan), ..) => "have the base's finest part tested with a hydrometer".into(),
+            (Some(UndecidedBy::Curve), ..) => {
+                "pack this filter at its density, so that its own constrictions are known".into()
+            }
+            (Some(UndecidedBy::SecondRun), ..) => "walk a second run".into(),
+            (Some(UndecidedBy::Replicates), ..) => "walk more replicates".into(),
+            (None, Verdict::None, confidence) => {
+                let next = match confidence {
+                    Confidence::Within => {
+                        "check what the model leaves out: cracks, segregation, placing, gradients"
+                    }
+                    _ => &self.why_tested(),
+                };
+                self.of_dispersion().map_or(next.into(), |first| format!("{first}; {next}"))
+            }
+            (None, ..) => "have this pair tested: practice and walk differ".into(),
+        }
+    }
+
+    /// Why a pair that the walk holds is to be tested all the same: what it was not checked for.
+    fn why_tested(&self) -> String {
+        let against = self.against();
+        let mut why: Vec<String> = Vec::new();
+        for finding in against.iter().filter(|finding| !is_evidence(finding) && !finding.label.is_empty()) {
+            if !why.contains(&finding.label) {
+                why.push(finding.label.clone());
+            }
+        }
+        why.truncate(REASONS);
+        let is_unsafe = against.iter().any(|finding| finding.id == "evidence_unsafe");
+        let is_unsafe =
+            is_unsafe.then(|| "the walk errs on the unsafe side for filters like this".to_owned());
+        let limits = (!why.is_empty() && self.confidence == Confidence::Outside)
+            .then(|| format!("the model was not checked for this pair ({})", why.join(", ")));
+        let why: Vec<String> = is_unsafe.into_iter().chain(limits).collect();
+        match why.is_empty() {
+            true => "have this pair tested".into(),
+            false => format!("have this pair tested: {}", listed(&why)),
+        }
+    }
+
+    /// What to find out of a base of which nobody has said whether it is dispersive.
+    fn of_dispersion(&self) -> Option<String> {
+        let then = self.if_dispersive?.of_filter(self.inputs.filter.d15_mm);
+        Some(format!("find out whether the base is dispersive (if it is, {then})"))
+    }
+}
+
+/// How few fines a filter is to have once it is placed.
+fn few_fines(most: f64) -> String {
+    format!("at most {most} % finer than {FINES_MM} mm in place")
+}
+
+/// The greatest D15F that every rule of retention allows, and whether the limit itself is lower and not
+/// known.
+fn greatest(rules: &[AppliedRule], d15f: f64) -> Option<(f64, bool)> {
+    let (_, limit) = retention(rules, d15f)?;
+    let is_of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+    Some((limit, rules.iter().any(|rule| is_of_role(rule) && rule.limit_at_most)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::rules::TESTS_NO_EROSION;
+    use crate::verdict::PairRules;
+
+    /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
+    #[test]
+    fn no_advice_goes_beyond_what_tests_saw() {
+        let base = [(0.01, 10.0), (0.075, 38.0), (0.425, 60.0), (2.0, 90.0), (4.75, 100.0)];
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let rules = PairRules::of(&soil(&base), &soil(&[(0.7, 0.0), (3.0, 100.0)])).rules;
+        let limit = |id: &str| rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
+        assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
+        let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap();
+        assert_eq!(greatest(&rules, d15f), Some((limit(TESTS_NO_EROSION), false)));
+        let practice = crate::verdict::practice::practice_in_words(&rules);
+        assert!(practice.starts_with("not met: D15F "), "{practice}");
+        assert!(
+            practice.contains("is more than the 0.700 mm up to which tests saw no erosion"),
+            "{practice}"
+        );
+    }
+}
