@@ -55,8 +55,11 @@ FIRST_PAGE = {"judge": ["Figure 1.", "D15", "D85", "Group by ASTM D2487", "Rules
 
 
 def continuing_limit(base):
-    """Foster and Fell's boundary of continuing erosion: 9 D95B of the base as it is regraded."""
-    return 9 * d(soils.regraded(base), 95)
+    """Foster and Fell's boundary of continuing erosion: 9 D95B of the base as it is regraded; None for 15 to 85 % fines and a
+    D95B above 2 mm, where tests found no clear one."""
+    base = soils.regraded(base)
+    d95 = d(base, 95)
+    return None if d95 > 2 and 15 <= soils.finer(base, 0.075) <= 85 else 9 * d95
 
 
 def by_hand(name, base, filter_):
@@ -85,12 +88,13 @@ def faults_of_practice(line, hand):
         yield f"D15F {sizes[1]}"
     if not near(sizes[2], design) and not near(sizes[2], strictest):
         yield f"limit {sizes[2]}"
-    wanted = "no erosion" if d15f <= no_erosion else "some or excessive erosion" if d15f <= continuing else "continuing erosion"
+    beyond = "erosion, class not known" if continuing is None else "some or excessive erosion" if d15f <= continuing else "continuing erosion"
+    wanted = "no erosion" if d15f <= no_erosion else beyond
     if f"Foster and Fell: {wanted}" not in line:
         yield f"Foster and Fell: not {wanted}"
     for word, limit in (("up to", no_erosion), ("beyond", continuing)):
         for said in re.findall(rf"{word} ([\d.]+) mm", line):
-            if not near(said, limit):
+            if limit is None or not near(said, limit):
                 yield f"{word} {said}"
 
 
@@ -172,7 +176,8 @@ class Problem:
         def limits(hand):
             d15f, design, no_erosion, continuing = hand
             here = "" if d15f is None else f"D15F {d15f:.3g}; "
-            return f"{here}design {design:.3g}, NE {no_erosion:.3g}, CE {continuing:.3g}"
+            clear = "no clear CE" if continuing is None else f"CE {continuing:.3g}"
+            return f"{here}design {design:.3g}, NE {no_erosion:.3g}, {clear}"
 
         hand = "<br>".join(limits(one) for one in self.hand)
         said = "<br>".join(f"{practice}<br>*{walk}*" for practice, walk in getattr(self, "said", []))

@@ -39,9 +39,9 @@ pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
     LIMITS.iter().enumerate().filter_map(boundary).collect()
 }
 
-/// Draws the row of 15 % and the boundaries at it.
+/// Draws the row of 15 % and the boundaries at it, whose names stand alone there: the caption names the row.
 pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
-    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted).label("15 %").named_at_end());
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
     for (place, limit, _) in boundaries {
         let (_, name, colour, _) = LIMITS[*place];
         let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);

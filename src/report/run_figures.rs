@@ -111,7 +111,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0))
-        .sheet((510.0, 270.0));
+        .sheet((510.0, 276.0));
     if !inputs.scale_free {
         figure = figure.sieves();
     }

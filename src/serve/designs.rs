@@ -187,6 +187,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "warnings": design.warnings,
         "compared": design.products.len(),
         "may_fit": design.may_fit(),
+        "fits_by_practice": design.fits_by_practice(),
         "fit": design.products_that_fit(),
         "model_leaves_out": design.model_leaves_out,
     }))

@@ -608,7 +608,9 @@ function boundariesOf(job) {
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
-      : done.may_fit ? "None of the standard products fits within the band." : "No standard product is said to fit, as the answer is in doubt.") : null,
+      : done.may_fit ? "None of the standard products fits within the band."
+      : done.fits_by_practice ? "The limit of practice sets the answer: the page says which standard products fit by practice."
+        : "No standard product is said to fit, as the answer is in doubt.") : null,
     done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null,
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);

@@ -260,7 +260,7 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     assert!(said.contains("\u{202f}in)"), "{said}");
     assert_inches_lie_within(&page);
     // The table of the band has the inches of the headline.
-    let answer = page.split("D15F from ").nth(1).unwrap().split("\u{202f}in), by practice").next().unwrap();
+    let answer = page.split("D15F from ").nth(1).unwrap().split("\u{202f}in), Cu").next().unwrap();
     let (mm, inches) = answer.split_once(" mm (").unwrap();
     for (mm, inches) in mm.split(" to ").zip(inches.split(" to ")) {
         assert!(page.contains(&format!("{mm} ({inches}\u{202f}in)")), "{answer}");

@@ -97,7 +97,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
         (words(&page), figure)
     };
     let (text, figure) = gradations(&plan);
-    assert!(figure.contains(">15 %</text>") && !figure.contains(">NE</text>"));
+    assert!(!figure.contains(">15 %</text>") && !figure.contains(">NE</text>"));
     assert!(!text.contains("Short lines at the 15 % row"), "no rule has such a limit");
 
     for (rule, (id, limit)) in
@@ -108,7 +108,9 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
         (rule.applies, rule.limit, rule.unit) = (true, Some(limit), "mm".into());
     }
     let (text, figure) = gradations(&plan);
+    // No name of the row runs into theirs.
     assert!(figure.contains(">NE</text>") && figure.contains(">CE</text>"), "{figure}");
+    assert!(!figure.contains(">15 %</text>"), "{figure}");
     assert!(text.contains("no erosion (NE) 5.50 mm, continuing erosion (CE) 12.2 mm"), "{text}");
 
     plan.outcome.rules[0].applies = false;

@@ -5,14 +5,11 @@ use super::curves;
 use super::figure::{Figure, Naming, Size};
 use super::frame::{Frame, LABEL_TEXT, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
 use super::hover;
-use super::marks::{Across, Dash, Line, Mark, Point, Rule, Shape};
+use super::marks::{Across, Dash, Line, Mark, Point, Shape};
 use super::path::along;
 use super::place::{Canvas, GAP, Rect};
 use super::sieves;
 use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
-
-/// Room that is kept around a name that stands apart (pixels).
-const APART: f64 = 12.0;
 
 /// Half the width of a symbol.
 const SYMBOL: f64 = 4.5;
@@ -163,10 +160,6 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
             None => homeless.push(index),
             Some(found) => {
-                // A line across the whole frame has no name that reads on into that of another mark.
-                if let Mark::Rule(Rule { named_at_end: true, .. }) = mark {
-                    canvas.taken.push(found.grown(APART));
-                }
                 let place = side(&found, &anchors);
                 in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &found, place, colour));
             }
@@ -363,17 +356,13 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     match mark {
         Mark::Point(point) => frame.at(point.at).into_iter().collect(),
         Mark::Disc(_) => Vec::new(),
-        Mark::Rule(rule) => {
-            let shares = match rule.named_at_end {
-                true => &[0.03, 0.97, 0.06, 0.94][..],
-                false => &[0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03],
-            };
-            let at = |share: f64| match rule.across {
+        Mark::Rule(rule) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
+            .into_iter()
+            .filter_map(|share| match rule.across {
                 Across::X => frame.x_at(rule.at).map(|x| (x, bottom - share * (bottom - top))),
                 Across::Y => frame.y_at(rule.at).map(|y| (left + share * (right - left), y)),
-            };
-            shares.iter().copied().filter_map(at).collect()
-        }
+            })
+            .collect(),
         Mark::Line(line) => {
             let path = frame.path(&line.points);
             [0.62, 0.7, 0.54, 0.78, 0.46, 0.86, 0.38, 0.92, 0.3, 0.22, 0.97, 0.14, 0.06]

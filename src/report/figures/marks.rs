@@ -181,13 +181,12 @@ pub struct Rule {
     pub(super) colour: Colour,
     pub(super) dash: Dash,
     pub(super) label: Option<String>,
-    pub(super) named_at_end: bool,
 }
 
 impl Rule {
     /// A solid line.
     pub fn new(across: Across, at: f64, colour: Colour) -> Rule {
-        Rule { across, at, colour, dash: Dash::Solid, label: None, named_at_end: false }
+        Rule { across, at, colour, dash: Dash::Solid, label: None }
     }
 
     /// Broken.
@@ -199,12 +198,6 @@ impl Rule {
     /// With a name.
     pub fn label(mut self, label: &str) -> Rule {
         self.label = Some(label.to_owned());
-        self
-    }
-
-    /// With its name at one of its ends alone, apart from other names.
-    pub fn named_at_end(mut self) -> Rule {
-        self.named_at_end = true;
         self
     }
 }

@@ -31,7 +31,7 @@ impl Rect {
             && self.bottom <= frame.bottom
     }
 
-    pub(super) fn grown(&self, by: f64) -> Rect {
+    fn grown(&self, by: f64) -> Rect {
         Rect { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 }

@@ -231,15 +231,15 @@ impl Found<'_> {
     fn ends(&self) -> SpecificationStep {
         SpecificationStep {
             formula: format!(
-                "least D5F = greatest D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; maximum D100F \
+                "minimum D5F = maximum D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; maximum D100F \
                  {GREATEST_SIZE_MM} mm"
             ),
             values: vec![
-                named("least D5F allowed", Some(FINES_MM), "mm"),
+                named("minimum D5F allowed", Some(FINES_MM), "mm"),
                 named("maximum D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
             ],
             note: format!(
-                "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the least D5F. These \
+                "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the minimum D5F. These \
                  fines must not be plastic."
             ),
             source: source_of("filter-fines"),

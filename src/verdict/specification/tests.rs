@@ -88,7 +88,7 @@ fn what_set_the_answer_and_what_a_delivery_must_keep_is_said() {
     let beside = core.beside_limits().unwrap();
     assert!(beside.contains("between 0.140 and 0.700 mm") && beside.contains("its Cu between 2 and 6"));
     let raised = core.raised_in_words().unwrap();
-    assert!(raised.contains("drains the base is 0.100 mm; it is raised to 0.140 mm"), "{raised}");
+    assert!(raised.contains("drains the base is 0.100 mm; this minimum is raised to 0.140 mm, "), "{raised}");
     // The ratio of 2 needs no raising.
     let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     assert_eq!(sand.raised_in_words(), None);
