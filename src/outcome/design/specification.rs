@@ -118,7 +118,7 @@ pub struct StepValue {
 }
 
 impl StepValue {
-    /// The number with its unit, a least size rounded up and a greatest rounded down; `None` where it is not
+    /// The number with its unit, a minimum rounded up and a maximum rounded down; `None` where it is not
     /// known.
     pub fn words(&self) -> Option<String> {
         self.words_in(SizeUnit::Mm)
@@ -128,8 +128,8 @@ impl StepValue {
     pub fn words_in(&self, unit: SizeUnit) -> Option<String> {
         let value = self.value?;
         let (number, beside) = match (self.unit.as_str(), self.name.split(' ').next()) {
-            ("mm", Some("least")) => (rounded_up(value), unit.beside_least(value)),
-            ("mm", Some("greatest")) => (rounded_down(value), unit.beside_greatest(value)),
+            ("mm", Some("minimum")) => (rounded_up(value), unit.beside_least(value)),
+            ("mm", Some("maximum")) => (rounded_down(value), unit.beside_greatest(value)),
             ("mm", _) => (significant(value), unit.beside(value)),
             ("", _) if value.fract() == 0.0 && value < 100.0 => (format!("{value:.0}"), String::new()),
             _ => (significant(value), String::new()),
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_least_size_is_rounded_up_and_a_greatest_down() {
+    fn a_minimum_is_rounded_up_and_a_maximum_down() {
         let of =
             |name: &str, value, unit: &str| StepValue { name: name.into(), value, unit: unit.into() }.words();
         assert_eq!(of("minimum D10F", Some(0.11661), "mm").unwrap(), "0.117 mm");

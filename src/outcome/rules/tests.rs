@@ -126,10 +126,10 @@ fn the_floor_of_the_limit_of_design_is_said() {
     let (plain, dispersive) = (filter(2.0), filter(2.0));
     let rule = of("sherard-dunnigan", &plain, &clay);
     assert!(close(rule.limit, 0.2), "{rule:?}");
-    assert!(rule.note.to_string().ends_with("the floor: 9 D85B is 0.157 mm"), "{}", rule.note);
+    assert!(rule.note.to_string().ends_with("its floor: 9 D85B would be 0.156 mm"), "{}", rule.note);
     let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&clay, &dispersive) });
     let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();
-    assert!(rule.note.to_string().ends_with("the floor: 6.4 D85B is 0.111 mm"), "{}", rule.note);
+    assert!(rule.note.to_string().ends_with("its floor: 6.4 D85B would be 0.111 mm"), "{}", rule.note);
     let coarser = of("sherard-dunnigan", &plain, &base(90.0, 0.05));
     assert!(!coarser.note.to_string().contains("floor"), "{}", coarser.note);
 }
@@ -139,12 +139,12 @@ fn the_floor_of_the_limit_of_design_is_said() {
 fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
     let clay = sieve(&[(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)]);
     for (id, times) in
-        [("permeability", "5 D15B is below 0.010 mm"), ("permeability-em-1901", "3 D15B is below 0.006 mm")]
+        [("permeability", "5 D15B is below 0.0100 mm"), ("permeability-em-1901", "3 D15B is below 0.00600 mm")]
     {
         for (d15f, met) in [(0.099, false), (0.1, true), (2.2, true)] {
             let rule = of(id, &filter(d15f), &clay);
             assert!(close(rule.limit, 0.1) && !rule.limit_at_most && rule.met == Some(met), "{rule:?}");
-            assert_eq!(rule.note.to_string(), format!("the floor: {times}"));
+            assert_eq!(rule.note.to_string(), format!("its floor: {times}"));
         }
     }
     // D15F is finer than 0.05 mm, or than 0.2 mm: too fine, or not known.

@@ -190,7 +190,7 @@ impl Found<'_> {
         let narrow = self.control.as_ref().map(|of| of.d15[0]);
         SpecificationStep {
             formula: format!(
-                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the least is raised where the ratio is larger"
+                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the minimum is raised where the ratio is larger"
             ),
             values: vec![
                 named(
@@ -266,7 +266,7 @@ impl Found<'_> {
         let sizes = band.map(|band| &band.sizes[..]).unwrap_or_default();
         let both = |size: &BandSize| {
             let one = |which: &str, value| named(&format!("{which} D{}F", size.percent), Some(value), "mm");
-            [one("least", size.min_mm), one("greatest", size.max_mm)]
+            [one("minimum", size.min_mm), one("maximum", size.max_mm)]
         };
         SpecificationStep {
             values: sizes.iter().flat_map(both).collect(),
