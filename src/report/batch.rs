@@ -184,7 +184,9 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
 }
 
 fn notes(batch: &WalkedBatch) -> Markup {
-    html! { @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } } }
+    html! { @if !batch.notes.is_empty() {
+        ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } }
+    } }
 }
 
 /// The limit of every sample against its D85B, with the D15F of the filters; none without a limit.

@@ -100,7 +100,9 @@ fn walked(of: &DesignedWalks) -> Markup {
 }
 
 fn notes(all: &DesignedSamples) -> Markup {
-    html! { @if !all.notes.is_empty() { ul { @for note in &all.notes { li { (clean(&note_words(note))) } } } } }
+    html! { @if !all.notes.is_empty() {
+        ul { @for note in &all.notes { li { (clean(&note_words(note))) } } }
+    } }
 }
 
 fn table(folder: &Path, all: &DesignedSamples) -> Markup {

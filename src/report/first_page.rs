@@ -180,8 +180,8 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             @if stated.is_empty() { p { "No rule was applied." } }
             @if !shown.is_empty() { (table(&shown, unit)) }
             @for said in ["no limit", "no result", "does not apply"] {
-                @let of_kind: Vec<&str> =
-                    others.iter().filter(|rule| without_result(rule) == said).map(|rule| &*rule.name).collect();
+                @let of_kind = others.iter().filter(|rule| without_result(rule) == said);
+                @let of_kind: Vec<&str> = of_kind.map(|rule| &*rule.name).collect();
                 @if !of_kind.is_empty() {
                     p.others { b { (capital(said)) } ": " (clean(&of_kind.join("; "))) "." }
                 }

@@ -267,9 +267,9 @@ fn figure(of: &Specification, band: &SizeBand) -> Drawn {
     };
     let d15 = of.band_in_words().map_or(String::new(), |said| format!(": {said}"));
     let caption = format!(
-        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points are \
-         joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine side \
-         runs level: no more than 5 % may be finer.{more}"
+        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points \
+         are joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine \
+         side runs level: no more than 5 % may be finer.{more}"
     );
     Drawn::new("specification", figure, caption)
 }

@@ -79,8 +79,8 @@ impl SizeBand {
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
     }
 
-    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down to
-    /// 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
+    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down
+    /// to 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
     pub fn drawn_fine_side(&self) -> Vec<[f64; 2]> {
         let foot = [[FINES_MM, 0.0], [FINES_MM, MOST_FINES_PERCENT]];
         foot.into_iter().chain(self.fine_side.iter().copied()).collect()

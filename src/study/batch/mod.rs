@@ -86,8 +86,8 @@ impl BatchPlan {
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
     }
 
-    /// How many of its walks in this folder were kept from an earlier call with another cover, which their own
-    /// pages have.
+    /// How many of its walks in this folder were kept from an earlier call with another cover, which their
+    /// own pages have.
     pub fn with_other_cover(&self, folder: &Path) -> usize {
         with_other_cover(&self.campaign, &folder.join(WALKS))
     }

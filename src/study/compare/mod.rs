@@ -78,8 +78,8 @@ pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Com
 }
 
 impl ComparePlan {
-    /// How many of its walks in this folder were kept from an earlier call with another cover, which their own
-    /// pages have.
+    /// How many of its walks in this folder were kept from an earlier call with another cover, which their
+    /// own pages have.
     pub fn with_other_cover(&self, folder: &Path) -> usize {
         with_other_cover(&self.campaign, &folder.join(WALKS))
     }

@@ -123,8 +123,8 @@ impl Specification {
         let at_most = if self.d15f_min_at_most { "not known, and at most " } else { "" };
         let [drains, least] = [drains, least].map(rounded_up);
         Some(format!(
-            "The minimum D15F that drains the base is {at_most}{drains} mm; this minimum is raised to {least} \
-             mm, so that the band is no wider than {WIDEST_BAND} to 1"
+            "The minimum D15F that drains the base is {at_most}{drains} mm; this minimum is raised to \
+             {least} mm, so that the band is no wider than {WIDEST_BAND} to 1"
         ))
     }
 
