@@ -138,9 +138,10 @@ fn the_floor_of_the_limit_of_design_is_said() {
 #[test]
 fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
     let clay = sieve(&[(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)]);
-    for (id, times) in
-        [("permeability", "5 D15B is below 0.0100 mm"), ("permeability-em-1901", "3 D15B is below 0.00600 mm")]
-    {
+    for (id, times) in [
+        ("permeability", "5 D15B is below 0.0100 mm"),
+        ("permeability-em-1901", "3 D15B is below 0.00600 mm"),
+    ] {
         for (d15f, met) in [(0.099, false), (0.1, true), (2.2, true)] {
             let rule = of(id, &filter(d15f), &clay);
             assert!(close(rule.limit, 0.1) && !rule.limit_at_most && rule.met == Some(met), "{rule:?}");
