@@ -6,7 +6,7 @@
 
 The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
-thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
+thrown away, but this machine's toolchains are everybody's. `cargo +VERSION` takes a Rust that is there. Steps that `use` an action are named and skipped, for they need GitHub:
 `--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
 Ends with the exit code of the first step that fails.
 """
@@ -41,6 +41,21 @@ CARGO_HOME = os.environ.get("CARGO_HOME", str(Path.home() / ".cargo"))
 #: Stands in for rustup, which would change the toolchains of this machine.
 RUSTUP = """#!/bin/sh
 echo "not done here: rustup $*; $(rustc --version) is taken"
+"""
+#: Stands before cargo: `cargo +VERSION` is cargo of that Rust, where this machine has it.
+CARGO = """#!/bin/sh
+case "$1" in
++*)
+    for folder in {toolchains}/"${{1#+}}"-* {toolchains}/"${{1#+}}".[0-9]*-*; do
+        [ -x "$folder/bin/cargo" ] || continue
+        shift
+        PATH="$folder/bin:$PATH" exec "$folder/bin/cargo" "$@"
+    done
+    echo "this machine has no Rust ${{1#+}}" >&2
+    exit 1
+    ;;
+esac
+exec {rust}/bin/cargo "$@"
 """
 
 
@@ -142,8 +157,9 @@ class Runner:
         cargo, stand_ins = work / "cargo", work / "bin"
         cargo.mkdir()
         stand_ins.mkdir()
-        (stand_ins / "rustup").write_text(RUSTUP)
-        (stand_ins / "rustup").chmod(0o755)
+        for name, text in {"rustup": RUSTUP, "cargo": CARGO.format(rust=rust, toolchains=Path(rust).parent)}.items():
+            (stand_ins / name).write_text(text)
+            (stand_ins / name).chmod(0o755)
         fetched = Path(CARGO_HOME) / "registry"
         if fetched.is_dir():
             (cargo / "registry").symlink_to(fetched)
