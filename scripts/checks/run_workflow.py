@@ -180,6 +180,8 @@ class Runner:
         }
         self.values = {f"matrix.{name}": value for name, value in matrix.items()}
         self.values |= {"github.ref_name": ref, "runner.os": "Linux", "runner.arch": "X64", "github.workspace": str(clone)}
+        # Nothing here may write to the forge.
+        self.values |= {"github.token": "", "github.repository": "owner/voidwalk"}
         for level in (workflow, job):
             self.environment |= {name: filled(value, self.values) for name, value in level.get("env", {}).items()}
         shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
