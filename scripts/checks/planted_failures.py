@@ -22,7 +22,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from run_workflow import CARGO_HOME, ROOT, Runner, combination, yaml
+from run_workflow import ROOT, Runner, combination, yaml
 
 #: In two parts, as the spelling of this file is looked at, too.
 MISSPELT = "rec" + "ieves"
@@ -223,8 +223,7 @@ class Trial:
             (self.clone / "packages").mkdir()
             shutil.copy(args.wheel, self.clone / "packages")
         self.runner = Runner(workflow, self.job, combination(self.job, {}), self.work, self.clone)
-        # A crate at another place is another crate to cargo.
-        self.runner.environment["CARGO_HOME"] = CARGO_HOME
+        self.runner.share_crates()
         #: Of steps that passed without a mistake: seconds.
         self.passed = {}
 

@@ -154,6 +154,7 @@ class Runner:
         subprocess.run([sys.executable, "-m", "venv", python], check=True)
         # The compiler itself, not rustup's proxies, which may install another.
         rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+        self.rust = Path(rust)
         cargo, stand_ins = work / "cargo", work / "bin"
         cargo.mkdir()
         stand_ins.mkdir()
@@ -187,6 +188,12 @@ class Runner:
         shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
         self.shell = shells[1] or shells[0]
 
+    def share_crates(self):
+        """Takes the crates where this machine's cargo keeps them: at another place they are other crates to it."""
+        # Its folder of commands comes first to cargo, where rustup stands for clippy and asks which Rust.
+        rustup = {"RUSTUP_HOME": str(self.rust.parents[1]), "RUSTUP_TOOLCHAIN": self.rust.name}
+        self.environment |= {"CARGO_HOME": CARGO_HOME} | rustup
+
     def script(self, step):
         """What a step runs, filled in."""
         return filled(step["run"], self.values)
@@ -218,8 +225,7 @@ def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
     runner = Runner(workflow, job, matrix, work, clone, args.ref)
     if args.target:
-        # A crate at another place is another crate to cargo.
-        runner.environment["CARGO_HOME"] = CARGO_HOME
+        runner.share_crates()
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()
     for step in job["steps"]:
