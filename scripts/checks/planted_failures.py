@@ -8,9 +8,9 @@
 
 A step of a job runs as `run_workflow.py` runs it, from the YAML itself. It must pass without the mistake, then fail with it and
 say why. Where the whole step takes an hour, the part that must see the mistake runs alone, and the table says which.
-`rustup` does nothing here: every job has the Rust of this machine. Crates are those of this machine's cargo, where it keeps them, so
-that they are compiled once for all jobs. Prints a row of Markdown for each mistake; exit code 1 where one went unseen. What is
-compiled stays in target/planted-failures.
+`rustup` does nothing here: every job has the Rust of this machine, and `oldest-rust` its own, which must be there. Crates are those of
+this machine's cargo, where it keeps them, so that they are compiled once for all jobs. Prints a row of Markdown for each mistake;
+exit code 1 where one went unseen. What is compiled stays in target/planted-failures.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from run_workflow import CARGO_HOME, ROOT, Runner, combination, yaml
+from run_workflow import ROOT, Runner, combination, yaml
 
 #: In two parts, as the spelling of this file is looked at, too.
 MISSPELT = "rec" + "ieves"
@@ -127,10 +127,10 @@ PLANTS = [
     Plant(
         "oldest-rust",
         "Build",
-        "a function that the Rust of this machine does not have yet",
-        added("\n/// Planted.\npub fn planted() {\n    std::hint::must_use_nothing_of_2099();\n}\n"),
-        "must_use_nothing_of_2099",
-        (('cargo "+$rust" check --locked --workspace', "cargo check --locked -p voidwalk"),),
+        "a function that is newer than the oldest Rust",
+        added("\n/// Planted.\npub fn planted() -> bool {\n    std::path::Path::new(\"a.b\").file_prefix().is_some()\n}\n"),
+        "file_prefix",
+        (("check --locked --workspace", "check --locked -p voidwalk"),),
     ),
     Plant(
         "oldest-rust",
@@ -223,8 +223,7 @@ class Trial:
             (self.clone / "packages").mkdir()
             shutil.copy(args.wheel, self.clone / "packages")
         self.runner = Runner(workflow, self.job, combination(self.job, {}), self.work, self.clone)
-        # A crate at another place is another crate to cargo.
-        self.runner.environment["CARGO_HOME"] = CARGO_HOME
+        self.runner.share_crates()
         #: Of steps that passed without a mistake: seconds.
         self.passed = {}
 

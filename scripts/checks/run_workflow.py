@@ -6,7 +6,7 @@
 
 The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a Python environment and a PATH of its own. Of this
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
-thrown away, but this machine's toolchains are everybody's. Steps that `use` an action are named and skipped, for they need GitHub:
+thrown away, but this machine's toolchains are everybody's. `cargo +VERSION` takes a Rust that is there. Steps that `use` an action are named and skipped, for they need GitHub:
 `--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
 Ends with the exit code of the first step that fails.
 """
@@ -41,6 +41,21 @@ CARGO_HOME = os.environ.get("CARGO_HOME", str(Path.home() / ".cargo"))
 #: Stands in for rustup, which would change the toolchains of this machine.
 RUSTUP = """#!/bin/sh
 echo "not done here: rustup $*; $(rustc --version) is taken"
+"""
+#: Stands before cargo: `cargo +VERSION` is cargo of that Rust, where this machine has it.
+CARGO = """#!/bin/sh
+case "$1" in
++*)
+    for folder in {toolchains}/"${{1#+}}"-* {toolchains}/"${{1#+}}".[0-9]*-*; do
+        [ -x "$folder/bin/cargo" ] || continue
+        shift
+        PATH="$folder/bin:$PATH" exec "$folder/bin/cargo" "$@"
+    done
+    echo "this machine has no Rust ${{1#+}}" >&2
+    exit 1
+    ;;
+esac
+exec {rust}/bin/cargo "$@"
 """
 
 
@@ -113,9 +128,20 @@ def main():
         if args.target:
             args.target.mkdir(parents=True, exist_ok=True)
             (clone / "target").symlink_to(args.target.resolve())
+            dated(clone)
         return run(workflow, job, args, matrix, instead, work, clone)
     finally:
         shutil.rmtree(work)
+
+
+def dated(clone):
+    """Gives every file the time of its commit: cargo then takes what an earlier job compiled whose clone had the same place (`--keep`)."""
+    git = ["git", "-C", clone]
+    when = int(subprocess.run([*git, "log", "-1", "--format=%ct"], check=True, stdout=subprocess.PIPE).stdout)
+    listed = subprocess.run([*git, "ls-files", "-z"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    # build.rs looks at the last.
+    for name in [*listed.split("\0")[:-1], ".git/logs/HEAD"]:
+        os.utime(clone / name, (when, when), follow_symlinks=False)
 
 
 class Runner:
@@ -128,11 +154,13 @@ class Runner:
         subprocess.run([sys.executable, "-m", "venv", python], check=True)
         # The compiler itself, not rustup's proxies, which may install another.
         rust = subprocess.run(["rustc", "--print", "sysroot"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()
+        self.rust = Path(rust)
         cargo, stand_ins = work / "cargo", work / "bin"
         cargo.mkdir()
         stand_ins.mkdir()
-        (stand_ins / "rustup").write_text(RUSTUP)
-        (stand_ins / "rustup").chmod(0o755)
+        for name, text in {"rustup": RUSTUP, "cargo": CARGO.format(rust=rust, toolchains=Path(rust).parent)}.items():
+            (stand_ins / name).write_text(text)
+            (stand_ins / name).chmod(0o755)
         fetched = Path(CARGO_HOME) / "registry"
         if fetched.is_dir():
             (cargo / "registry").symlink_to(fetched)
@@ -153,10 +181,18 @@ class Runner:
         }
         self.values = {f"matrix.{name}": value for name, value in matrix.items()}
         self.values |= {"github.ref_name": ref, "runner.os": "Linux", "runner.arch": "X64", "github.workspace": str(clone)}
+        # Nothing here may write to the forge.
+        self.values |= {"github.token": "", "github.repository": "owner/voidwalk"}
         for level in (workflow, job):
             self.environment |= {name: filled(value, self.values) for name, value in level.get("env", {}).items()}
         shells = [level.get("defaults", {}).get("run", {}).get("shell") for level in (workflow, job)]
         self.shell = shells[1] or shells[0]
+
+    def share_crates(self):
+        """Takes the crates where this machine's cargo keeps them: at another place they are other crates to it."""
+        # Its folder of commands comes first to cargo, where rustup stands for clippy and asks which Rust.
+        rustup = {"RUSTUP_HOME": str(self.rust.parents[1]), "RUSTUP_TOOLCHAIN": self.rust.name}
+        self.environment |= {"CARGO_HOME": CARGO_HOME} | rustup
 
     def script(self, step):
         """What a step runs, filled in."""
@@ -189,8 +225,7 @@ def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
     runner = Runner(workflow, job, matrix, work, clone, args.ref)
     if args.target:
-        # A crate at another place is another crate to cargo.
-        runner.environment["CARGO_HOME"] = CARGO_HOME
+        runner.share_crates()
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()
     for step in job["steps"]:

@@ -81,6 +81,19 @@ def test_a_dump_of_lammps_is_read(tmp_path: Path, grid: Any) -> None:
     assert vw.constrictions(packing)["throat.diameter"] == pytest.approx(np.sqrt(2) - 1)
 
 
+def test_the_cell_of_a_file_is_text_or_lengths(tmp_path: Path, grid: Any) -> None:
+    file = tmp_path / "spheres.txt"
+    rows = "".join(f"{x / 1000} {y / 1000} {z / 1000} 0.0005\n" for x, y, z in grid[0])
+    file.write_text("#format x_y_z_r\n" + rows)
+    with pytest.raises(ValueError):
+        vw.Packing.from_file(file, unit="m")
+    for cell in ("0.004, 0.004, 0.004", (0.004, 0.004, 0.004), np.full(3, 0.004), 0.004):
+        assert vw.Packing.from_file(file, unit="m", cell=cell).cell == pytest.approx((4.0, 4.0, 4.0))
+    assert vw.Packing.from_file(file, unit="m", cell="none").cell is None
+    with pytest.raises(ValueError, match=r"three lengths above 0"):
+        vw.Packing.from_file(file, unit="m", cell=(0.004, 0.0, 0.004))
+
+
 def test_the_voids_of_a_packing_are_walked() -> None:
     packing = vw.pack(vw.Gradation.linear(1.2), "dense", grains=150, seed=2)
     found = packing.constrictions()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Tuple, TypeVar
+from typing import Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,6 +76,13 @@ def cell_lengths(cell: Optional[ArrayLike]) -> Optional[Tuple[float, float, floa
     if (array <= 0).any():
         raise ValueError(f"cell = {array.tolist()} is not allowed; three lengths above 0 are needed")
     return float(array[0]), float(array[1]), float(array[2])
+
+
+def cell_as_in_files(cell: Union[str, ArrayLike, None]) -> Optional[str]:
+    """A cell as a file of grains states it: text as it is, lengths as ``"Lx, Ly, Lz"``."""
+    if cell is None or isinstance(cell, str):
+        return cell
+    return ", ".join(repr(length) for length in cell_lengths(cell) or ())
 
 
 def frozen(array: NDArray[Scalar]) -> NDArray[Scalar]:

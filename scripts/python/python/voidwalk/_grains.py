@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _voidwalk
-from ._arrays import Floats, Ints, cell_lengths, floats, frozen, threads_or_none, whole
+from ._arrays import Floats, Ints, cell_as_in_files, cell_lengths, floats, frozen, threads_or_none, whole
 from ._plots import Axes
 from ._progress import Follower, Following
 from ._soil import Curve, Gradation
@@ -103,7 +103,7 @@ class Packing:
 
     @classmethod
     def from_file(
-        cls, path: Union[str, os.PathLike[str]], unit: Optional[str] = None, cell: Optional[str] = None
+        cls, path: Union[str, os.PathLike[str]], unit: Optional[str] = None, cell: Union[str, ArrayLike, None] = None
     ) -> Packing:
         """Grains from a CSV file with the columns x_mm, y_mm, z_mm and diameter_mm below a first line ``# cell_mm =
         Lx, Ly, Lz`` or ``# cell = none`` (or the columns of ParaView and MFIX), from a text dump of LAMMPS or
@@ -117,16 +117,16 @@ class Packing:
             The file.
         unit : {"m", "cm", "mm", "um", "nm"}, optional
             Unit of its lengths. A file that does not say its unit is refused without it.
-        cell : str, optional
-            ``"none"`` for free boundaries, ``"Lx, Ly, Lz"`` for a periodic cell in the unit of the file,
-            ``"bounds"`` for one between the bounds that the file gives. A file that does not say its boundaries is
-            refused without it.
+        cell : str, float or array_like of float, shape (3,), optional
+            Lengths of a periodic cell in the unit of the file, with a corner at the origin, also as text
+            ``"Lx, Ly, Lz"``; ``"none"`` for free boundaries, ``"bounds"`` for a periodic cell between the bounds that
+            the file gives. A file that does not say its boundaries is refused without it.
 
         What a user must know of how the file was understood is warned of.
         """
         import warnings
 
-        (coords, diameter, lengths), notes = _voidwalk.read_packing(os.fspath(path), unit, cell)
+        (coords, diameter, lengths), notes = _voidwalk.read_packing(os.fspath(path), unit, cell_as_in_files(cell))
         for note in notes:
             warnings.warn(note, stacklevel=2)
         return cls(coords, diameter, lengths)
