@@ -190,7 +190,8 @@ impl Found<'_> {
         let narrow = self.control.as_ref().map(|of| of.d15[0]);
         SpecificationStep {
             formula: format!(
-                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the minimum is raised where the ratio is larger"
+                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the minimum is raised where the ratio is \
+                 larger"
             ),
             values: vec![
                 named(
