@@ -45,7 +45,8 @@ MODELS = [
 ]
 PAIRS = [("1.5", "loose", "1.5"), ("1.5", "dense", "1.5"), ("3", "loose", "1.5"), ("3", "dense", "1.5"), ("6", "loose", "1.5"), ("1.5", "loose", "3"),
          ("1.5", "dense", "3"), ("3", "loose", "3"), ("3", "dense", "3"), ("6", "loose", "3"), ("1.5", "loose", "4.5"), ("1.5", "dense", "4.5"),
-         ("3", "loose", "4.5"), ("3", "dense", "4.5"), ("6", "loose", "4.5")]
+         ("3", "loose", "4.5"), ("3", "dense", "4.5"), ("6", "loose", "4.5"), ("6", "dense", "1.5"), ("6", "dense", "3"),
+         ("6", "dense", "4.5")]
 ONE_SIZE, BEADS = ("1.2", "dense", "1"), ("1.2", "dense", "1.2")
 LARGEST = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
 
@@ -388,7 +389,7 @@ def page(cells, name, head):
     assert all(b < a for a, b in zip(off, off_arched)), "the page says that all three are nearer with arches"
     lines = ["# Which model explains which test", "",
              paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the {SANDS[0]:g} to {SANDS[1]:g} "
-                       f"of tests in each. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much: "
+                       f"of tests in {sum(at < SANDS[0] for at in sieving)}. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much: "
                        f"one size to {value(one_arched):.1f}, {value(one_arched) * SUSPENDED:.1f} times what tests caught. Of sands they put the boundary at {span(found)} in {len(found)} cells; "
                        f"{len(beyond)} more hold at the greatest ratio walked, {span(beyond)}. {inside} of the {len(arches)} cells lie within the range of tests, all of "
                        f"{plural(len(filters), 'filter')} ({' and '.join(f'Cu {cu}, {density}' for cu, density in filters)}); {edges}; {above} of {len(arches)} "
@@ -400,7 +401,7 @@ def page(cells, name, head):
     lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
     lines += ["", "## Table", "",
               paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
-                        "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5 and 3, loose and dense, and Cu 6, loose, with bases of Cu 1.5, 3 and "
+                        "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5, 3 and 6, loose and dense, with bases of Cu 1.5, 3 and "
                         f"4.5, as far as they were computed; in brackets how many were found, and how many hold at the greatest ratio walked. **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
     lines += ["", paragraph("\\* not read in a source, in no count. † concentration set by hand: of graphs that of the same filter as a lattice; of Cu 6 by the void ratio 0.34 of "
@@ -436,7 +437,7 @@ def page(cells, name, head):
     lines += map(bullet, follows)
     lines += ["", "## What would refute each", ""]
     lines += map(bullet, [
-        "**Sieving** lies below every test already. The shape of grains, which it lacks, could be why. Smooth spheres of one size that arrive one by one and are caught "
+        f"**Sieving** lies below the tests in {sum(at < SANDS[0] for at in sieving)} cells of {len(sieving)} already. The shape of grains, which it lacks, could be why. Smooth spheres of one size that arrive one by one and are caught "
         f"beyond D15F/D85B {FINEST_OF_THREE:.1f} would refute it: no constriction of three touching spheres is finer. From {value(one):.1f} to there a thicker filter could catch them.",
         "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from "
         f"{float(cells.by_concentration[HIGH]):.1f} to {float(cells.by_concentration[LOW]):.1f}. At the concentrations worked out here it is refuted already by the same ranges: {above} of {len(arches)} cells "
@@ -448,7 +449,7 @@ def page(cells, name, head):
         "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
     ])
     lines += ["", "## Not computed", "",
-              bullet("Empty cells of the table; filters of Cu 6 dense, whose void ratio is not known; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
+              bullet("Empty cells of the table; `marin-2018` on dense filters of Cu 6, whose void ratio is not known; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
               *(bullet(f"{model[0]}, filter Cu {pair[0]}, {pair[1]}, base Cu {pair[2]}: it erodes at {row['first_erodes_from']}, the least ratio for which there was time; empty in the table.")
                 for model in MODELS for pair in PAIRS if (row := of(model, pair)) and not is_computed(row) and row.get("first_erodes_from")),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
@@ -461,7 +462,7 @@ def page(cells, name, head):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commit eda8e41, `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12.", help="date, machine and commit of the walks")
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12.", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
