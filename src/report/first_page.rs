@@ -179,7 +179,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             h2 { "Rules of practice, in short" }
             @if stated.is_empty() { p { "No rule was applied." } }
             @if !shown.is_empty() { (table(&shown, unit)) }
-            @for said in ["no limit", "no result", "does not apply"] {
+            @for said in [NOT_A_LIMIT, "no limit", "no result", "does not apply"] {
                 @let of_kind: Vec<&str> =
                     others.iter().filter(|of| without_result(of) == said).map(|of| &*of.name).collect();
                 @if !of_kind.is_empty() {

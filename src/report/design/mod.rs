@@ -201,7 +201,6 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                         b { "No band to specify." } " " (clean(of.no_band.as_deref().unwrap_or_default()))
                     },
                 }
-                @if let Some(said) = of.if_dispersive_in_words() { p { (clean(&said)) "." } }
                 (to_specify(of))
             }
             @for row in &design.boundaries {
