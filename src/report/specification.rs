@@ -81,7 +81,9 @@ fn answer(of: &Specification) -> Markup {
         section.verdict {
             @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
             (to_specify(of))
-            @if let Some(said) = of.if_dispersive_in_words() { p { (clean(&said)) "." } }
+            @if let Some(said) = of.if_dispersive_in_words() {
+                p { (clean(&said)) ". The band and the limits at the sieves do not hold then." }
+            }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
             p { (clean(&products_in_short(of))) }
         }

@@ -213,7 +213,7 @@ impl<'a> Case<'a> {
                 cited_rule(limit.rule)
             ),
             Self::Practice(limit) => format!(
-                "{}, by practice ({}{}{}); the walk sets no tighter limit",
+                "{}, by practice ({}{}{}); the walk sets no tighter limit, and is no check of it",
                 sizes.words(limit.ratio),
                 cited_rule(limit.rule),
                 sizes.other(design, limit.rule),
@@ -380,7 +380,11 @@ mod tests {
             answer.said
         );
         assert!(answer.said.contains("Sherard and Dunnigan's limit of design is 1.1"), "{}", answer.said);
-        assert!(answer.said.ends_with("the walk sets no tighter limit"), "{}", answer.said);
+        assert!(
+            answer.said.ends_with("the walk sets no tighter limit, and is no check of it"),
+            "{}",
+            answer.said
+        );
         assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
     }
 

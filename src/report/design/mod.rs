@@ -232,7 +232,9 @@ fn in_doubt(design: &Design) -> Markup {
     let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
     let by_practice = is_shown && design.fits_by_practice();
     html! {
-        @if by_practice { p { "The limit of practice sets them; the walk sets no tighter one." } }
+        @if by_practice {
+            p { "The limit of practice sets them; the walk sets no tighter one, and is no check of them." }
+        }
         @if is_shown {
             p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }
         }
