@@ -179,11 +179,13 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             h2 { "Rules of practice, in short" }
             @if stated.is_empty() { p { "No rule was applied." } }
             @if !shown.is_empty() { (table(&shown, unit)) }
-            @for said in [NOT_A_LIMIT, "no limit", "no result", "does not apply"] {
-                @let of_kind: Vec<&str> =
-                    others.iter().filter(|of| without_result(of) == said).map(|of| &*of.name).collect();
-                @if !of_kind.is_empty() {
-                    p.others { b { (capital(said)) } ": " (clean(&of_kind.join("; "))) "." }
+            @if !others.is_empty() {
+                p.others {
+                    @for said in [NOT_A_LIMIT, "no limit", "no result", "does not apply"] {
+                        @let of_kind = others.iter().filter(|of| without_result(of) == said);
+                        @let names: Vec<&str> = of_kind.map(|of| &*of.name).collect();
+                        @if !names.is_empty() { b { (capital(said)) } ": " (clean(&names.join("; "))) ". " }
+                    }
                 }
             }
             @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }

@@ -111,7 +111,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0))
-        .sheet((510.0, 276.0));
+        .sheet((510.0, 244.0));
     if !inputs.scale_free {
         figure = figure.sieves();
     }
@@ -140,8 +140,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations by mass, and the filter’s constrictions by number: a base particle passes those that are \
-         no finer than it is. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
+        "Gradations by mass, and the filter’s constrictions by number. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
         significant(folder.outcome.ratios.d15f_over_d85b),
         inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
         significant(folder.outcome.ratios.d15f_over_d95b),

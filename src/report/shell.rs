@@ -180,8 +180,8 @@ fn looks(number: usize, curves: &[String]) -> Markup {
 pub(super) fn model() -> Markup {
     html! {
         p.model {
-            b { "Model" } " (“the walk”): base particles are moved through a network of voids whose openings \
-            (constrictions) are those of the filter. It is a simulation, not a test."
+            b { "Model" } " (“the walk”): base particles are moved through voids with the filter’s openings \
+            (constrictions): a simulation, not a test."
         }
     }
 }

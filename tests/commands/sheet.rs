@@ -135,8 +135,7 @@ fn can_be_signed(page: &str, is_walked: bool, at: &Path) {
         assert!(page.contains(part), "{part}");
     }
     let main = page.find("<main").unwrap();
-    let model =
-        page.find("moved through a network of voids whose openings (constrictions) are those of the filter");
+    let model = page.find("moved through voids with the filter’s openings (constrictions)");
     assert_eq!(model.is_some_and(|at| at < main), is_walked);
     let folder = at.to_str().unwrap();
     for machine in [folder, "Wall time", "threads", ">Machine<", "of this scene", "built-in scene"] {

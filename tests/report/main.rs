@@ -48,7 +48,7 @@ fn the_page_says_what_an_engineer_reads_first() {
     let text = words(&page);
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
-        "Model (“the walk”): base particles are moved through a network of voids",
+        "Model (“the walk”): base particles are moved through voids",
         "Some erosion",
         "Practice: ",
         "Walk: some erosion; eroded ",
