@@ -6,13 +6,13 @@ use std::process::{Child, Command};
 use std::time::Duration;
 
 use bitvec::vec::BitVec;
-use serde_json::Value;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Network};
 use voidwalk::store::checkpoint::{Identity, Label, newest, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl};
 
 use crate::program::{call, voidwalk};
+use crate::small_run::{outcome, without_seconds};
 
 /// A lattice on which a graded base blocks and passes.
 fn network(seed: u64) -> Network {
@@ -176,18 +176,7 @@ fn with_scene() -> (tempfile::TempDir, PathBuf) {
 
 /// What must not depend on how often the program was started.
 fn lasting(folder: &Path) -> Vec<String> {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(map) => {
-                map.remove("seconds");
-                map.values_mut().for_each(strip);
-            }
-            Value::Array(items) => items.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    let mut outcome: Value = serde_json::from_slice(&fs::read(folder.join("outcome.json")).unwrap()).unwrap();
-    strip(&mut outcome);
+    let outcome = without_seconds(outcome(folder));
     let files = ["series.csv", "layers.csv", "retained.csv", "eroded.csv", "scene.toml"];
     let mut all: Vec<String> = files.map(|name| fs::read_to_string(folder.join(name)).unwrap()).to_vec();
     all.push(outcome.to_string());
