@@ -93,6 +93,7 @@ fn words(design: &Design) -> String {
     if let Some(of) = &design.specification {
         lines.extend(of.band_in_words().map(|band| format!("band to specify: {band}")));
         lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
+        lines.extend(of.still_to_set());
     }
     lines.push(match (design.confidence, design.reasons.first()) {
         (Confidence::Within, _) => "within the range in which the model was checked".into(),

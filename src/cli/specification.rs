@@ -71,6 +71,9 @@ fn words(of: &Specification) -> String {
     if let Some(why) = &of.no_band {
         line(&sized(&format!("No band. {why}")));
     }
+    if let Some(said) = of.still_to_set() {
+        wrapped(&sized(&said), 0).iter().for_each(|said| line(said));
+    }
     if let Some(said) = of.if_dispersive_in_words() {
         line(&sized(&format!("{said}.")));
     }

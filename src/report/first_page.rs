@@ -10,12 +10,12 @@ use super::names::{is_named, titled};
 use super::numbers::{SizeUnit, size, whole};
 use super::rules::value_and_limit;
 use super::shell::{clean, model, unbroken};
+use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, NetworkKind, Outcome, SheetCover, Verdict,
 };
 use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
@@ -143,27 +143,16 @@ pub(super) fn colour(verdict: Verdict, confidence: Confidence, fails: bool) -> &
 
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
 pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let inputs = &outcome.inputs;
-    let soil = |rows: &[[f64; 2]]| sizes_of(rows, unit);
-    let (filter, base) = (&inputs.filter, &inputs.base);
-    let mut soils = vec![("Filter", soil(&filter.gradation))];
+    let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
+    let mut soils = vec![SizedSoil::new("Filter", &filter.gradation)];
     match &base.as_sampled {
-        Some(sampled) => {
-            soils.extend([("Base, sampled", soil(&sampled.gradation)), ("regraded", soil(&base.gradation))]);
-        }
-        None => soils.push(("Base", soil(&base.gradation))),
+        Some(sampled) => soils.extend([
+            SizedSoil::new("Base, sampled", &sampled.gradation),
+            SizedSoil::new("regraded", &base.gradation),
+        ]),
+        None => soils.push(SizedSoil::new("Base", &base.gradation)),
     }
-    let rows: Vec<usize> = (0..soils[0].1.len()).collect();
-    let mut table = Table::of(&rows).name(unit.name(), |row| soils[0].1[*row].0);
-    for (name, sizes) in &soils {
-        table = table.number(*name, |row| sizes[*row].1.clone().unwrap_or_else(|| "–".into()));
-    }
-    html! {
-        div.sizes {
-            (table)
-            p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." }
-        }
-    }
+    of_few(&soils, unit)
 }
 
 /// The rules of practice, those that decide first, and the thickness that was modelled.

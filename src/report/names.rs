@@ -55,6 +55,30 @@ pub(super) fn file_name(name: &str) -> Cow<'_, str> {
     }
 }
 
+/// The same of any file that was read.
+pub(super) fn input_name(name: &str) -> Cow<'_, str> {
+    match file_name(name) {
+        Cow::Borrowed(_) => Cow::Borrowed(last_part(name)),
+        owned => owned,
+    }
+}
+
+/// What a soil is, in these words, and its name; the name of its file where it has none that says more than
+/// its kind: `Base base.csv`.
+pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
+    let file = name.split_once(REGRADED).map_or(name, |(file, _)| file);
+    let is_table = ends_as_table(file.split('#').next().unwrap_or_default()).is_some();
+    let shown = match is_named(kind, name) {
+        true => soil_name(name),
+        false => file_name(name),
+    };
+    html! {
+        @if is_named(kind, name) || is_table { (words) " " b { bdi { (clean(&shorten(&shown, LINE))) } } }
+        @else if words == kind { (titled(kind, name)) }
+        @else { (words) }
+    }
+}
+
 /// An option as a command line has it, of which the name of a file stands without its folders.
 pub(super) fn option_words(option: &str) -> String {
     let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
@@ -106,6 +130,23 @@ mod tests {
         assert!(
             is_named("Base", "filter.csv") && !is_named("filter", "a/Filter.CSV") && !is_named("base", "")
         );
+    }
+
+    #[test]
+    fn a_name_that_says_no_more_than_its_kind_is_that_of_its_file_where_a_sheet_needs_one() {
+        let said = |name| titled_by_file("Base", "Base", name).into_string();
+        assert_eq!(said("/lab/base.csv"), "Base <b><bdi>base.csv</bdi></b>");
+        let regraded = "Base <b><bdi>base.csv, regraded on 4.75 mm</bdi></b>";
+        assert_eq!(said("/lab/base.csv, regraded on 4.75 mm"), regraded);
+        assert_eq!(said("lab/soils.xlsx#base"), "Base <b><bdi>soils.xlsx#base</bdi></b>");
+        assert_eq!(said("/lab/till.csv"), "Base <b><bdi>till</bdi></b>");
+        assert_eq!([said("base"), said("")], ["Base", "Base"]);
+        let filter = |name| titled_by_file("filter", "filter of the shape", name).into_string();
+        assert_eq!(filter("/lab/filter.csv"), "filter of the shape <b><bdi>filter.csv</bdi></b>");
+        assert_eq!(filter("C33.csv"), "filter of the shape <b><bdi>C33</bdi></b>");
+        assert_eq!(filter("filter"), "filter of the shape");
+        let read = ["/lab/soils.xlsx#Base/Sample 1", "/lab/packing.dump", "base.csv"].map(input_name);
+        assert_eq!(read, ["soils.xlsx#Base/Sample 1", "packing.dump", "base.csv"]);
     }
 
     #[test]

@@ -1,26 +1,25 @@
-//! The page of a specification: the steps with their numbers, both sides of the band on the form of
-//! gradations, limits sieve by sieve, and standard products. The page of a design has the same.
+//! The page of a specification: what to watch, both sides of the band on the form of gradations, limits
+//! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
+//! the same.
 
 use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::appendix::input_files;
 use super::cover::program;
 use super::error::ReportError;
-use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
-use super::names::titled;
+use super::given_soils::GivenSoils;
+use super::names::titled_by_file;
 use super::numbers::{SizeUnit, known, significant, trimmed};
 use super::section::Sections;
-use super::shell::{Drawn, clean};
+use super::shell::{clean, unbroken};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::specification::{ProductMargin, SizeBand};
+use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{Specification, SpecificationStep};
-
-/// Most curves of a base that the figure draws.
-const DRAWN_CURVES: usize = 12;
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -30,7 +29,7 @@ const DRAWN_CURVES: usize = 12;
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let of: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        (titled("Base", &of.base)) @if of.dispersive { ", dispersive" } ", by the rules of practice alone"
+        (titled_by_file("Base", "Base", &of.base)) @if of.dispersive { ", dispersive" } ", by the rules of practice alone"
     };
     let footer = html! {
         p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
@@ -39,16 +38,26 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     };
     #[cfg(feature = "xlsx")]
     super::workbook::write_specification_workbook(folder, &of, None)?;
-    let stated = Stated::of(&of);
+    let (stated, soils) = (Stated::of(&of), GivenSoils::of_specification(&of));
+    let made = html! { table.facts { tbody { (input_files(&of.inputs)) } } };
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
         .words(&answer(&of))
-        .figures(stated.figure)
+        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
         .section("Limits sieve by sieve", &stated.limits)
         .section("Standard products", &products(&of, true))
         .section("Step by step", &stated.words)
+        .section(soils.heading(), &soils.appendix())
+        .section(
+            "How this was made",
+            &if of.inputs.is_empty() {
+                html! {}
+            } else {
+                made
+            },
+        )
         .write(folder, "specification.html", &footer)
 }
 
@@ -57,8 +66,6 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
 pub(super) struct Stated {
     /// Every step.
     pub words: Markup,
-    /// Both sides of the band, with the base.
-    pub figure: Option<Drawn>,
     /// What a delivery may have finer than each sieve.
     pub limits: Markup,
     /// Margins of standard products.
@@ -69,7 +76,6 @@ impl Stated {
     pub(super) fn of(specification: &Specification) -> Self {
         Self {
             words: steps(specification),
-            figure: specification.band.as_ref().map(|band| figure(specification, band)),
             limits: limits(specification),
             products: products(specification, false),
         }
@@ -85,9 +91,15 @@ fn answer(of: &Specification) -> Markup {
                 p { (clean(&said)) ". The band and the limits at the sieves do not hold then." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
+            (still_to_set(of))
             p { (clean(&products_in_short(of))) }
         }
     }
+}
+
+/// What the specification lacks.
+pub(super) fn still_to_set(of: &Specification) -> Markup {
+    html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
@@ -230,50 +242,6 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
             }
         }
     }
-}
-
-/// Both sides of the band on the form of gradations, with the base.
-fn figure(of: &Specification, band: &SizeBand) -> Drawn {
-    let points = |rows: &[[f64; 2]]| rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>();
-    let drawn = &of.curves[..of.curves.len().min(DRAWN_CURVES)];
-    let fine_side = band.drawn_fine_side();
-    let bases = drawn.iter().flat_map(|curve| &curve.gradation);
-    let sizes = bases.chain(&fine_side).chain(&band.coarse_side).map(|row| row[0]);
-    let (low, high) = positive_range(sizes);
-    let what = "Percent finer against size for the base and for both sides of the band of the filter";
-    let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
-    let mut figure =
-        Figure::new("Band of the filter", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
-    let (fine, coarse) = (points(&fine_side), points(&band.coarse_side));
-    let outline = fine.iter().chain(coarse.iter().rev()).copied().collect();
-    figure.add(Area::new(outline, GREEN, 0.15).label("band"));
-    figure.add(Line::new(fine, GREEN).width(2.6).label("fine side"));
-    figure.add(Line::new(coarse, BLUE).width(2.6).label("coarse side"));
-    for curve in drawn {
-        let name = if of.curves.len() == 1 { "base".into() } else { shorten(&curve.curve, 24) };
-        match curve.regraded.is_empty() {
-            true => figure.add(Line::new(points(&curve.gradation), VERMILLION).label(&name)),
-            false => {
-                let sampled = Line::new(points(&curve.gradation), VERMILLION).width(1.4).dash(Dash::Dashed);
-                figure.add(sampled.label(&format!("{name},\nas sampled")));
-                figure
-                    .add(Line::new(points(&curve.regraded), VERMILLION).label(&format!("{name},\nregraded")));
-            }
-        }
-    }
-    let left_out = of.curves.len() - drawn.len();
-    let more = if left_out > 0 {
-        format!(" {left_out} more curves of the base are not drawn.")
-    } else {
-        String::new()
-    };
-    let d15 = of.band_in_words().map_or(String::new(), |said| format!(": {said}"));
-    let caption = format!(
-        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points \
-         are joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine \
-         side runs level: no more than 5 % may be finer.{more}"
-    );
-    Drawn::new("specification", figure, caption)
 }
 
 #[cfg(test)]

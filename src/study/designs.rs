@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use super::days::{day_of, is_day, today};
 use super::design::{DesignOptions, identity, is_a_base, run};
 use super::file_names::numbered;
+use super::inputs::{files_of, input_files};
 use super::kept;
 use crate::campaign::plan::folder_name;
-use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
+use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::InputFile;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
@@ -54,6 +56,7 @@ struct Planned {
     filter: String,
     dispersive: bool,
     notes: Vec<String>,
+    inputs: Vec<InputFile>,
     /// Everything that the table follows from, as a hash.
     work: String,
 }
@@ -129,7 +132,9 @@ impl Planned {
         let samples_at = shown(&options.samples);
         let work =
             kept::hash_of(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));
-        Ok(Self { rows, folders, filter, dispersive, notes: notes(&samples)?, work })
+        let files = samples.iter().map(|sample| sample.path.as_path());
+        let (notes, inputs) = (notes(&files_of(files.clone()))?, input_files(files)?);
+        Ok(Self { rows, folders, filter, dispersive, notes, inputs, work })
     }
 
     /// The table that the folder holds already; `None` where [`each`] begins there or goes on.
@@ -162,6 +167,7 @@ impl Planned {
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
         let (mut rows, mut leaves_out, mut walks, mut day) = (Vec::new(), Vec::new(), None, None);
+        let mut inputs = self.inputs.clone();
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -181,6 +187,13 @@ impl Planned {
             day = day.max(design.cover.date.clone());
             leaves_out.clone_from(&design.model_leaves_out);
             walks = Some(DesignedWalks::of(&design, settings));
+            // Besides the samples' own files that of the filter.
+            let is_new = |file: &&InputFile| self.inputs.iter().all(|other| other.xxh3 != file.xxh3);
+            for file in design.inputs.iter().filter(is_new) {
+                if !inputs.contains(file) {
+                    inputs.push(file.clone());
+                }
+            }
             rows.push(row.clone().designed(&design, place));
         }
         let all = DesignedSamples::new(shown(&options.samples), rows);
@@ -192,6 +205,7 @@ impl Planned {
             cover: options.design.cover().dated(day.or_else(today)),
             walks,
             notes: self.notes.clone(),
+            inputs,
             model_leaves_out: leaves_out,
             ..all
         })
@@ -242,13 +256,11 @@ fn covered(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Run
 }
 
 /// What was assumed of the files, once each.
-fn notes(samples: &[SoilSample]) -> Result<Vec<String>, RunError> {
-    let mut files: Vec<PathBuf> = samples.iter().map(|sample| file_and_soil(&sample.path).0).collect();
-    files.dedup();
+fn notes(files: &[PathBuf]) -> Result<Vec<String>, RunError> {
     let mut all = Vec::new();
     for file in files {
-        let of_file = notes_in_file(&file).map_err(RunError::refused)?;
-        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(&file))));
+        let of_file = notes_in_file(file).map_err(RunError::refused)?;
+        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(file))));
     }
     Ok(all)
 }

@@ -11,7 +11,7 @@ use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{Confidence, IfDispersive, ModelLimit, SheetCover, commit};
+use crate::outcome::record::{Confidence, IfDispersive, InputFile, ModelLimit, SheetCover, commit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -55,6 +55,9 @@ pub struct DesignedSamples {
     /// What was walked for every sample; `None` where nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walks: Option<DesignedWalks>,
+    /// Every file that was read; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
     /// A row for each sample.
     pub rows: Vec<DesignedSample>,
     /// What was assumed of the files, a sentence each.
@@ -69,6 +72,10 @@ pub struct DesignedSamples {
 pub struct DesignedWalks {
     /// The filter's shape and its constrictions, in words.
     pub filter: String,
+    /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not given,
+    /// and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub filter_gradation: Vec<[f64; 2]>,
     /// How densely the filter is packed, in the order in which it was asked for.
     pub densities: Vec<String>,
     /// The thicknesses that were asked for, in words.
@@ -94,7 +101,9 @@ impl DesignedWalks {
             }
         }
         let (filter, networks, seed) = (design.filter.clone(), design.replicates, design.seed);
-        Self { filter, densities, thicknesses, networks, seed, settings: settings.to_vec() }
+        let filter_gradation = design.filter_gradation.clone();
+        let settings = settings.to_vec();
+        Self { filter, filter_gradation, densities, thicknesses, networks, seed, settings }
     }
 }
 
@@ -106,6 +115,12 @@ pub struct DesignedSample {
     pub sample: String,
     /// What names the sample on a command line.
     pub path: PathBuf,
+    /// Size (mm) and percent finer by mass, as sampled; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradation: Vec<[f64; 2]>,
+    /// The same after regrading; empty where the rules do not regrade it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
     /// Group by ASTM D2487; `None` where the sieves do not tell.
     pub group: Option<String>,
     /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
@@ -174,6 +189,8 @@ impl DesignedSample {
         Self {
             sample: sample.name.clone(),
             path: sample.path.clone(),
+            gradation: curve.gradation.clone(),
+            regraded: curve.regraded.clone(),
             group: sample.curve.group(),
             category: curve.category,
             fines_percent: curve.fines_percent,
@@ -318,6 +335,7 @@ impl DesignedSamples {
             inches: false,
             cover: SheetCover::default(),
             walks: None,
+            inputs: Vec::new(),
             rows,
             notes: Vec::new(),
             model_leaves_out: Vec::new(),

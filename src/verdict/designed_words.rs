@@ -1,10 +1,11 @@
 //! How coarse a filter for many samples may be, in sentences.
 
 use super::designed_samples::{DesignedSample, DesignedSamples};
-use super::specification::no_band_between;
+use super::specification::{least_of_band, no_band_between};
 use super::words::capital;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{Confidence, IfDispersive};
+use crate::outcome::rules::WIDEST_BAND;
 
 /// So many samples.
 fn counted(samples: usize) -> String {
@@ -113,7 +114,18 @@ impl DesignedSamples {
                 "No one filter is specified for {of}{within}, with D15F from {from} to {mm} mm: {}",
                 within_line(&why)
             ),
-            None => format!("A filter for {of}{within}: D15F from {from} to {mm} mm"),
+            None => {
+                let begins = rounded_up(least_of_band(least, greatest));
+                let at_most = if at_most { "not known, and at most " } else { "" };
+                let raised = match begins == from {
+                    true => String::new(),
+                    false => format!(
+                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is no \
+                         wider than {WIDEST_BAND} to 1)"
+                    ),
+                };
+                format!("A filter for {of}{within}: D15F from {begins} to {mm} mm{raised}")
+            }
         }
     }
 
@@ -318,11 +330,13 @@ mod tests {
         let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.100 to 0.700 mm"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum that \
+             drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
-        assert_eq!(one.for_all_in_words(), "A filter for the sample: D15F from 0.100 to 0.700 mm");
+        let said = one.for_all_in_words();
+        assert!(said.starts_with("A filter for the sample: D15F from 0.140 to 0.700 mm (the"), "{said}");
         let open = DesignedSample {
             path: "other".into(),
             d15f_min_mm: Some(2.0),

@@ -7,7 +7,7 @@ use super::products::Fit;
 use super::specification::Specification;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit, SheetCover};
+use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, InputFile, ModelLimit, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -38,6 +38,13 @@ pub struct Design {
     pub filter_cu: Option<f64>,
     /// The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
     pub filter_d15_mm: Option<f64>,
+    /// Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
+    /// where its sizes are not given, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub filter_gradation: Vec<[f64; 2]>,
+    /// Every file that was read; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
     /// Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
     /// own.
     pub unit: String,
@@ -156,6 +163,13 @@ pub struct BaseStated {
     /// D85 (mm) before regrading, where it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d85_as_sampled_mm: Option<f64>,
+    /// Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
+    /// earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradation: Vec<[f64; 2]>,
+    /// The same as it was walked after regrading; empty where it was walked as sampled.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
 }
 
 /// The boundaries of one density and thickness.

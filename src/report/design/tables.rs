@@ -7,6 +7,7 @@ use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, trimmed, whole};
 use crate::report::rules;
@@ -226,6 +227,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
             (fact("Filter", file_name(&design.filter)))
+            @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
             (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), trimmed)))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
@@ -236,6 +238,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 trimmed(100.0 * design.step),
                 whole(walks.len() as u64)
             )))
+            (input_files(&design.inputs))
             (fact("Asked for", if asked.is_empty() { "nothing in particular" } else { &asked }))
         } }
     }

@@ -249,15 +249,16 @@ impl Found<'_> {
     }
 
     fn segregation(&self, band: Option<&SizeBand>) -> SpecificationStep {
-        let d10 = band.map(|band| (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0)));
+        let d10 = band.map(least_d10);
         SpecificationStep {
             formula: format!(
                 "minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side"
             ),
             values: vec![named("minimum D10F", d10, "mm"), named("maximum D90F", None, "mm")],
-            note: "Not covered here. The maximum D90F follows from this minimum D10F by a table of FEMA and \
-                   NRCS. Take it from there."
-                .into(),
+            note:
+                "Still to be set: no text with its numbers could be read. The maximum D90F follows from this \
+                   minimum D10F by a table of FEMA and NRCS. Take it from there."
+                    .into(),
             source: with_own_factor(SEGREGATION),
             ..step("Keep the filter from segregating")
         }
@@ -279,6 +280,11 @@ impl Found<'_> {
             ..step("Draw both sides of the band")
         }
     }
+}
+
+/// The minimum D10F (mm) of a band, by which its maximum D90F is set.
+pub(super) fn least_d10(band: &SizeBand) -> f64 {
+    (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0))
 }
 
 /// Where the manual of the Corps sends for segregation.

@@ -230,3 +230,27 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(true), ..nobody }), None);
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(false), ..nobody }), None);
 }
+
+/// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+#[test]
+fn a_base_that_is_too_fine_is_not_called_broad() {
+    let clay = soil(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)]);
+    let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
+    let of = Specification::of("clay", &[("clay".into(), clay)], options);
+    let why = of.no_band.unwrap();
+    assert!(why.contains("at least 0.100 mm to drain it and at most 0.0640 mm to retain it"), "{why}");
+    assert!(why.ends_with(
+        "Have the base tested in the laboratory with the filter, or take a filter in two stages."
+    ));
+}
+
+/// The maximum D90F has no number here, and that is said for the minimum D10F of the step.
+#[test]
+fn what_is_still_to_be_set_is_said_with_its_size() {
+    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let said = core.still_to_set().unwrap();
+    assert!(said.starts_with("Not a complete specification: the maximum D90F is still to be set"), "{said}");
+    assert!(said.ends_with("for a minimum D10F of 0.117 mm."), "{said}");
+    let none = of(&[(1.0, 0.0), (2.0, 10.0), (4.75, 40.0), (9.5, 60.0), (19.0, 80.0), (37.5, 100.0)]);
+    assert_eq!((none.band.is_none(), none.still_to_set()), (true, None), "{none:?}");
+}
