@@ -111,7 +111,7 @@ impl PlannedWalk<'_> {
     fn cu_of_base(&self) -> Option<Finding> {
         let [low, high] = BASE_CU;
         match (self.base.cu(), self.base_cu) {
-            (None, Some([least, most])) if least == most => {
+            (None, Some([least, most])) if least == most && self.pan_is_passive => {
                 Some(finding::cu_at_least("base", least, self.base.smallest_mm(), low, high))
             }
             (_, cu) => not_as_uniform("base", cu, BASE_CU),
@@ -217,7 +217,11 @@ mod tests {
         // Of each pair of soils: what is found in mm, and in multiples of D0F.
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
-            (&hidden, vec!["fines_not_sieved", "pan_passive"], vec!["pan_passive"]),
+            (
+                &hidden,
+                vec!["fines_not_sieved", "cu_at_least", "pan_passive"],
+                vec!["cu_at_least", "pan_passive"],
+            ),
             (&till, vec!["not_regraded", "unstable_base"], vec![]),
             (&broad, vec!["broadly_graded"], vec![]),
         ] {
