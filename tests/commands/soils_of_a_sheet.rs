@@ -66,7 +66,7 @@ fn a_design_has_both_gradations_and_their_files() {
     let regraded = design["base"]["regraded"].as_array().unwrap();
     let at = regraded.iter().find(|row| row[0] == 0.425).unwrap()[1].as_f64().unwrap();
     assert!((at - 100.0 * 60.0 / 70.0).abs() < 1e-9, "{at}");
-    let page = fs::read_to_string(root.path().join("d/design.html")).unwrap();
+    let page = fs::read_to_string(root.path().join("d/design.html")).unwrap().replace('\u{202f}', " ");
     for part in [
         "Base <b><bdi>base.csv, regraded on 4.75 mm</bdi></b>",
         "filter of the shape <b><bdi>filter.csv</bdi></b> (D15F 0.250 mm, Cu ",
