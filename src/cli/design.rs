@@ -104,27 +104,7 @@ fn words(design: &Design) -> String {
     if more > 0 {
         lines.push(format!("  and {more} more reason{} on the page", if more == 1 { "" } else { "s" }));
     }
-    if !design.products.is_empty() {
-        let by_practice: Vec<&str> =
-            design.products.iter().filter(|of| of.fits()).map(|of| of.name.as_str()).collect();
-        let fit = design.products_that_fit();
-        lines.push(match (design.may_fit(), fit.is_empty()) {
-            (true, true) => "none of the standard products fits within the band".into(),
-            (true, false) => {
-                format!("D15 within the band (their own shapes were not walked): {}", fit.join(", "))
-            }
-            (false, _) if design.fits_by_practice() && !by_practice.is_empty() => {
-                format!("D15 within the band by practice: {}", by_practice.join(", "))
-            }
-            (false, _) if design.fits_by_practice() && design.products.iter().any(|of| of.may_fit()) => {
-                "of the standard products none is known to fit within the band".into()
-            }
-            (false, _) if design.fits_by_practice() => {
-                "none of the standard products fits within the band".into()
-            }
-            (false, _) => "of the standard products none is said to fit, as the answer is in doubt".into(),
-        });
-    }
+    lines.extend(design.products_in_words());
     let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
     lines.extend(to_be_checked(sources));
     lines.push(left_out_in_brief(&design.model_leaves_out));

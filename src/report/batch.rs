@@ -178,8 +178,9 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              threshold between the classes is "
             (threshold(batch.threshold))
             ". Probability of no erosion in a test (none outside the checked range or against practice): by \
-             the published range of tests alone, and by what the walk is worth for soils of this kind; \
-             beyond the boundary that tests saw, the lower of the two."
+             the published range of tests alone, in which boundaries are taken as log-uniform, and by what \
+             the walk is worth for soils of this kind; beyond the boundary that tests saw, the lower of the \
+             two. It is not for a risk analysis."
         }
     }
 }

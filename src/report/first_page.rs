@@ -8,7 +8,7 @@ use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
 use super::numbers::{SizeUnit, size, whole};
-use super::rules::value_and_limit;
+use super::rules::{result, value_and_limit};
 use super::shell::{clean, model, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
@@ -19,7 +19,8 @@ use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
 use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{NOT_A_LIMIT, Standing, standing};
+use crate::verdict::practice::{Standing, standing};
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
 use crate::verdict::words::capital;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
@@ -170,10 +171,12 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             @if !shown.is_empty() { (table(&shown, unit)) }
             @if !others.is_empty() {
                 p.others {
-                    @for said in [NOT_A_LIMIT, "no limit", "no result", "does not apply"] {
-                        @let of_kind = others.iter().filter(|of| without_result(of) == said);
+                    @for kind in RuleResult::WITHOUT {
+                        @let of_kind = others.iter().filter(|of| result_of(of) == kind);
                         @let names: Vec<&str> = of_kind.map(|of| &*of.name).collect();
-                        @if !names.is_empty() { b { (capital(said)) } ": " (clean(&names.join("; "))) ". " }
+                        @if !names.is_empty() {
+                            b { (capital(kind.words())) } ": " (clean(&names.join("; "))) ". "
+                        }
                     }
                 }
             }
@@ -194,26 +197,11 @@ const WITHOUT_RESULT: usize = DECIDING.len() + 2;
 /// Where a rule stands: those that decide first, then those that are not met, and then the others.
 fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id);
-    match (deciding, result(rule)) {
+    match (deciding, result_of(rule)) {
         (Some(place), _) => place,
-        (None, Some(false)) => DECIDING.len(),
-        (None, Some(true)) => DECIDING.len() + 1,
-        (None, None) => WITHOUT_RESULT,
-    }
-}
-
-/// What a rule found, where it was made for these soils.
-fn result(rule: &AppliedRule) -> Option<bool> {
-    rule.met.filter(|_| rule.applies)
-}
-
-/// Why a rule found nothing.
-fn without_result(rule: &AppliedRule) -> &'static str {
-    match (rule.applies, rule.needs.is_empty()) {
-        (false, true) if rule.note.to_string().starts_with(NOT_A_LIMIT) => NOT_A_LIMIT,
-        (false, true) => "does not apply",
-        (true, true) if rule.value.is_some() && rule.limit.is_none() => "no limit",
-        _ => "no result",
+        (None, RuleResult::NotMet) => DECIDING.len(),
+        (None, of) if RuleResult::WITHOUT.contains(&of) => WITHOUT_RESULT,
+        (None, _) => DECIDING.len() + 1,
     }
 }
 
@@ -231,20 +219,16 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let [_, limit] = value_and_limit(rule, unit);
             match limit.as_deref().map(clean) {
                 Some(limit) if rule.at_least && rule.limit_at_most => {
-                    html! { "not known; at most " span.q { (limit) } }
+                    html! { (limit_begins(rule)) " " span.q { (limit) } }
                 }
                 Some(limit) => html! {
-                    span.q { (if rule.at_least { "≥ " } else { "≤ " }) (limit) }
+                    span.q { (limit_begins(rule)) " " (limit) }
                     @if rule.limit_at_most { " or less" }
                 },
                 None => html! { "–" },
             }
         })
-        .text("result", |rule| match result(rule) {
-            Some(true) => html! { span.keeps { "✓ met" } },
-            Some(false) => html! { span.breaks { "✗ not met" } },
-            None => html! { (without_result(rule)) },
-        });
+        .text("result", |rule| result(rule));
     html! { (table) }
 }
 

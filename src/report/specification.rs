@@ -88,7 +88,7 @@ fn answer(of: &Specification) -> Markup {
             @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
             (to_specify(of))
             @if let Some(said) = of.if_dispersive_in_words() {
-                p { (clean(&said)) ". The band and the limits at the sieves do not hold then." }
+                p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
             (still_to_set(of))
@@ -191,13 +191,10 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Percentage points, which are more than 0.
+/// Percentage points between a product and the limit that stands at its sieve: that is a whole percent within
+/// the band, so that any part of a point is a whole one.
 fn points_beyond(points: f64) -> String {
-    match points {
-        1.0.. => format!("{points:.0}"),
-        0.05.. => format!("{points:.1}"),
-        _ => "less than 0.1".into(),
-    }
+    format!("{:.0}", (points - 1e-9).ceil())
 }
 
 /// Margins of standard products; who judges them elsewhere says there whether they fit.
@@ -223,6 +220,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         .text("Leaves the band by most", beyond);
     if says_fit {
         table = table.text("", |of| match of.fits() {
+            Some(true) if of.worst_sieve_mm.is_some() => html! { "D15 fits, lies outside this band" },
             Some(true) => html! { span.keeps { "✓ D15 fits" } },
             Some(false) => html! { span.breaks { "✗ does not fit" } },
             None if of.drains_by.is_none() && drainage_open => {
@@ -272,7 +270,11 @@ mod tests {
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"
         );
-        let points = [12.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
-        assert_eq!(points, ["12", "1", "1.0", "0.3", "less than 0.1"]);
+        let points = [10.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
+        assert_eq!(points, ["11", "1", "1", "1", "1"]);
+        // As a reader reckons from what is printed: 85 % at No. 16, and at most so much.
+        let sieve = core.limits.iter().find(|of| of.opening_mm == 1.18).unwrap();
+        let printed = 85.0 - sieve.max_percent_finer;
+        assert!(page.contains(&format!("{printed:.0} percentage points, at 1.18 mm")), "{page}");
     }
 }

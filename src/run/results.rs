@@ -97,10 +97,11 @@ pub fn outcome(
     };
     found.extend(outcome.found());
     if case.scene.base.dispersive.is_none() {
-        let fines = inputs.base_soil.fines_percent;
+        let (fines, d15f) = (inputs.base_soil.fines_percent, case.filter.d(15.0));
         let if_dispersive = rules::apply(&RuleInputs { dispersive: true, ..inputs });
-        found.extend(dispersion::finding(verdict, fines, &outcome.rules, &if_dispersive));
-        outcome.if_dispersive = IfDispersive::of(fines, &if_dispersive, case.filter.d(15.0).unwrap_or(1.0));
+        outcome.if_dispersive = IfDispersive::of(fines, &if_dispersive, d15f.unwrap_or(1.0));
+        let of = |of| dispersion::finding(verdict, d15f, &outcome.rules, of);
+        found.extend(outcome.if_dispersive.and_then(of));
     }
     if let Some(evidence) = &outcome.evidence {
         found = evidence.weigh(verdict, &outcome.rules, found);
@@ -299,7 +300,7 @@ mod tests {
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = walked(25.0, 9.0, &[]).next_in_words();
-        let beside = "(if the base is dispersive, which is not stated, the limit is not known, and ";
+        let beside = "(if the base is dispersive, which is not stated, no source that was read gives a ";
         assert!(open.contains(beside), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);

@@ -185,10 +185,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "confidence": design.confidence.words(),
         "reasons": design.reasons,
         "warnings": design.warnings,
-        "compared": design.products.len(),
-        "may_fit": design.may_fit(),
-        "fits_by_practice": design.fits_by_practice(),
-        "fit": design.products_that_fit(),
+        "products": design.products_in_words(),
         "model_leaves_out": design.model_leaves_out,
     }))
 }

@@ -2,7 +2,7 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::practice::cited;
+use super::rule_words::cited;
 use super::words::within;
 use crate::outcome::design::band::{Band, SetBy, limits, open_retention, retention};
 use crate::outcome::numbers::{rounded_down, rounded_up};

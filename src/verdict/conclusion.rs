@@ -3,8 +3,9 @@
 
 use super::beside::is_evidence;
 use super::entry::COHESIVE_FINES;
-use super::practice::{Standing, broken, is_beyond_tests, standing};
-use super::probability::beside_range;
+use super::practice::{Standing, broken, standing};
+use super::probability::{beside_range, stated};
+use super::tested::is_beyond_tests;
 use crate::outcome::digits::percent;
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
@@ -70,10 +71,10 @@ impl Outcome {
     fn beside_tests(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
         if self.confidence.hides_probability() {
-            return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?));
+            return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?, ""));
         }
         let each = evidence.probabilities(is_beyond_tests(&self.rules))?;
-        Some(format!("Probability of no erosion in a test: {each}"))
+        Some(stated(&each, evidence.range_of_tests_mm))
     }
 
     /// The findings that matter most, at most [`FOREMOST`], and how many more there are.

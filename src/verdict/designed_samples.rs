@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
-use super::practice::cited_rule;
+use super::rule_words::cited_rule;
 use super::words::capital;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;

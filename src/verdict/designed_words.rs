@@ -180,7 +180,8 @@ impl DesignedSamples {
             open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
         let (row, of) = strictest?;
         Some(format!(
-            "Not known whether dispersive: {} with 15 % fines or more; if {} is, practice allows it {}",
+            "Not known whether dispersive: {} with 15 % fines or more; if {} is: {}. Its band is then not \
+             valid: run again with --dispersive",
             counted(open.len()),
             row.sample,
             of.words()
@@ -278,8 +279,8 @@ mod tests {
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no maximum D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
-            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is, practice allows it \
-             D15F up to ",
+            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is: D15F up to ",
+            " mm. Its band is then not valid: run again with --dispersive",
             "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",
             "Outside checked range: 2 of 2 samples",
             "May govern, as no maximum D15F is known: silt (limit of practice ",

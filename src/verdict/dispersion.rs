@@ -5,11 +5,14 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::practice::{against, broken};
 use crate::gradation::FEW_FINES;
+use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::numbers::rounded_down;
-use crate::outcome::record::{AppliedRule, IfDispersive, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, IfDispersive, Verdict};
+
+/// Said of fines for which no text gives the limit of a dispersive soil.
+const NO_LIMIT: &str = "no source that was read gives a limit for its fines";
 
 impl IfDispersive {
     /// Of a base with so many percent of fines: `if_dispersive` are the rules that it has if it is
@@ -27,10 +30,7 @@ impl IfDispersive {
     pub fn beside(&self, d15f_mm: f64) -> Option<String> {
         let limit = rounded_down(self.d15f_max_mm);
         match self.at_most {
-            true => Some(format!(
-                "if the base is dispersive, which is not stated, the limit is not known, and {limit} mm or \
-                 less"
-            )),
+            true => Some(format!("if the base is dispersive, which is not stated, {}", self.open())),
             false if self.d15f_max_mm < d15f_mm => {
                 Some(format!("{limit} mm if the base is dispersive, which is not stated"))
             }
@@ -38,22 +38,28 @@ impl IfDispersive {
         }
     }
 
+    /// What is known of a limit that no text gives.
+    fn open(&self) -> String {
+        let limit = rounded_down(self.d15f_max_mm);
+        format!("{NO_LIMIT}: it is at most {limit} mm, and the pair is to be tested")
+    }
+
     /// The limit in words.
     pub fn words(&self) -> String {
-        let limit = rounded_down(self.d15f_max_mm);
         match self.at_most {
-            true => format!("a limit of D15F that is not known, and {limit} mm or less"),
-            false => format!("D15F up to {limit} mm"),
+            true => self.open(),
+            false => format!("D15F up to {} mm", rounded_down(self.d15f_max_mm)),
         }
     }
 
     /// What practice says then of a filter of this D15F (mm), where that is known.
-    pub fn of_filter(&self, d15f_mm: f64) -> String {
+    pub fn of_filter(&self, d15f_mm: Option<f64>) -> String {
         let limit = rounded_down(self.d15f_max_mm);
-        match (self.is_broken_by(d15f_mm), self.at_most) {
-            (true, _) => format!("practice allows a D15F of {limit} mm, which is not met"),
-            (false, false) => format!("practice allows a D15F of {limit} mm, which is met"),
-            (false, true) => format!("the limit is not known, and is a D15F of {limit} mm or less"),
+        match (d15f_mm.map(|d15f| self.is_broken_by(d15f)), self.at_most) {
+            (Some(true), _) => format!("practice allows a D15F of {limit} mm, which is not met"),
+            (_, true) => self.open(),
+            (Some(false), false) => format!("practice allows a D15F of {limit} mm, which is met"),
+            (None, false) => format!("practice allows a D15F of {limit} mm"),
         }
     }
 
@@ -63,42 +69,27 @@ impl IfDispersive {
     }
 }
 
-/// What is said of a base with so many percent of fines: `rules` are those of the pair, `if_dispersive` those
-/// that it has if its base is dispersive. `None` where it has few fines, or the walk erodes.
+/// What is said beside a verdict of a base of which nobody has said whether it is dispersive, and of its filter
+/// of this D15F (mm); `rules` are those of the pair. `None` where the walk erodes.
 pub fn finding(
     verdict: Verdict,
-    fines_percent: Option<f64>,
+    d15f_mm: Option<f64>,
     rules: &[AppliedRule],
-    if_dispersive: &[AppliedRule],
+    if_dispersive: IfDispersive,
 ) -> Option<Finding> {
-    let erodes = matches!(verdict, Verdict::Some | Verdict::Continuing);
-    if erodes || fines_percent? < FEW_FINES {
+    if matches!(verdict, Verdict::Some | Verdict::Continuing) {
         return None;
     }
-    let is_broken = |of: &AppliedRule| rules.iter().any(|rule| rule.id == of.id && rule.is_broken());
-    let more = broken(if_dispersive, RuleRole::Retention).into_iter().filter(|rule| !is_broken(rule));
-    if let Some(rule) = strictest(more) {
-        let [value, limit] = against(rule, 3);
-        return Some(finding::dispersive_would_not_hold(&limit, &value));
-    }
-    let limits = || {
-        let of_retention = |rule: &&AppliedRule| rule.applies && rule.role == RuleRole::Retention;
-        let all = if_dispersive.iter().filter(of_retention);
-        all.filter(|rule| rule.quantity == RuleQuantity::D15F && rule.limit.is_some())
-    };
-    let known = strictest(limits().filter(|rule| !rule.limit_at_most));
-    let limit = known.or_else(|| strictest(limits()))?;
-    let (before, after) = match known.map(|rule| rule.met) {
-        Some(Some(true)) => ("practice allows a D15F of", ", which is met"),
-        Some(_) => ("practice allows a D15F of", ""),
-        None => ("no source that was read gives the limit: it is a D15F of", " or less"),
-    };
-    Some(finding::dispersion_not_known(before, &against(limit, 3)[1], after))
-}
-
-/// The rule with the least limit.
-fn strictest<'a>(rules: impl Iterator<Item = &'a AppliedRule>) -> Option<&'a AppliedRule> {
-    rules.min_by(|a, b| a.limit.unwrap_or(f64::NAN).total_cmp(&b.limit.unwrap_or(f64::NAN)))
+    // What does not hold anyway would not hold the more.
+    let is_kept = |d15f: &f64| retention(rules, *d15f).is_none_or(|(_, limit)| *d15f <= limit);
+    let newly = d15f_mm.filter(|d15f| if_dispersive.is_broken_by(*d15f)).filter(is_kept);
+    Some(match newly {
+        Some(d15f) => {
+            let [value, limit] = value_and_limit(d15f, if_dispersive.d15f_max_mm, false, 3);
+            finding::dispersive_would_not_hold(&format!("{limit} mm"), &format!("{value} mm"))
+        }
+        None => finding::dispersion_not_known(&if_dispersive.of_filter(d15f_mm)),
+    })
 }
 
 #[cfg(test)]
@@ -119,7 +110,8 @@ mod tests {
             PairRules::of_envelopes(&one(&base), &one(&filter), options)
         };
         let pair = of(false);
-        let found = finding(verdict, pair.base.fines_percent, &pair.rules, &of(true).rules);
+        let if_dispersive = IfDispersive::of(pair.base.fines_percent, &of(true).rules, d15f);
+        let found = if_dispersive.and_then(|of| finding(verdict, Some(d15f), &pair.rules, of));
         let label = judge(verdict, &pair.rules, found.clone().into_iter().collect()).confidence;
         (found.map(|found| (found.id(), found.sentence())), label)
     }
@@ -135,8 +127,35 @@ mod tests {
             let (found, label) = said(Verdict::None, fines, 0.45);
             let (id, sentence) = found.unwrap();
             assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-            assert!(sentence.contains("allows a D15F of 0.500 mm, which is met"), "{sentence}");
+            // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
+            let then = match fines < 40.0 {
+                true => "fines: it is at most 0.500 mm, and the pair is to be tested",
+                false => "allows a D15F of 0.500 mm, which is met",
+            };
+            assert!(sentence.contains(then), "{sentence}");
         }
+    }
+
+    /// What page 1 says next and what the finding says is one decision.
+    #[test]
+    fn the_finding_and_the_next_step_say_the_same() {
+        for (d15f_max_mm, at_most) in [(0.5, false), (0.5, true)] {
+            let of = IfDispersive { d15f_max_mm, at_most };
+            for d15f in [Some(0.4), Some(0.5), None] {
+                let found = finding(Verdict::None, d15f, &[], of).unwrap();
+                let said = found.sentence();
+                assert!(said.contains(&format!("If it is, {}. ", of.of_filter(d15f))), "{said}");
+            }
+            let found = finding(Verdict::None, Some(0.6), &[], of).unwrap();
+            assert_eq!(found.id(), "dispersive_would_not_hold");
+            assert!(of.of_filter(Some(0.6)).ends_with("0.500 mm, which is not met"));
+        }
+        let open = IfDispersive { d15f_max_mm: 0.5, at_most: true };
+        assert_eq!(
+            open.beside(0.4).unwrap(),
+            "if the base is dispersive, which is not stated, no source that was read gives a limit for its \
+             fines: it is at most 0.500 mm, and the pair is to be tested"
+        );
     }
 
     #[test]
@@ -144,7 +163,9 @@ mod tests {
         let (found, label) = said(Verdict::None, 25.0, 0.6);
         let (id, sentence) = found.unwrap();
         assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-        assert!(sentence.contains("no source that was read gives the limit: it is a D15F of "), "{sentence}");
+        assert!(
+            sentence.contains("If it is, no source that was read gives a limit for its fines: it is at ")
+        );
         assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
         for erodes in [Verdict::Some, Verdict::Continuing] {
             assert_eq!(said(erodes, 45.0, 0.6).0, None);

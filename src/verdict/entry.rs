@@ -9,6 +9,9 @@ use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdic
 /// The name of the finding of fines that may be cohesive.
 pub const COHESIVE_FINES: &str = "cohesive_fines";
 
+/// The name of the finding that the walk errs on the unsafe side for soils of this kind.
+pub const EVIDENCE_UNSAFE: &str = "evidence_unsafe";
+
 /// What the table declares of a finding.
 #[derive(Debug)]
 pub struct Entry {

@@ -7,6 +7,21 @@ use crate::outcome::record::Bound;
 /// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
 const WALK_SURE: f64 = 0.025;
 
+/// Where the range was read.
+pub const SOURCE: &str = "Fell et al., Geotechnical Engineering of Dams, Table 9.2, after Foster 1999";
+
+/// A probability of no erosion in words, with what it takes and what it is not for; the range of tests (mm),
+/// where that is known.
+pub fn stated(each: &str, range: Option<[f64; 2]>) -> String {
+    let ends = range.map_or_else(String::new, |[low, high]| {
+        format!(" of {} to {} mm", rounded_down(low), rounded_up(high))
+    });
+    format!(
+        "Probability of no erosion in a test, not for a risk analysis: {each}; boundaries are taken as \
+         log-uniform within the published range{ends} (Fell et al., Table 9.2)"
+    )
+}
+
 /// Said of the one number that stands alone.
 const LOWER: &str = "the lower of two; beyond the D15F for which tests saw no erosion";
 
@@ -47,22 +62,25 @@ pub fn probabilities(
 }
 
 /// Where a D15F (mm) lies beside the range of D15F in which tests on soils with such fines had their boundary
-/// of no erosion: what can be said without any probability.
-pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2]) -> String {
+/// of no erosion: what can be said without any probability; the source stands behind the range, where it is
+/// named.
+pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2], source: &str) -> String {
     let of = |end: f64| digits_of(d15f_mm / end, 2);
+    let source = if source.is_empty() { String::new() } else { format!("; {source}") };
     match d15f_mm {
         d15f if d15f < low => format!(
-            "D15F is {} of the lowest D15F with erosion in tests on soils with such fines ({} mm)",
+            "D15F is {} of the lowest D15F with erosion in tests on soils with such fines ({} mm{source})",
             of(low),
             rounded_down(low)
         ),
         d15f if d15f > high => format!(
-            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm)",
+            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm{source})",
             of(high),
             rounded_up(high)
         ),
         _ => format!(
-            "D15F lies in the range in which erosion began in tests on soils with such fines ({} to {} mm)",
+            "D15F lies in the range in which erosion began in tests on soils with such fines ({} to {} \
+             mm{source})",
             rounded_down(low),
             rounded_up(high)
         ),
@@ -76,7 +94,7 @@ mod tests {
     /// Tests of bases with 35 to 85 % fines had their boundary at 0.7 to 1.7 mm.
     #[test]
     fn a_d15f_stands_beside_the_range_of_tests_without_a_probability() {
-        let said = |d15f| beside_range(d15f, [0.7, 1.7]);
+        let said = |d15f| beside_range(d15f, [0.7, 1.7], "");
         assert_eq!(
             said(0.234),
             "D15F is 0.33 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm)"
@@ -86,6 +104,18 @@ mod tests {
         let coarse = said(2.21);
         assert!(coarse.starts_with("D15F is 1.3 times the highest D15F without erosion"), "{coarse}");
         assert!(coarse.ends_with("(1.70 mm)"), "{coarse}");
+        assert!(beside_range(2.21, [0.7, 1.7], "Table 9.2").ends_with(" (1.70 mm; Table 9.2)"));
+    }
+
+    #[test]
+    fn a_probability_says_how_it_is_read_and_what_it_is_not_for() {
+        assert_eq!(
+            stated("88 % by the published range", Some([0.7, 1.7])),
+            "Probability of no erosion in a test, not for a risk analysis: 88 % by the published range; \
+             boundaries are taken as log-uniform within the published range of 0.700 to 1.70 mm (Fell et \
+             al., Table 9.2)"
+        );
+        assert!(stated("88 %", None).contains("within the published range (Fell et al."));
     }
 
     #[test]

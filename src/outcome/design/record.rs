@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::band::{Band, SetBy};
+use super::finding::DesignFinding;
 use super::products::Fit;
 use super::specification::Specification;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, InputFile, ModelLimit, SheetCover};
+use crate::outcome::record::{AppliedRule, Confidence, InputFile, ModelLimit, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -98,26 +99,6 @@ pub struct Design {
     pub inches: bool,
     /// Wall time (s).
     pub seconds: f64,
-}
-
-/// A finding about the rows of a design.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct DesignFinding {
-    /// The row that it is of, in words; `None` where it is of all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub row: Option<String>,
-    /// The finding.
-    #[serde(flatten)]
-    pub finding: FindingRecord,
-}
-
-impl DesignFinding {
-    /// Its sentence, with the row's name and with the setting that changes it.
-    pub fn words(&self) -> String {
-        let said = self.finding.with_to_do();
-        self.row.as_ref().map_or(said.clone(), |row| format!("{row}: {said}"))
-    }
 }
 
 /// How coarse the filter may be; for the inverse, how fine the base.
@@ -365,12 +346,6 @@ impl Design {
         let of = self.products.iter().find(|of| of.name == product)?;
         let fit = of.fits();
         (!of.may_fit() && (!fit || self.may_fit())).then_some(fit)
-    }
-
-    /// Names of the standard products that are said to fit: none where that is in doubt.
-    pub fn products_that_fit(&self) -> Vec<&str> {
-        let fit = self.products.iter().filter(|of| self.may_fit() && of.fits());
-        fit.map(|of| of.name.as_str()).collect()
     }
 }
 

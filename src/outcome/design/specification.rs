@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::finding::DesignFinding;
 use super::products::{PRODUCTS, Product};
 use super::sieves::SieveSeries;
 pub use super::size_band::{BandSize, SieveLimit, SizeBand};
@@ -38,6 +39,10 @@ pub struct Specification {
     pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
+    /// What a reader must know of the base itself, each of its curve where there are several; empty in files
+    /// of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<DesignFinding>,
     /// Every step, with its numbers.
     pub steps: Vec<SpecificationStep>,
     /// Minimum D15F (mm) that drains the base; `None` where it is not known.

@@ -249,7 +249,7 @@ fn in_doubt(design: &Design) -> Markup {
     let by_practice = is_shown && design.fits_by_practice();
     html! {
         @if by_practice {
-            p { "The limit of practice sets them; the walk sets no tighter one, and is no check of them." }
+            p { "The limit of practice sets them. " (design.walk_beside_practice()) }
         }
         @if is_shown {
             p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }

@@ -141,8 +141,8 @@ pub(super) fn products(design: &Design) -> Markup {
                     " Judged at the maximum D15F that both walk and practice allow, as none that fits is \
                      coarser."
                 } @else if design.fits_by_practice() {
-                    " The limit of practice sets the answer: a product fits by practice. The walk sets no \
-                     tighter limit, and is outside its checked range."
+                    " The limit of practice sets the answer: a product fits by practice. "
+                    (design.walk_beside_practice())
                 } @else {
                     " No product is said to fit here, because the answer is in doubt."
                 }
@@ -159,12 +159,9 @@ pub(super) fn products(design: &Design) -> Markup {
                 })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("Result", |fit| match (fit.fits(), design.may_fit()) {
-                    (true, true) => html! { b { "fits" } },
-                    (true, false) if design.fits_by_practice() => html! { "fits by practice" },
-                    (true, false) => html! { "in doubt" },
-                    (false, _) if fit.may_fit() => html! { "not known" },
-                    (false, _) => html! { "does not fit" },
+                .number("Result", |fit| match design.product_in_words(fit) {
+                    said @ "fits" => html! { b { (said) } },
+                    said => html! { (said) },
                 })
                 .render())
             @if let Some(said) = to_check { p.small { (clean(&said)) } }

@@ -75,6 +75,7 @@ impl Specification {
             inputs: Vec::new(),
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
+            findings: curve::findings(&read),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
@@ -170,12 +171,19 @@ impl Specification {
 }
 
 impl Specification {
-    /// What the maximum D15F is if the base is dispersive, in a sentence without its end; `None` where that
-    /// is the same, or somebody has said whether it is.
+    /// What the maximum D15F is if the base is dispersive, and what of the specification does not hold then,
+    /// in a sentence without its end; `None` where it all holds, or somebody has said whether it is.
     pub fn if_dispersive_in_words(&self) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
-        Some(format!("If the base is dispersive (not stated): {}", of.words()))
+        let band = match self.band {
+            Some(_) => "the band and the limits at the sieves are then not valid: ",
+            None => "",
+        };
+        Some(format!(
+            "If the base is dispersive (not stated): {}; {band}run again with --dispersive",
+            of.words()
+        ))
     }
 }
 
