@@ -77,6 +77,8 @@ fn words(of: &Specification) -> String {
     if let Some(said) = of.if_dispersive_in_words() {
         line(&sized(&format!("{said}.")));
     }
+    let findings = of.findings.iter().map(|found| sized(&found.words()));
+    findings.flat_map(|found| wrapped(&found, 0)).for_each(|text| line(&text));
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {

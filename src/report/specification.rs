@@ -46,6 +46,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .inches(of.inches)
         .words(&answer(&of))
         .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
+        .section("More warnings", &more_warnings(&of))
         .section("Limits sieve by sieve", &stated.limits)
         .section("Standard products", &products(&of, true))
         .section("Step by step", &stated.words)
@@ -91,13 +92,25 @@ fn answer(of: &Specification) -> Markup {
                 p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
+            @for found in of.findings.iter().take(WARNINGS) {
+                p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
+            }
+            @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
             p { (clean(&products_in_short(of))) }
         }
     }
 }
 
-/// What the specification lacks.
+/// Warnings that stand in the answer; those of further curves stand below it.
+const WARNINGS: usize = 4;
+
+fn more_warnings(of: &Specification) -> Markup {
+    let more = of.findings.iter().skip(WARNINGS);
+    html! { @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } } }
+}
+
+/// What the specification lacks; nothing without a band.
 pub(super) fn still_to_set(of: &Specification) -> Markup {
     html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
 }

@@ -94,6 +94,36 @@ fn a_design_has_both_gradations_and_their_files() {
     assert!(cells(&page, "Group").iter().all(|group| group.len() > 1));
 }
 
+/// The till again: its finer part may leave it, and the sheet that a contractor gets says so.
+#[test]
+fn the_box_of_a_specification_warns_of_the_base_itself() {
+    let root = site();
+    let gap = "opening_mm,percent_finer\n19,100\n4.75,50\n2,30\n0.425,29\n0.075,20\n0.01,0\n";
+    fs::write(root.path().join("gap.csv"), gap).unwrap();
+    let said = call(root.path(), &call_of("design gap.csv --steps --out gap", &[])).stdout;
+    let said = String::from_utf8(said).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = fs::read_to_string(root.path().join("gap/specification.html")).unwrap();
+    let page = page.replace('\u{202f}', " ");
+    let answer =
+        page.split("<section class=\"verdict\">").nth(1).unwrap().split("</section>").next().unwrap();
+    let found = record(&root.path().join("gap/specification.json"));
+    let ids: Vec<&str> =
+        found["findings"].as_array().unwrap().iter().map(|of| of["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["unstable_base", "broad_base", "gap_of_base"], "{found}");
+    for words in [
+        "The base itself is not internally stable by Kenney and Lau: the minimum H/F is ",
+        "The base is broadly graded (Cu ",
+        "The base is gap-graded by this program",
+    ] {
+        assert!(answer.contains(&format!("<b>Warning</b>: {words}")), "{words}: {answer}");
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(said.contains("Not a complete specification: the maximum D90F"), "{said}");
+    // A sand has nothing of this.
+    done(&call(root.path(), &call_of("design filter.csv --steps --out sand", &[])));
+    assert!(record(&root.path().join("sand/specification.json")).get("findings").is_none());
+}
+
 /// Two curves of a base: sizes of each, the numbers of each, and the file.
 #[test]
 fn a_specification_has_every_curve_of_its_base() {

@@ -29,6 +29,8 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
+    of.findings.iter().for_each(|found| sheet.item("Warning", found.words(), ""));
+    sheet.item("Still to be set", of.still_to_set(), "");
     sheet.item("Confidence", design.map(Design::confidence_said), "");
     let basis = match design {
         Some(_) => "By the rules of practice and a walk.",
