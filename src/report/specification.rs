@@ -44,7 +44,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
-        .words(&answer(&of))
+        .words(&html! { section.sheet { (answer(&of)) } })
         .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
         .section("More warnings", &more_warnings(&of))
         .section("Limits sieve by sieve", &stated.limits)
