@@ -75,7 +75,7 @@ fn a_design_has_both_gradations_and_their_files() {
         "<h3>Base, as sampled</h3>",
         "<h3>Base, regraded</h3>",
         "<h3>Filter, as given</h3>",
-        "filter,</tspan>",
+        "checked> filter, as given</label>",
         &input("base.csv", TILL),
         &input("filter.csv", SAND),
         "Dotted: the filter as it was given.",
