@@ -1617,12 +1617,12 @@ class _DesignFinding(TypedDict):
 
 
 class DesignFinding(_DesignFinding, total=False):
-    """A finding about the rows of a design.
+    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
 
     Keys
     ----
     row
-        The row that it is of, in words; `None` where it is of all.
+        The row or the curve that it is of, in words; `None` where it is of all.
     id
         Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
     about
@@ -1932,6 +1932,9 @@ class Specification(_Specification, total=False):
         Whether inches stand beside mm on its page.
     curves
         The curves of the base, in the order of the file.
+    findings
+        What a reader must know of the base itself, each of its curve where there are several; empty in files of
+        earlier versions.
     steps
         Every step, with its numbers.
     d15f_min_mm
@@ -1956,6 +1959,7 @@ class Specification(_Specification, total=False):
     commit: Optional[str]
     cover: SheetCover
     inches: bool
+    findings: List[DesignFinding]
     d15f_min_at_most: bool
     if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
