@@ -79,6 +79,19 @@ pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
     }
 }
 
+/// The end of a path that tells it apart from others, with no more folders than that takes.
+pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
+    let parts = |path: &str| path.split(['/', '\\']).map(str::to_owned).collect::<Vec<String>>();
+    let own = parts(path);
+    let end = |of: &[String], count: usize| of[of.len().saturating_sub(count)..].join("/");
+    let is_alone = |count: &usize| {
+        let like = others.iter().filter(|other| end(&parts(other), *count) == end(&own, *count));
+        like.count() <= 1
+    };
+    let count = (1..own.len()).find(is_alone).unwrap_or(own.len());
+    end(&own, count)
+}
+
 /// An option as a command line has it, of which the name of a file stands without its folders.
 pub(super) fn option_words(option: &str) -> String {
     let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
@@ -163,6 +176,16 @@ mod tests {
         assert_eq!(option_words("--set base.sieve=/a/b.csv"), "--set base.sieve=b.csv");
         assert_eq!([option_words("/a/b.csv"), option_words("--pack")], ["b.csv", "--pack"]);
         assert_eq!(note_words("/a/b.csv: 3/4 in: taken as 19 mm"), "b.csv: 3/4 in: taken as 19 mm");
+    }
+
+    #[test]
+    fn files_of_one_name_are_told_apart_by_their_nearest_folders_alone() {
+        let all = ["/lab/5/filter.csv", "/lab/7/filter.csv", "C:\\soils\\c33.csv"];
+        let said = |path| told_apart(path, &all);
+        assert_eq!(all.map(said), ["5/filter.csv", "7/filter.csv", "c33.csv"]);
+        let deep = ["/a/x/filter.csv", "/b/x/filter.csv", "x/filter.csv"];
+        assert_eq!(told_apart(deep[0], &deep), "a/x/filter.csv");
+        assert_eq!(told_apart(deep[2], &deep), "x/filter.csv");
     }
 
     #[test]

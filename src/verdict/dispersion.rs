@@ -69,8 +69,8 @@ impl IfDispersive {
     }
 }
 
-/// What is said beside a verdict of a base of which nobody has said whether it is dispersive, and of its filter
-/// of this D15F (mm); `rules` are those of the pair. `None` where the walk erodes.
+/// What is said beside a verdict of a base of which nobody has said whether it is dispersive, and of its
+/// filter of this D15F (mm); `rules` are those of the pair. `None` where the walk erodes.
 pub fn finding(
     verdict: Verdict,
     d15f_mm: Option<f64>,

@@ -385,8 +385,8 @@ mod tests {
              walked, of Cu 1.5, with a base of 5 % of its mass; with four times as much base, uniform \
              filters began to erode at 12.1 times the D15F (median).",
             "For 106 real soils of this kind (55 to 85 % fines",
-            "D15F is 0.71 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm; Fell et \
-             al., Geotechnical Engineering of Dams, Table 9.2, after Foster 1999). ",
+            "D15F is 0.71 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm; Fell \
+             et al., Geotechnical Engineering of Dams, Table 9.2). ",
             "so that no probability for a risk analysis follows.",
         ] {
             assert!(said.contains(words), "{words}: {said}");

@@ -13,8 +13,8 @@
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
-//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting` is
-//!   which standard products are said to fit.
+//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
+//!   is which standard products are said to fit.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,

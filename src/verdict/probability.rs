@@ -8,7 +8,7 @@ use crate::outcome::record::Bound;
 const WALK_SURE: f64 = 0.025;
 
 /// Where the range was read.
-pub const SOURCE: &str = "Fell et al., Geotechnical Engineering of Dams, Table 9.2, after Foster 1999";
+pub const SOURCE: &str = "Fell et al., Geotechnical Engineering of Dams, Table 9.2";
 
 /// A probability of no erosion in words, with what it takes and what it is not for; the range of tests (mm),
 /// where that is known.
@@ -74,7 +74,8 @@ pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2], source: &str) -> String
             rounded_down(low)
         ),
         d15f if d15f > high => format!(
-            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm{source})",
+            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} \
+             mm{source})",
             of(high),
             rounded_up(high)
         ),

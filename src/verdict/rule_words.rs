@@ -1,4 +1,5 @@
-//! Single rules of practice in words: what one found, its value beside its limit, and how a sentence cites it.
+//! Single rules of practice in words: what one found, its value beside its limit, and how a sentence cites
+//! it.
 
 use crate::outcome::apart::{digits_of, value_and_limit};
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};

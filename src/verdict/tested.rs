@@ -8,8 +8,8 @@ use crate::outcome::record::{AppliedRule, RuleNote, TestedClass};
 use crate::outcome::rules::{TESTS_CONTINUING, TESTS_NO_EROSION};
 
 /// Said where a filter lies between the boundaries of no and of continuing erosion.
-const BETWEEN: &str = "at least some erosion; excessive erosion is not excluded, as its boundary is not worked \
-                       out here";
+const BETWEEN: &str = "at least some erosion; excessive erosion is not excluded, as its boundary is not \
+                       worked out here";
 
 /// Said where it lies beyond that of no erosion, and no other is known.
 const BEYOND: &str = "at least some erosion";
