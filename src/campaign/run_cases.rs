@@ -297,6 +297,7 @@ impl CaseRunner<'_> {
         if folder.read("scene.toml")?.as_deref() != Some(case.resolved().to_toml().as_bytes()) {
             clear(folder, FolderKind::Run)?;
         }
+        results::write_scene(folder, case)?;
         results::write(folder, case, &outcome, &walked, &manifest)?;
         self.callbacks.run.results(FolderKind::Run, folder.path())?;
         let made =
