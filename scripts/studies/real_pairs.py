@@ -64,7 +64,8 @@ def judge(binary, soil, name, extra):
     row = {"soil": soil["id"], "filter": name, "seconds": round(seconds, 2)}
     row["fines_percent"] = fines(soil["points_mm_percent"])
     if done.returncode != 0:
-        return row | {"error": done.stderr.strip().splitlines()[-1][:200] if done.stderr.strip() else done.returncode}
+        said = done.stderr.replace(f"{folder}/", "").strip().splitlines()
+        return row | {"error": said[-1][:200] if said else done.returncode}
     out = json.loads(done.stdout)
     rules = {rule["id"]: rule for rule in out["rules"]}
     tests, design = rules.get("foster-fell-no-erosion", {}), rules.get("sherard-dunnigan", {})
@@ -179,7 +180,7 @@ def main():
         pairs = draw.sample(pairs, options.pairs)
         there = {(row["soil"], row["filter"]) for row in rows}
         with options.out.open("a", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, restval="")
+            writer = csv.DictWriter(file, COLUMNS, restval="", lineterminator="\n")
             if not rows:
                 writer.writeheader()
             for soil, name in pairs:

@@ -258,12 +258,10 @@ impl CaseRunner<'_> {
         let counting = Callbacks { on_event: &count, stop, ..Callbacks::default() };
         let (callbacks, networks) = (&counting, self.networks.as_ref());
         let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
-        let walked = replicates::replicates(case, &context)
-            .and_then(|walked| Ok((OtherWalks::walk(case, &walked, &context)?, walked)))
-            .and_then(|(other, walked)| {
-                let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).verdict;
-                Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
-            });
+        let walked = OtherWalks::with_case(case, &context).and_then(|(walked, other)| {
+            let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).verdict;
+            Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
+        });
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
@@ -297,6 +295,7 @@ impl CaseRunner<'_> {
         if folder.read("scene.toml")?.as_deref() != Some(case.resolved().to_toml().as_bytes()) {
             clear(folder, FolderKind::Run)?;
         }
+        results::write_scene(folder, case)?;
         results::write(folder, case, &outcome, &walked, &manifest)?;
         self.callbacks.run.results(FolderKind::Run, folder.path())?;
         let made =

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::ReportError;
 use super::shell::Drawn;
-use crate::store::{make_folder, write_whole};
+use crate::store::{Together, make_folder};
 
 /// The files of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,15 +32,15 @@ pub(super) fn write_page_as(
     figures: &[Drawn],
     page: &str,
 ) -> Result<Written, ReportError> {
-    let drawings = folder.join("figures");
-    make_folder(&drawings)?;
+    make_folder(&folder.join("figures"))?;
+    let mut files = Together::in_folder(folder);
     let mut written = Vec::new();
     for drawn in figures {
-        let path = drawings.join(format!("{}.svg", drawn.name));
-        write_whole(&path, drawn.figure.file().as_bytes())?;
-        written.push(path);
+        let name = format!("figures/{}.svg", drawn.name);
+        files.add(&name, drawn.figure.file().as_bytes())?;
+        written.push(folder.join(name));
     }
-    let path = folder.join(name);
-    write_whole(&path, page.as_bytes())?;
-    Ok(Written { page: path, figures: written })
+    files.add(name, page.as_bytes())?;
+    files.finish()?;
+    Ok(Written { page: folder.join(name), figures: written })
 }

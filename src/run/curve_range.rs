@@ -2,7 +2,7 @@
 
 use super::callbacks::Event;
 use super::error::RunError;
-use super::planned::replicates_of_end;
+use super::planned::{first_replicates, replicates_of_end};
 use super::replicates::{
     ReplicateContext, ReplicateResult, classed, concluded, each, some_replicates, values_by_run,
 };
@@ -11,23 +11,56 @@ use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
 use crate::outcome::record::{Classed, CurveEnd, CurveRange, Verdict};
 use crate::outcome::stopping::class_at;
 
-/// Walks each end of the range of the curve on the random numbers of the case's first replicates: one
-/// replicate where it is clear that the class stays, else as many as were walked with the curve itself.
-/// `None` where the curve is no range.
+/// An end of the range of the curve, and those of its replicates that were walked.
+pub struct BegunEnd<'a> {
+    end: &'a OtherCurve,
+    /// The case with that curve.
+    case: Case,
+    part: u64,
+    n_base: u64,
+    walked: Vec<ReplicateResult>,
+}
+
+/// Begins the ends of the range of the curve, on the random numbers of the case's first replicates: the one
+/// replicate that is walked whatever comes of the case, where that is known before and walks fit into the
+/// memory side by side.
+///
+/// # Errors
+/// As [`super::replicates::replicates`].
+pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
+    // The parts before these are the sensitivity study's and the other readings'.
+    let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
+    let known = if fit(case) { replicates_of_end(first_replicates(case)).min(1) } else { 0 };
+    let one = |(part, end): (u64, &'a OtherCurve)| {
+        let other = case.with_curve(end.curve.clone());
+        // What a user or a cap says of the amount of base holds for every curve.
+        let by_grains = case.n_base_eq2 == Some(case.n_base);
+        let n_base = case.times_base(if by_grains { end.times_grains } else { 1.0 });
+        let walked = some_replicates(&other, part, 1..=known, n_base, context)?;
+        Ok(BegunEnd { end, case: other, part, n_base, walked })
+    };
+    each((before..).zip(&case.curve_ends).collect(), fit(case), one)
+}
+
+/// Whether walks of the case fit into the memory side by side.
+fn fit(case: &Case) -> bool {
+    case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1
+}
+
+/// Walks each end of the range of the curve: one replicate where it is clear that the class stays, else as
+/// many as were walked with the curve itself. `None` where the curve is no range.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
 pub fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],
+    begun: Vec<BegunEnd>,
     context: &ReplicateContext,
 ) -> Result<Option<CurveRange>, RunError> {
-    // The parts before these are the sensitivity study's and the other readings'.
-    let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
     let (verdict, summaries, _) = concluded(case, walked);
-    let one = |(part, end): (u64, &OtherCurve)| of_end(case, end, part, walked, verdict, context);
-    let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
-    let ends: Vec<(CurveEnd, Verdict)> = each((before..).zip(&case.curve_ends).collect(), fit, one)?;
+    let one = |begun: BegunEnd| of_end(case, begun, walked, verdict, context);
+    let ends: Vec<(CurveEnd, Verdict)> = each(begun, fit(case), one)?;
     let (ends, mut allowed): (Vec<CurveEnd>, Vec<Verdict>) = ends.into_iter().unzip();
     allowed.push(match (verdict, case.scene.stop.error_of_curve(case.curves())) {
         (Verdict::Undecided, Some(error)) => class_at(error, &values_by_run(walked))[1],
@@ -42,20 +75,14 @@ pub fn curve_range(
 /// Walks one end; beside it the worst class that its walks allow where a confidence level was asked for.
 fn of_end(
     case: &Case,
-    end: &OtherCurve,
-    part: u64,
+    begun: BegunEnd,
     walked: &[ReplicateResult],
     class: Verdict,
     context: &ReplicateContext,
 ) -> Result<(CurveEnd, Verdict), RunError> {
-    let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.curve.dc(50.0).unwrap_or(f64::NAN);
-    let other = case.with_curve(end.curve.clone());
-    // What a user or a cap says of the amount of base holds for every curve.
-    let by_grains = case.n_base_eq2 == Some(case.n_base);
-    let times = if by_grains { end.times_grains } else { 1.0 };
-    let n_base = case.times_base(times);
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
-    let mut of_end = some_replicates(&other, part, 1..=first, n_base, context)?;
+    let BegunEnd { end, case: other, part, n_base, walked: mut of_end } = begun;
+    of_end.extend(some_replicates(&other, part, of_end.len() as u64 + 1..=first, n_base, context)?);
     // Of either look.
     let error = case.scene.stop.error_of_curve(case.curves()).map(|error| 0.5 * error);
     let of_first = error.unwrap_or(ERROR_OF_END).min(ERROR_OF_END);
@@ -77,5 +104,6 @@ fn of_end(
             Classed { verdict, ..usual }
         }
     };
+    let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.curve.dc(50.0).unwrap_or(f64::NAN);
     Ok((CurveEnd { curve: end.name.clone(), dc50_factor, walked }, could_be))
 }

@@ -1,10 +1,10 @@
 //! What is walked of a case besides itself, where its inputs leave open what it is: the other readings of a
 //! pan fraction, the ends of the range of its constriction curve, and how much coarser the filter could be.
 
-use super::curve_range::curve_range;
+use super::curve_range::{begin_ends, curve_range};
 use super::error::RunError;
 use super::evidence;
-use super::replicates::{ReplicateContext, ReplicateResult, other_readings};
+use super::replicates::{ReplicateContext, ReplicateResult, other_readings, replicates};
 use crate::case::Case;
 use crate::outcome::record::{CurveRange, Margin};
 
@@ -20,19 +20,23 @@ pub struct OtherWalks {
 }
 
 impl OtherWalks {
-    /// Walks them, on the random numbers of the case itself.
+    /// Walks the replicates of the case itself and, on their random numbers, everything else that its verdict
+    /// follows from.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates`].
-    pub fn walk(
+    /// As [`replicates`].
+    pub fn with_case(
         case: &Case,
-        walked: &[ReplicateResult],
         context: &ReplicateContext,
-    ) -> Result<Self, RunError> {
-        Ok(Self {
+    ) -> Result<(Vec<ReplicateResult>, Self), RunError> {
+        // Ends fill the threads that would wait for the last replicate.
+        let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));
+        let (walked, begun) = (walked?, begun?);
+        let other = Self {
             readings: other_readings(case, context)?,
-            range: curve_range(case, walked, context)?,
-            margin: evidence::walked(case, walked, context)?,
-        })
+            range: curve_range(case, &walked, begun, context)?,
+            margin: evidence::walked(case, &walked, context)?,
+        };
+        Ok((walked, other))
     }
 }

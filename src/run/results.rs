@@ -19,7 +19,7 @@ use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::format::{self, Format};
-use crate::store::{Folder, StoreError};
+use crate::store::{Folder, StoreError, Together};
 use crate::verdict::left_out::LeftOut;
 use crate::verdict::{Finding, beside, dispersion, finding, judge, practice};
 use crate::walk::Shortcut;
@@ -146,14 +146,16 @@ fn pan_bounds(case: &Case, own: &[ReplicateResult], others: &[Vec<ReplicateResul
 /// # Errors
 /// What the folder says.
 pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
+    let mut files = Together::in_folder(folder.path());
     for input in &case.inputs {
-        folder.write(&input.kept_as, &input.bytes)?;
+        files.add(&input.kept_as, &input.bytes)?;
     }
     if !case.inputs.is_empty() {
         let names = serde_json::to_vec_pretty(&case.input_names()).expect("names are text");
-        folder.write(INPUT_NAMES, &names)?;
+        files.add(INPUT_NAMES, &names)?;
     }
-    folder.write("scene.toml", case.resolved().to_toml().as_bytes())
+    files.add("scene.toml", case.resolved().to_toml().as_bytes())?;
+    files.finish()
 }
 
 /// What is said of a run besides its results.
@@ -199,7 +201,7 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<String> {
     case.left_out().iter().map(LeftOut::words).chain(of_run).collect()
 }
 
-/// Writes a run folder: the resolved scene and its input files, the outcome, the manifest, the CSV files.
+/// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.
 ///
 /// # Errors
 /// What the folder says; no file is half written.
@@ -214,40 +216,41 @@ pub fn write(
     for name in ["manifest.json", "outcome.json"] {
         folder.remove(name)?;
     }
-    write_scene(folder, case)?;
     let mut recorded = Recorded::default();
     for walked in walked {
         recorded.append(walked.recorded.clone());
     }
-    folder.write("series.csv", &csv_of(&recorded.series))?;
-    folder.write("layers.csv", &csv_of(&recorded.layers))?;
-    folder.write("retained.csv", &csv_of(&recorded.retained))?;
-    folder.write("eroded.csv", &csv_of(&recorded.eroded))?;
+    let mut files = Together::in_folder(folder.path());
+    files.add("series.csv", &csv_of(&recorded.series))?;
+    files.add("layers.csv", &csv_of(&recorded.layers))?;
+    files.add("retained.csv", &csv_of(&recorded.retained))?;
+    files.add("eroded.csv", &csv_of(&recorded.eroded))?;
     if !recorded.flow.is_empty() {
-        folder.write("flow.csv", &csv_of(&recorded.flow))?;
+        files.add("flow.csv", &csv_of(&recorded.flow))?;
     }
     if case.scene.record.voids.is_some() {
-        write_voids(folder, case, &recorded)?;
+        add_voids(&mut files, case, &recorded)?;
     }
-    folder.write("outcome.json", &json(format::OUTCOME, outcome)?)?;
+    files.add("outcome.json", &json(format::OUTCOME, outcome)?)?;
+    files.finish()?;
     // Last, so that a folder with a manifest is whole.
     folder.write("manifest.json", &json(format::MANIFEST, manifest)?)?;
     Ok(())
 }
 
-/// Writes the first replicate's voids and constrictions, and what became of them.
-fn write_voids(folder: &Folder, case: &Case, recorded: &Recorded) -> Result<(), RunError> {
+/// Adds the first replicate's voids and constrictions, and what became of them.
+fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(), RunError> {
     let Some(places) = case.places() else { return Ok(()) };
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let rows: Vec<VoidRow> = (0u64..)
         .zip(places.point_mm.iter().zip(network.layer_of()))
         .map(|(void, (&[x_mm, y_mm, z_mm], &layer))| VoidRow { void, layer: layer.into(), x_mm, y_mm, z_mm })
         .collect();
-    folder.write("voids.csv", &csv_of(&rows))?;
+    files.add("voids.csv", &csv_of(&rows))?;
     let rows = by_void::constrictions(&network, &places);
-    folder.write("constrictions_of_network.csv", &csv_of(&rows))?;
-    folder.write("blocked.csv", &csv_of(&recorded.blocked))?;
-    Ok(folder.write("retained_by_void.csv", &csv_of(&recorded.voids))?)
+    files.add("constrictions_of_network.csv", &csv_of(&rows))?;
+    files.add("blocked.csv", &csv_of(&recorded.blocked))?;
+    Ok(files.add("retained_by_void.csv", &csv_of(&recorded.voids))?)
 }
 
 /// A file of JSON in its form.

@@ -13,7 +13,7 @@ use super::machine::on_threads;
 use super::other_walks::OtherWalks;
 use super::planned::runs_to_walk;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateContext, ReplicateResult, replicates};
+use super::replicates::{ReplicateContext, ReplicateResult};
 use super::results;
 use super::studies::Studies;
 use super::unfinished::{self, Unfinished};
@@ -156,8 +156,7 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         let begun = Instant::now();
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
-        let walked = replicates(case, &context)?;
-        let other = OtherWalks::walk(case, &walked, &context)?;
+        let (walked, other) = OtherWalks::with_case(case, &context)?;
         let first = results::outcome(case, &walked, &other, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
             (callbacks.on_event)(Event::VerdictStands(&first));
@@ -321,8 +320,8 @@ impl CaseRun<'_> {
         let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
         let context = ReplicateContext { callbacks, checkpoints, networks: None };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
-        let walked = replicates(self.case, &context).map_err(|error| self.ended(error))?;
-        let other = OtherWalks::walk(self.case, &walked, &context).map_err(|error| self.ended(error))?;
+        let (walked, other) =
+            OtherWalks::with_case(self.case, &context).map_err(|error| self.ended(error))?;
         let outcome =
             |studies: Studies| results::outcome(self.case, &walked, &other, studies, seconds(begun));
         for problem in self.checkpoints.passed_over() {

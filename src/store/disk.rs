@@ -159,16 +159,25 @@ impl PartFile {
         if self.waiting < SEND_EVERY || self.sending.as_ref().is_some_and(|thread| !thread.is_finished()) {
             return Ok(());
         }
+        self.send_by(File::sync_data)
+    }
+
+    /// Has the disk take all that was written, and its length; [`Self::sent`] waits for it.
+    pub fn send_all(&mut self) -> io::Result<()> {
+        self.send_by(File::sync_all)
+    }
+
+    fn send_by(&mut self, sync: fn(&File) -> io::Result<()>) -> io::Result<()> {
         self.sent()?;
         let (path, file) = (self.path.clone(), Arc::clone(&self.file));
-        let send = move || ask(Call::Sync(&path), || file.sync_data());
+        let send = move || ask(Call::Sync(&path), || sync(&file));
         self.sending = Some(std::thread::Builder::new().spawn(send)?);
         self.waiting = 0;
         Ok(())
     }
 
     /// Waits for what is being sent; the system tells of an error only once.
-    fn sent(&mut self) -> io::Result<()> {
+    pub fn sent(&mut self) -> io::Result<()> {
         match self.sending.take().map(JoinHandle::join) {
             None => Ok(()),
             Some(Ok(result)) => result,

@@ -7,6 +7,7 @@ mod folder;
 pub mod format;
 mod npz;
 pub(crate) mod platform;
+mod together;
 
 pub use column::{Column, Placement};
 pub use disk::{open_regular, read_regular};
@@ -14,3 +15,4 @@ pub use folder::{
     Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
 };
 pub use npz::{Array, Npz, Numbers, npz};
+pub use together::Together;
