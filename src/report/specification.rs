@@ -29,7 +29,9 @@ use crate::outcome::design::{Specification, SpecificationStep};
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let of: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        (titled_by_file("Base", "Base", &of.base)) @if of.dispersive { ", dispersive" } ", by the rules of practice alone"
+        (titled_by_file("Base", "Base", &of.base))
+        @if of.dispersive { ", dispersive" }
+        ", by the rules of practice alone"
     };
     let footer = html! {
         p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
@@ -107,7 +109,9 @@ const WARNINGS: usize = 4;
 
 fn more_warnings(of: &Specification) -> Markup {
     let more = of.findings.iter().skip(WARNINGS);
-    html! { @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } } }
+    html! {
+        @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } }
+    }
 }
 
 /// What the specification lacks; nothing without a band.

@@ -120,8 +120,8 @@ impl DesignedSamples {
                 let raised = match begins == from {
                     true => String::new(),
                     false => format!(
-                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is no \
-                         wider than {WIDEST_BAND} to 1)"
+                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is \
+                         no wider than {WIDEST_BAND} to 1)"
                     ),
                 };
                 format!("A filter for {of}{within}: D15F from {begins} to {mm} mm{raised}")
@@ -331,8 +331,8 @@ mod tests {
         let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum that \
-             drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum \
+             that drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
