@@ -2613,6 +2613,7 @@ class Soils(TypedDict):
     voidwalk
         Version of the program that wrote it.
     soils
+        Each soil, in the order of the file.
     """
 
     format: Literal["voidwalk-soils/1"]
