@@ -97,12 +97,12 @@ class Walks:
             settings["walk.concentration"] = concentration
         return settings
 
-    def outcome(self, settings):
+    def outcome(self, settings, threads=None):
         """The outcome of a run of the built-in scene with these settings."""
         with tempfile.TemporaryDirectory() as folder:
             scene = Path(folder) / "s.toml"
             scene.write_text("")
-            command = [self.binary, "run", scene, "--out", Path(folder) / "o", "-q", "--threads", self.threads]
+            command = [self.binary, "run", scene, "--out", Path(folder) / "o", "-q", "--threads", threads or self.threads]
             command += [part for name, value in settings.items() for part in ("--set", f"{name}={value}")]
             done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
             if done.returncode != 0:

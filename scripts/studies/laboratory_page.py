@@ -34,14 +34,15 @@ TESTS = [
      "**no source that was read**: this project's notes quote Tomlinson & Vaid (2000), searched again on 2026-11-25", "s_NE of beads, not counted"),
     ("the paper's loose filters", "below 5 no erosion", "the paper, a model: ours is the same model without arches, so that agreement is none", "not counted"),
 ]
+LAWS = ["none", "marin-2018", "zuriguel-2005", "critical-3"]
+BY_AREA = "area-along-flow"
+WAYS = {"area": "area", "flux": "flow", BY_AREA: "area along flow"}
 # Name, and where its cells stand.
 MODELS = [
-    (f"{network}, {'flow' if exit == 'flux' else 'area'}; {law}; {blocked}", network, exit, law, blocked)
-    for network, exit, laws in [
-        ("lattice", "area", ["none", "marin-2018", "zuriguel-2005", "critical-3"]), ("lattice", "flux", ["none", "marin-2018"]),
-        ("graph", "flux", ["none", "marin-2018"])]
+    (f"{network}, {WAYS[exit]}; {law}; {blocked}", network, exit, law, blocked)
+    for network, exit, laws in [("lattice", "area", LAWS), ("lattice", "flux", LAWS[:2]), ("graph", "flux", LAWS[:2]), ("graph", BY_AREA, LAWS)]
     for law in laws for blocked in ("closed", "open")
-    if blocked == "closed" or law in ("none", "marin-2018")
+    if blocked == "closed" or law in LAWS[:2] and exit != BY_AREA
 ]
 PAIRS = [("1.5", "loose", "1.5"), ("1.5", "dense", "1.5"), ("3", "loose", "1.5"), ("3", "dense", "1.5"), ("6", "loose", "1.5"), ("1.5", "loose", "3"),
          ("1.5", "dense", "3"), ("3", "loose", "3"), ("3", "dense", "3"), ("6", "loose", "3"), ("1.5", "loose", "4.5"), ("1.5", "dense", "4.5"),
@@ -136,7 +137,7 @@ def parted(found, beyond, digits=1):
 
 def is_sealed(row):
     """Whether no water flows through the filter just below the boundary, so that it cannot be set beside a test."""
-    return row["exit"] == "flux" and bool(row.get("k_over_k0")) and float(row["k_over_k0"]) < SEALED
+    return row["exit"] != "area" and bool(row.get("k_over_k0")) and float(row["k_over_k0"]) < SEALED
 
 
 def table(cells):
@@ -153,6 +154,16 @@ def table(cells):
         spread = parted(*found_and_beyond(others), digits=2) + (f"; {by_hand} of them †" if by_hand else "")
         largest = [largest_shown(cells, of_filter, model) for of_filter in LARGEST]
         row = [model[0], *map(of, first), spread, of(ONE_SIZE), of(BEADS), *largest]
+        lines.append("| " + " | ".join(row) + " |")
+    return lines
+
+
+def lattice_beside_graph(cells):
+    """A row a pair of sands: its boundaries by area on both networks, law by law."""
+    head = ["filter", "base Cu", *(f"{where}, `{law}`" for law in LAWS for where in ("lattice", "graph"))]
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for pair in sorted(PAIRS, key=lambda pair: (float(pair[2]), float(pair[0]), pair[1] == "dense")):
+        row = [f"Cu {pair[0]}, {pair[1]}", pair[2], *(shown(cells.of(model, pair)) for both in BOTH for model in both)]
         lines.append("| " + " | ".join(row) + " |")
     return lines
 
@@ -244,6 +255,8 @@ FLOWING_OPEN = model_of("lattice", "flux", "marin-2018", "open")
 # Concentrations ten times apart.
 HIGH, LOW = "0.06", "0.006"
 FLOWING_SUSPENSION = model_of("lattice", "flux", "marin-2018", "closed")
+# Both networks, law by law, by area.
+BOTH = [(model_of("lattice", "area", law, "closed"), model_of("graph", BY_AREA, law, "closed")) for law in LAWS]
 
 
 def in_range(rows):
@@ -292,6 +305,35 @@ def stricter(cells):
             f"With filter Cu 1.5, loose, and bases of Cu {bases}, `marin-2018` has it {'; '.join(limits)}. At {SANDS[0]:g} D85B {eroded} % erodes "
             "(mean, least and most of five; `arches-shares.csv`). So the cells within the range of tests are within it by the limit of 7.5 % alone, "
             "and \"hold too much\" is by that limit.")
+
+
+def networks(cells):
+    """The boundaries by area on both networks: what was walked, a table, and what the graph changes, law by law."""
+    yield paragraph(
+        "Six filters, three bases, every law, constrictions closed, no openings; the boundary of the first run. The lattice has 10 x 10 x 60 voids and five replicates. "
+        "The graph has the voids of three packings of 3,000 grains (Cu 1.5), 6,000 (Cu 3) and 10,000 (Cu 6), seeds 1 to 3, one run each; its bracket is that of three. "
+        "Its thickness is 60 layers rounded up to whole copies of the packing: 61 to 63 layers, of Cu 3 73 to 74. Of Cu 6 the packing is the finer 78 % of the mass, with the base of the "
+        "whole; its constrictions are finer by up to 2 %. A constriction of a packing has no direction, so that area alone leads nowhere: a particle chooses by area among the exits that water leaves by. "
+        "The lattice needs no water, so a graph may be sealed (‡) where the lattice cannot be. An empty cell was not walked.")
+    yield ""
+    yield from lattice_beside_graph(cells)
+    yield ""
+    for law, (lattice, graph) in zip(LAWS, BOTH):
+        both = [(cells.of(lattice, pair), row) for pair, row in cells.sands(graph)]
+        if not both:
+            yield bullet(f"**`{law}`**: no graph was walked.")
+            continue
+        rows = [row for _, row in both]
+        found, beyond = found_and_beyond(rows)
+        times = {sealed: [value(row) / value(old) for old, row in both if old and row.get("first") and old.get("first") and is_sealed(row) == sealed] for sealed in (False, True)}
+        least = [value(row) / value(old) for old, row in both if old and row.get("first") and not old.get("first")]
+        below, within, above, _ = in_range(rows)
+        words = [f"the graph has its boundary at {parted(found, beyond)}"]
+        words += [f"{span(of, 2)} times that of the lattice where the graph is {'sealed' if sealed else 'not sealed'} ({plural(len(of), 'pair')})" for sealed, of in times.items() if of]
+        if least:
+            words.append(f"less than {span(least, 2)} times it where the lattice holds at the greatest ratio walked ({len(least)})")
+        sealed_rows = sum(map(is_sealed, rows))
+        yield bullet(f"**`{law}`**: {'; '.join(words)}. {below} below the range of tests, {within} within, {above} above. Sealed just below the boundary: {sealed_rows} of {len(rows)}.")
 
 
 def plural(count, word):
@@ -362,7 +404,7 @@ def largest_words(cells):
 
 def sealed(cells):
     """The cells with water and closed constrictions whose filter lets nothing through."""
-    of = [(model, row) for model in MODELS if model[2] == "flux" and model[4] == "closed" for _, row in cells.sands(model) if row.get("k_over_k0")]
+    of = [(model, row) for model in MODELS if model[2] != "area" and model[4] == "closed" for _, row in cells.sands(model) if row.get("k_over_k0")]
     rows, arched = [row for _, row in of if is_sealed(row)], [is_sealed(row) for model, row in of if model[3] != "none"]
     if rows:
         every = f", of which {len(arched)} are all that have arches" if arched and all(arched) else ""
@@ -374,6 +416,11 @@ def page(cells, name, head):
     of = cells.of
     one, beads = of(SIEVING, ONE_SIZE), of(SIEVING, BEADS)
     dense, critical = (parted(*found_and_beyond([row for _, row in cells.sands(model)])) for model in (DENSE, CRITICAL))
+    on_graph = [[row for _, row in cells.sands(graph)] for _, graph in BOTH]
+    _, _, dense_graph, critical_graph = (parted(*found_and_beyond(rows)) for rows in on_graph)
+    laws_rows = on_graph[2] + on_graph[3]
+    sealed_laws = sum(map(is_sealed, laws_rows))
+    graph_rows = sum(on_graph, [])
     arches = cells.sands(SUSPENSION)
     _, inside, above, edges = in_range([row for _, row in arches])
     found, beyond = found_and_beyond([row for _, row in arches])
@@ -389,11 +436,12 @@ def page(cells, name, head):
     assert all(b < a for a, b in zip(off, off_arched)), "the page says that all three are nearer with arches"
     lines = ["# Which model explains which test", "",
              paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the {SANDS[0]:g} to {SANDS[1]:g} "
-                       f"of tests in {sum(at < SANDS[0] for at in sieving)}. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much: "
+                       f"of tests in {sum(at < SANDS[0] for at in sieving)}. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much on the lattice: "
                        f"one size to {value(one_arched):.1f}, {value(one_arched) * SUSPENDED:.1f} times what tests caught. Of sands they put the boundary at {span(found)} in {len(found)} cells; "
                        f"{len(beyond)} more hold at the greatest ratio walked, {span(beyond)}. {inside} of the {len(arches)} cells lie within the range of tests, all of "
                        f"{plural(len(filters), 'filter')} ({' and '.join(f'Cu {cu}, {density}' for cu, density in filters)}); {edges}; {above} of {len(arches)} "
-                       f"lie beyond it. With 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
+                       f"lie beyond it. On the voids of packings, by area, sieving puts it at {parted(*found_and_beyond(on_graph[0]))}, `marin-2018` at {parted(*found_and_beyond(on_graph[1]))}; but of {len(graph_rows)} "
+                       f"such cells with and without arches {sum(map(is_sealed, graph_rows))} are sealed just below the boundary. On the lattice with 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
                        "That is no agreement: how densely the base arrives follows from the increments of the walk. With water the same arches seal "
                        f"the filter of Cu 1.5, loose; with openings, by which water flows, they put its boundary at {value(of(FLOWING_OPEN, PAIRS[0])):.1f}.**"), head, "",
              f"![Boundaries of models against the range of tests]({name}.svg)", "",
@@ -404,7 +452,8 @@ def page(cells, name, head):
                         "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5, 3 and 6, loose and dense, with bases of Cu 1.5, 3 and "
                         f"4.5, as far as they were computed; in brackets how many were found, and how many hold at the greatest ratio walked. **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
-    lines += ["", paragraph("\\* not read in a source, in no count. † concentration set by hand: of graphs that of the same filter as a lattice; of Cu 6 by the void ratio 0.34 of "
+    lines += ["", "## Lattice beside graph", "", *networks(cells)]
+    lines += ["", paragraph("\\* not read in a source, in no count. † concentration set by hand: of graphs that of the same filter as a lattice; of Cu 6 by the void ratio, dense 0.2675 (60,000 grains, `graph.md`), loose 0.34 of "
                                  f"Table 2 of the paper, which is denser than the samples of Kenney et al.: {span(KENNEY_VOID_RATIOS, 2)} (the paper, section 5). By those it would be "
                                  f"{span([TABLE_2_VOID_RATIO / e * float(cells.largest['6', 'marin-2018']['concentration']) for e in KENNEY_VOID_RATIOS], 3)} and not {cells.largest['6', 'marin-2018']['concentration']}. ‡ sealed: no water flows just below the boundary."), "", "## By model", "",
               paragraph(f"The centre of the range is {CENTRE:.1f} D85B. \"No erosion\" is here 7.5 % of the base, which is not the criterion of the tests. {stricter(cells)} "
@@ -416,6 +465,8 @@ def page(cells, name, head):
         (SUSPENSION, FLOWING_SUSPENSION, "with arches"),
         (FLOWING, model_of("graph", "flux", "none", "closed"), "the packing's own voids instead of the lattice, with water,"),
         (FLOWING_SUSPENSION, model_of("graph", "flux", "marin-2018", "closed"), "with arches"),
+        (SIEVING, BOTH[0][1], "the packing's own voids instead of the lattice, by area, without arches,"),
+        (SUSPENSION, BOTH[1][1], "with arches"),
         (FLOWING, model_of("lattice", "flux", "none", "open"), "openings, with water,"),
         (FLOWING_SUSPENSION, model_of("lattice", "flux", "marin-2018", "open"), "with arches"),
     ] for part in change(cells, *args))
@@ -442,14 +493,15 @@ def page(cells, name, head):
         "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from "
         f"{float(cells.by_concentration[HIGH]):.1f} to {float(cells.by_concentration[LOW]):.1f}. At the concentrations worked out here it is refuted already by the same ranges: {above} of {len(arches)} cells "
         f"lie beyond them at 60 layers. That hangs on the layers, as the concentration does: the one cell walked lies at {thin:.1f} with 30 and at {thick:.1f} with 120.",
-        "**`zuriguel-2005`** (the dense limit) and **`critical-3`** (every particle below R = 3): a base that erodes where the law holds it. Both hold what eroded in tests, "
-        f"whose boundary lies at {SANDS[0]:g} to {SANDS[1]:g}: the first {dense}, the second {critical}. So both are refuted already as laws of these tests. Neither bounds the other or "
-        "`marin-2018`.",
+        "**`zuriguel-2005`** (the dense limit) and **`critical-3`** (every particle below R = 3): a base that erodes where the law holds it. On the lattice both hold what eroded in tests, "
+        f"whose boundary lies at {SANDS[0]:g} to {SANDS[1]:g}: the first {dense}, the second {critical}. So on the lattice both are refuted already as laws of these tests. On the graph "
+        f"they are not, as far as they were walked: {dense_graph} and {critical_graph}; there the filter is sealed just below the boundary in {sealed_laws} of {len(laws_rows)} cells. "
+        "Neither bounds the other or `marin-2018`.",
         "**Closed constrictions or openings, with water**: k/k0 of a filter after it stopped eroding, which is next to 0 for the first. A test with that number was not looked for.",
         "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
     ])
     lines += ["", "## Not computed", "",
-              bullet("Empty cells of the table; `marin-2018` on dense filters of Cu 6, whose void ratio is not known; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
+              bullet("Empty cells of the tables; one size with water; the second run of graphs by area; concentration by void beside tests (`arches.md`)."),
               *(bullet(f"{model[0]}, filter Cu {pair[0]}, {pair[1]}, base Cu {pair[2]}: it erodes at {row['first_erodes_from']}, the least ratio for which there was time; empty in the table.")
                 for model in MODELS for pair in PAIRS if (row := of(model, pair)) and not is_computed(row) and row.get("first_erodes_from")),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
