@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Models of filters beside tests: where the base begins to erode, with and without water, arches and openings; the largest particle that passes.
 
-    scripts/studies/laboratory.py --work FOLDER --out results/laboratory [--binary target/release/voidwalk] [--minutes 40]
+    scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
+        [--binary target/release/voidwalk] [--minutes 40]
 
 Walks the cells of PLAN in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
 again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
@@ -9,13 +10,15 @@ again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the 
 Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
 Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A constriction of a graph has
 no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water leaves by, in three packings and the first
-run alone. Of a packing that is the finer
-part of its filter the base is that of the whole.
+run alone. Of a packing that is the finer part of its filter the base is that of the whole.
 
 Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses, and where the
 first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at the greatest, or the cell
 has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows `largest`: the largest eroded particle by
 D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not pass.
+
+`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV and nothing
+else.
 """
 
 import argparse
@@ -28,7 +31,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from arches import THRESHOLD, Walks, crossing, each
+from arches import ERODED, THRESHOLD, Walks, crossing, each, eroded_of
 
 CELL = ["measure", "filter_cu", "density", "base_cu", "network", "exit", "law", "concentration", "blocked"]
 RUNS = ["first", "second"]
@@ -121,6 +124,16 @@ def cells():
     yield from lattice(tested, ["1.2"], ZURIGUEL, measure="largest")
 
 
+INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "d15f_over_d85b", "inject_share"]
+
+
+def increments_cells():
+    """One filter just below four of its boundaries on graphs by area, by the share of the base in an increment."""
+    for base, law, ratio in [("3", NONE, 3.1), ("1.5", NONE, 2.8), ("1.5", MARIN, 5.5), ("1.5", CRITICAL, 8.0)]:
+        for share in ("0.01", "0.003", "0.001"):
+            yield *LOOSE, base, law, ratio, share
+
+
 class Models(Walks):
     """Walks of cells: boundaries of two runs, and largest particles."""
 
@@ -184,6 +197,15 @@ class Models(Walks):
         self.used += seconds
         print(*cell, row, f"{seconds:.0f} s", flush=True)
         return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
+
+    def increments(self, of):
+        """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
+        *pair, law, ratio, share = of
+        cell = ("boundary", *pair, "graph", BY_AREA, law, CONCENTRATIONS[LOOSE] if law == MARIN else "", "closed")
+        runs = [outcome["replicates"][0]["runs"][0] for outcome in self.outcomes(cell, self.settings(cell, ratio) | {"inject_share": share})]
+        print(*of, flush=True)
+        kept = statistics.mean(run["k_over_k0"] for run in runs)
+        return dict(zip(INCREMENTS_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{kept:.3g}"}
 
     @staticmethod
     def time():
@@ -287,12 +309,16 @@ def boundary(walked):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=Path, required=True, help="folder for the packings")
-    parser.add_argument("--out", required=True)
+    parser.add_argument("--out", help="of the cells")
+    parser.add_argument("--increments", type=Path)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="1")
     parser.add_argument("--minutes", type=float, default=40.0, help="of processor time, after which no cell begins")
     options = parser.parse_args()
-    each(Path(f"{options.out}.csv"), CELL, COLUMNS, plan(), Models(options).row)
+    if options.increments:
+        each(options.increments, INCREMENTS_CELL, [*INCREMENTS_CELL, *ERODED, "k_over_k0"], increments_cells(), Models(options).increments)
+    if options.out:
+        each(Path(f"{options.out}.csv"), CELL, COLUMNS, plan(), Models(options).row)
 
 
 if __name__ == "__main__":

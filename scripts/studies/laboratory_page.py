@@ -3,8 +3,8 @@
 
     scripts/studies/laboratory_page.py --out results/laboratory
 
-Writes OUT.md and OUT.svg from OUT.csv, and from `arches.csv` and `openings.csv` beside it, whose cells have the same lattice and stand where OUT.csv
-has none. TESTS holds every number of a test, with where it was read. What was not read in a source is in no count of agreement.
+Writes OUT.md and OUT.svg from OUT.csv and OUT-increments.csv, and from `arches.csv` and `openings.csv` beside it, whose cells have the same lattice and
+stand where OUT.csv has none. TESTS holds every number of a test, with where it was read. What was not read in a source is in no count of agreement.
 """
 
 import argparse
@@ -85,6 +85,7 @@ class Cells:
         self.shares, self.thickness = {}, {}
         for row in csv.DictReader((beside / "arches-shares.csv").open()):
             self.shares.setdefault((row["filter_cu"], row["density"], row["base_cu"]), {})[float(row["d15f_over_d85b"])] = row
+        self.increments = list(csv.DictReader(Path(f"{out}-increments.csv").open()))
         for row in csv.DictReader((beside / "arches.csv").open()):
             if row["law"] == "marin-2018" and not row["concentration"] and row["across"] == "10" and (row["filter_cu"], row["density"], row["base_cu"]) == PAIRS[0]:
                 self.thickness[row["layers"]] = row
@@ -307,6 +308,20 @@ def stricter(cells):
             "and \"hold too much\" is by that limit.")
 
 
+def increments(cells):
+    """What erodes by the share of the base in an increment."""
+    pairs = {}
+    for row in cells.increments:
+        pairs.setdefault((row["base_cu"], row["law"], row["d15f_over_d85b"]), []).append(row)
+    parts = [f"base Cu {base}, `{law}`, at {ratio} D85B " + ", ".join(f"{row['eroded_percent']} ({row['least']} to {row['most']})" for row in rows)
+             for (base, law, ratio), rows in pairs.items()]
+    shares = list(dict.fromkeys(row["inject_share"] for row in cells.increments))
+    yield bullet(
+        f"**Boundaries of graphs hang on the increments, and those that are sealed (‡) are no boundaries of filters.** With shares of the base of {', '.join(shares)} an increment, the filter "
+        f"of Cu 1.5, loose, just below its boundary: {'; '.join(parts)} % erodes (mean, least and most of three; `laboratory-increments.csv`). The walk has {shares[0]} in all other cells. "
+        "With it much of the base is in the filter before the first particle can be through, and a filter that seals keeps all of it (`src/docs/graph.md`).")
+
+
 def networks(cells):
     """The boundaries by area on both networks: what was walked, a table, and what the graph changes, law by law."""
     yield paragraph(
@@ -318,6 +333,7 @@ def networks(cells):
     yield ""
     yield from lattice_beside_graph(cells)
     yield ""
+    yield from increments(cells)
     for law, (lattice, graph) in zip(LAWS, BOTH):
         both = [(cells.of(lattice, pair), row) for pair, row in cells.sands(graph)]
         if not both:
@@ -448,7 +464,7 @@ def page(cells, name, head):
              "## Tests", ""]
     lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
     lines += ["", "## Table", "",
-              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
+              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates (of graphs by area along flow: three). \"Beyond\": holds at "
                         "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5, 3 and 6, loose and dense, with bases of Cu 1.5, 3 and "
                         f"4.5, as far as they were computed; in brackets how many were found, and how many hold at the greatest ratio walked. **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
@@ -514,12 +530,12 @@ def page(cells, name, head):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12.", help="date, machine and commit of the walks")
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12; graphs by area and dense filters of Cu 6 with `marin-2018` by c8430d8.", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
     name = Path(options.out).name
-    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5.")
+    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5; by area three, one run.")
     command = f"    scripts/studies/laboratory.py --work FOLDER --out results/{name}    # goes on where it was stopped\n    scripts/studies/laboratory_page.py --out results/{name}"
     Path(f"{options.out}.md").write_text(page(cells, name, f"{head}\n\n{command}"))
 
