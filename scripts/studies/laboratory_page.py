@@ -199,7 +199,7 @@ def figure(cells):
     for base, colour in COLOURS.items():
         parts += [f'<circle cx="{at + 5}" cy="44" r="4" fill="{colour}"/>', text(at + 14, 48, f"base Cu {base}")]
         at += 100
-    parts.append(text(at, 48, "line: least and most of five replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
+    parts.append(text(at, 48, "line: least and most of the replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
     for place, model in enumerate(MODELS):
         middle = TOP + ROW * place + ROW / 2
         parts.append(f'<line x1="{LEFT}" y1="{middle + ROW / 2}" x2="{RIGHT}" y2="{middle + ROW / 2}" stroke="#ddd"/>')
