@@ -199,7 +199,7 @@ def figure(cells):
     for base, colour in COLOURS.items():
         parts += [f'<circle cx="{at + 5}" cy="44" r="4" fill="{colour}"/>', text(at + 14, 48, f"base Cu {base}")]
         at += 100
-    parts.append(text(at, 48, "line: least and most of five replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
+    parts.append(text(at, 48, "line: least and most of the replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
     for place, model in enumerate(MODELS):
         middle = TOP + ROW * place + ROW / 2
         parts.append(f'<line x1="{LEFT}" y1="{middle + ROW / 2}" x2="{RIGHT}" y2="{middle + ROW / 2}" stroke="#ddd"/>')
@@ -462,7 +462,7 @@ def page(cells, name, head):
                        f"{len(beyond)} more hold at the greatest ratio walked, {span(beyond)}. {inside} of the {len(arches)} cells lie within the range of tests, all of "
                        f"{plural(len(filters), 'filter')} ({' and '.join(f'Cu {cu}, {density}' for cu, density in filters)}); {edges}; {above} of {len(arches)} "
                        f"lie beyond it. On the voids of packings, by area, sieving puts it at {parted(*found_and_beyond(on_graph[0]))}, `marin-2018` at {parted(*found_and_beyond(on_graph[1]))}; but of {len(graph_rows)} "
-                       f"such cells with and without arches {sum(map(is_sealed, graph_rows))} are sealed just below the boundary. On the lattice with 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
+                       f"such cells with and without arches {sum(map(is_sealed, graph_rows))} are sealed just below the boundary, and boundaries there hang on the increments. On the lattice with 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
                        "That is no agreement: how densely the base arrives follows from the increments of the walk. With water the same arches seal "
                        f"the filter of Cu 1.5, loose; with openings, by which water flows, they put its boundary at {value(of(FLOWING_OPEN, PAIRS[0])):.1f}.**"), head, "",
              f"![Boundaries of models against the range of tests]({name}.svg)", "",
