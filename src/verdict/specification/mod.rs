@@ -152,7 +152,8 @@ impl Specification {
         Some(format!(
             "Not a complete specification: the maximum D90F is still to be set from the table of FEMA (2011) \
              or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of {} mm.",
-            rounded_up(least)
+            // Where a table is entered: a finer D10F allows no coarser D90F.
+            rounded_down(least)
         ))
     }
 
