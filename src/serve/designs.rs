@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::constrictions;
-use crate::outcome::design::Design;
+use crate::outcome::design::band::Band;
+use crate::outcome::design::{Design, DesignFinding};
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
 
@@ -171,8 +172,12 @@ fn listed(text: &str) -> Vec<String> {
 /// A number that is none.
 pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
     let mut boundaries = serde_json::to_value(&design.boundaries)?;
-    for row in boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+    let rows = boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut);
+    for (row, of) in rows.zip(&design.boundaries) {
         row.shift_remove("networks");
+        // A limit is rounded inward, which no script of the page does.
+        let practice = of.band.as_ref().and_then(Band::practice_in_words);
+        row.insert("practice".into(), practice.into());
     }
     Ok(json!({
         "inverse": design.inverse,
@@ -184,7 +189,8 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "replicates": design.replicates,
         "confidence": design.confidence.words(),
         "reasons": design.reasons,
-        "warnings": design.warnings,
+        "cautions": design.cautions().iter().map(DesignFinding::words).collect::<Vec<_>>(),
+        "warnings": design.warnings_beside_cautions(),
         "products": design.products_in_words(),
         "model_leaves_out": design.model_leaves_out,
     }))
