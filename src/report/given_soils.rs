@@ -185,8 +185,8 @@ impl<'a> GivenSoils<'a> {
         };
         match self.scaled.filter(|_| self.filter.is_some()) {
             Some("filter") => {
-                said += " Dotted: the filter as it was given. Only its shape was walked, in many sizes; it is \
-                         not the filter to specify.";
+                said += " Dotted: the filter as it was given. Only its shape was walked, in many sizes; it \
+                         is not the filter to specify.";
             }
             Some(_) => said += " Dotted: the filter as it was given.",
             None => {}

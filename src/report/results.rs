@@ -125,8 +125,8 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
             (table)
             p.small {
                 span.counts {
-                    "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
-                     retained particles over voids; trapped particles are trapped in closed loops. "
+                    "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is \
+                     all retained particles over voids; trapped particles are trapped in closed loops. "
                 }
                 "On paper seeds, counts of particles, increments and moves are left out; outcome.json holds \
                  them."

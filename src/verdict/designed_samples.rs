@@ -74,8 +74,8 @@ pub struct DesignedSamples {
 pub struct DesignedWalks {
     /// The filter's shape and its constrictions, in words.
     pub filter: String,
-    /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not given,
-    /// and in files of earlier versions.
+    /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not
+    /// given, and in files of earlier versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub filter_gradation: Vec<[f64; 2]>,
     /// How densely the filter is packed, in the order in which it was asked for.

@@ -128,8 +128,8 @@ impl DesignedSamples {
                 let raised = match begins == from {
                     true => String::new(),
                     false => format!(
-                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is no \
-                         wider than {WIDEST_BAND} to 1)"
+                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is \
+                         no wider than {WIDEST_BAND} to 1)"
                     ),
                 };
                 format!("A filter for {of}{within}: D15F from {begins} to {mm} mm{raised}")
@@ -333,6 +333,21 @@ mod tests {
         );
     }
 
+    /// The table of many samples warns as the specification of each.
+    #[test]
+    fn samples_that_are_not_stable_themselves_are_named() {
+        let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
+        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
+        let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
+        let said = all.in_words().join("\n");
+        for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
+            assert!(said.contains(&format!("\n{words}: A, B\n")), "{words}: {said}");
+        }
+        assert!(said.contains("are then not valid: design again for dispersive soils"), "{said}");
+        let said = DesignedSamples::new("s".into(), vec![sand]).in_words().join("\n");
+        assert!(!said.contains("Kenney") && said.contains("the maximum D90F is still to be set"), "{said}");
+    }
+
     #[test]
     fn samples_that_no_one_filter_serves_are_said() {
         let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
@@ -367,8 +382,8 @@ mod tests {
         let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum that \
-             drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum \
+             that drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
