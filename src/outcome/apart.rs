@@ -56,7 +56,7 @@ pub(super) fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
 /// The same as a text.
 pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
     let shown = within(limit, digits, at_least);
-    // Rounding up to 1 adds no digit.
+    // Decimals of the limit itself: what was rounded up to the next power of ten keeps as many of them.
     if shown > 0.0 { format!("{shown:.*}", decimals_of(limit, digits)) } else { digits_of(shown, digits) }
 }
 

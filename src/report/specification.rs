@@ -218,18 +218,21 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Percentage points between a product and the limit that stands at its sieve: that is a whole percent within
-/// the band, so that any part of a point is a whole one.
-fn points_beyond(points: f64) -> String {
-    format!("{:.0}", (points - 1e-9).ceil())
+/// Percentage points by which a product leaves the limit that stands at a sieve, which is rounded into the
+/// band: as a reader reckons them from what is printed.
+fn points_beyond(of: &Specification, product: &ProductMargin, points: f64, sieve_mm: f64) -> String {
+    let band = of.band.as_ref();
+    let printed = band.and_then(|band| band.printed_left_by(&product.product, sieve_mm));
+    trimmed((printed.unwrap_or(points) * 100.0).round() / 100.0)
 }
 
 /// Margins of standard products; who judges them elsewhere says there whether they fit.
 fn products(of: &Specification, says_fit: bool) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
-    let beyond = |of: &ProductMargin| match (of.leaves_band_by, of.worst_sieve_mm) {
+    let beyond = |product: &ProductMargin| match (product.leaves_band_by, product.worst_sieve_mm) {
         (Some(points), Some(sieve)) => {
-            format!("{} percentage points, at {} mm", points_beyond(points), significant(sieve))
+            let points = points_beyond(of, product, points, sieve);
+            format!("{points} percentage points, at {} mm", significant(sieve))
         }
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
@@ -269,7 +272,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::specification::margins;
+    use crate::outcome::design::specification::{SizeBand, margins};
     use crate::verdict::SpecificationOptions;
 
     #[test]
@@ -293,11 +296,16 @@ mod tests {
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"
         );
-        let points = [10.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
-        assert_eq!(points, ["11", "1", "1", "1", "1"]);
         // As a reader reckons from what is printed: 85 % at No. 16, and at most so much.
         let sieve = core.limits.iter().find(|of| of.opening_mm == 1.18).unwrap();
         let printed = 85.0 - sieve.max_percent_finer;
         assert!(page.contains(&format!("{printed:.0} percentage points, at 1.18 mm")), "{page}");
+        // Of a band so narrow that its limit there has tenths.
+        let [fine_side, coarse_side] = [61.87, 61.31].map(|at| vec![[0.1, 0.0], [1.18, at], [10.0, 100.0]]);
+        let narrow = SizeBand { sizes: Vec::new(), fine_side, coarse_side };
+        let tenths = Specification { band: Some(narrow), ..core.clone() };
+        let [narrow, wide] =
+            [&tenths, &core].map(|of| points_beyond(of, &of.products[0], 85.0 - 61.87, 1.18));
+        assert_eq!((narrow, wide), ("23.2".into(), format!("{printed:.0}")));
     }
 }

@@ -97,9 +97,8 @@ pub fn outcome(
     };
     found.extend(outcome.found());
     if case.scene.base.dispersive.is_none() {
-        let (fines, d15f) = (inputs.base_soil.fines_percent, case.filter.d(15.0));
-        let if_dispersive = rules::apply(&RuleInputs { dispersive: true, ..inputs });
-        outcome.if_dispersive = IfDispersive::of(fines, &if_dispersive, d15f.unwrap_or(1.0));
+        let d15f = case.filter.d(15.0);
+        outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
         let of = |of| dispersion::finding(verdict, d15f, &outcome.rules, of);
         found.extend(outcome.if_dispersive.and_then(of));
     }
@@ -288,6 +287,17 @@ mod tests {
         let all: Vec<String> =
             soils.into_iter().chain(small.iter().chain(set).map(|of| (*of).into())).collect();
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
+    }
+
+    /// Two probabilities stand where the page has two: one alone, or none, is said in words.
+    #[test]
+    fn probabilities_are_shown_as_the_page_shows_them() {
+        let of = |d15f, confidence| Outcome { confidence, ..walked(45.0, d15f, &[]) };
+        assert!(of(0.6, Confidence::Within).shows_probabilities());
+        let hidden = of(0.6, Confidence::Outside);
+        let said = hidden.beside_tests().unwrap();
+        assert!(!hidden.shows_probabilities() && said.starts_with("D15F is 0.86 of the lowest"), "{said}");
+        assert!(!of(1.2, Confidence::Within).shows_probabilities());
     }
 
     /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.

@@ -1,6 +1,6 @@
 //! Many samples: a design for each, in a folder of its own, and one table of all.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::days::{day_of, is_day, today};
 use super::design::{DesignOptions, identity, is_a_base, run};
@@ -188,12 +188,7 @@ impl Planned {
             leaves_out.clone_from(&design.model_leaves_out);
             walks = Some(DesignedWalks::of(&design, settings));
             // Besides the samples' own files that of the filter.
-            let is_new = |file: &&InputFile| self.inputs.iter().all(|other| other.xxh3 != file.xxh3);
-            for file in design.inputs.iter().filter(is_new) {
-                if !inputs.contains(file) {
-                    inputs.push(file.clone());
-                }
-            }
+            add_new(&mut inputs, &design.inputs);
             rows.push(row.clone().designed(&design, place));
         }
         let all = DesignedSamples::new(shown(&options.samples), rows);
@@ -209,6 +204,17 @@ impl Planned {
             model_leaves_out: leaves_out,
             ..all
         })
+    }
+}
+
+/// Adds the files that are not there yet. Files of one name are told apart by their sum, and copies of one
+/// file by their names: a design names its files by another path than the table does.
+fn add_new(inputs: &mut Vec<InputFile>, files: &[InputFile]) {
+    let name = |file: &InputFile| Path::new(&file.name).file_name().map(ToOwned::to_owned);
+    for file in files {
+        if inputs.iter().all(|other| (name(other), &other.xxh3) != (name(file), &file.xxh3)) {
+            inputs.push(file.clone());
+        }
     }
 }
 
@@ -263,4 +269,23 @@ fn notes(files: &[PathBuf]) -> Result<Vec<String>, RunError> {
         all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(file))));
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A filter whose file holds the bytes of a sample's file is another input.
+    #[test]
+    fn an_input_is_known_by_name_and_sum() {
+        let file = |name: &str, bytes: &str| InputFile::of(name, bytes.as_bytes());
+        let mut inputs = vec![file("soils/sand.csv", "0.1,0")];
+        let of_design =
+            [file("inputs/sand.csv", "0.1,0"), file("filter.csv", "0.1,0"), file("sand.csv", "0.2,0")];
+        for _ in 0..2 {
+            add_new(&mut inputs, &of_design);
+            let names: Vec<&str> = inputs.iter().map(|of| of.name.as_str()).collect();
+            assert_eq!(names, ["soils/sand.csv", "filter.csv", "sand.csv"]);
+        }
+    }
 }

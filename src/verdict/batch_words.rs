@@ -197,7 +197,7 @@ mod tests {
     fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
         let of = |name: &str, verdict, d15f_max_mm| {
             let mut row = walked(name, true, Some((verdict, Confidence::Within, true)));
-            let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false });
+            let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
             row.walk = row.walk.map(|walk| SampleWalk { if_dispersive, ..walk });
             row
         };

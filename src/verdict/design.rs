@@ -102,6 +102,11 @@ impl Design {
         }
     }
 
+    /// Said of a size that the walk alone holds, where it errs on the unsafe side for soils of this kind.
+    fn unsafe_alone(&self) -> &'static str {
+        if self.walk_errs_unsafely() { ", and for such soils it errs on the unsafe side" } else { "" }
+    }
+
     /// Whether the walk errs on the unsafe side for soils of this kind.
     fn walk_errs_unsafely(&self) -> bool {
         self.findings.iter().any(|of| of.finding.id == EVIDENCE_UNSAFE)
@@ -195,14 +200,14 @@ impl<'a> Case<'a> {
                 sizes.size(limit.ratio),
                 cited_rule(limit.rule),
                 if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() },
-                of_walk_alone(sizes, *held)
+                of_walk_alone(design, sizes, *held)
             ),
             Self::OpenBase(rule, held) => format!(
                 "The finest D85B is not known: only an upper bound of the limit of practice is known \
                  ({}{}){}",
                 cited_rule(rule),
                 if rule.needs.is_empty() { String::new() } else { format!("; {}", rule.needs) },
-                of_walk_alone(sizes, *held)
+                of_walk_alone(design, sizes, *held)
             ),
             Self::Unknown => "No ratio is known that nearly all networks hold".into(),
             Self::TailOpen(limit, tail) => format!(
@@ -249,9 +254,10 @@ impl<'a> Case<'a> {
                 cited_rule(limit.rule)
             ),
             Self::ModelAlone(row, held) => format!(
-                "{}{} in the model alone; {}",
+                "{}{} in the model alone{}; {}",
                 searched(row),
                 sizes.words(*held),
+                design.unsafe_alone(),
                 sizes.without_limit(design.strictest(sizes))
             ),
         }
@@ -259,9 +265,9 @@ impl<'a> Case<'a> {
 }
 
 /// What the walk holds where practice gives no answer.
-fn of_walk_alone(sizes: &Sizes, held: Option<f64>) -> String {
+fn of_walk_alone(design: &Design, sizes: &Sizes, held: Option<f64>) -> String {
     match held {
-        Some(held) => format!("; the walk alone holds {}", sizes.words(held)),
+        Some(held) => format!("; the walk alone holds {}{}", sizes.words(held), design.unsafe_alone()),
         None => "; the walk has no answer either".into(),
     }
 }
@@ -426,6 +432,21 @@ mod tests {
             "{said}"
         );
         assert!(!found.walk_beside_practice().contains("tighter"));
+        // Nor is what it holds alone, of a limit of which only the most is known or of none.
+        let unsafe_alone = ", and for such soils it errs on the unsafe side";
+        let mut open = found.clone();
+        let retains = |rule: &&mut AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+        open.rules.iter_mut().find(retains).unwrap().limit_at_most = true;
+        let said = open.answer().said;
+        assert!(said.starts_with("The maximum D15F is not known") && said.ends_with(unsafe_alone), "{said}");
+        open.rules.clear();
+        let said = open.answer().said;
+        assert!(
+            said.contains(&format!(" in the model alone{unsafe_alone}; the limit of practice")),
+            "{said}"
+        );
+        open.findings.clear();
+        assert!(!open.answer().said.contains("unsafe"));
         // Uniform filters have no such group.
         let uniform = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(1.5), None).unwrap();
         assert_eq!(uniform.against_holding(&rules), None);

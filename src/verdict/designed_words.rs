@@ -194,7 +194,7 @@ impl DesignedSamples {
              {DESIGN_EACH_AGAIN}",
             counted(open.len()),
             row.sample,
-            of.words(),
+            of.words_of_base(),
             match (open.len(), self.rows.len()) {
                 (_, 1) => "Its band is",
                 (1, _) => "Its band, and the filter for all, are",

@@ -20,7 +20,7 @@ use libm::log;
 
 use super::entry::{COHESIVE_FINES, Finding};
 use super::finding;
-use super::probability::{SOURCE, beside_range, probabilities};
+use super::probability::{SOURCE, beside_range, named_beside_range, probabilities};
 use super::quantity::FindingValue;
 use super::rule_words::met_of;
 use super::tested::is_beyond_unclear;
@@ -215,17 +215,30 @@ impl Evidence {
         found.into_iter().map(settle).chain([self.finding(rules)]).collect()
     }
 
-    /// What it says. Where the filter is finer than the range of tests and the walk erodes, that speaks
-    /// against the walk.
+    /// What it says beside a verdict.
     fn finding(&self, rules: &[AppliedRule]) -> Finding {
+        self.finding_with(rules, beside_range)
+    }
+
+    /// What it says, with the place of D15F beside the range of tests in these words. Where the filter is finer
+    /// than that range and the walk erodes, that speaks against the walk.
+    fn finding_with(&self, rules: &[AppliedRule], beside: fn(f64, [f64; 2], &str) -> String) -> Finding {
         let finding = match self.errs_unsafely() {
             true => finding::evidence_unsafe,
             false if self.is_finer_than_tests(rules) => finding::evidence_safe,
             false => finding::evidence,
         };
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
-        let beside = self.beside_in_words(d15f_of(rules));
-        finding(&beside, self.soils, &self.group, median, low, high, &self.more_in_words())
+        let d15f = d15f_of(rules);
+        let [from, to] = self.range_of_tests_mm.map_or([None; 2], |range| range.map(Some));
+        let beside = match d15f.zip(self.range_of_tests_mm) {
+            Some((d15f, range)) => beside(d15f, range, SOURCE),
+            None => {
+                "It is not known where D15F lies beside the range published for soils of these fines".into()
+            }
+        };
+        let more = self.more_in_words();
+        finding(&beside, self.soils, &self.group, median, low, high, &more, d15f, from, to)
     }
 
     /// Whether the walk errs on the unsafe side for soils and filters of this kind.
@@ -235,17 +248,7 @@ impl Evidence {
 
     /// What is said of a filter that is to hold such soils, where the walk errs on the unsafe side.
     pub fn against_holding(&self, rules: &[AppliedRule]) -> Option<Finding> {
-        self.errs_unsafely().then(|| self.finding(rules))
-    }
-
-    /// Where a D15F (mm) lies beside the range of tests: no probability, which two ends alone do not give.
-    fn beside_in_words(&self, d15f_mm: Option<f64>) -> String {
-        match d15f_mm.zip(self.range_of_tests_mm) {
-            Some((d15f, range)) => beside_range(d15f, range, SOURCE),
-            None => {
-                "It is not known where D15F lies beside the range published for soils of these fines".into()
-            }
-        }
+        self.errs_unsafely().then(|| self.finding_with(rules, named_beside_range))
     }
 
     /// Whether the filter is finer than any for which tests of soils with such fines had their boundary.
@@ -396,6 +399,14 @@ mod tests {
         let c33 = Evidence::of(&soil(&SILTY), 0.5, Some(5.3), None).unwrap();
         let said = c33.finding(&rules(&SILTY, 0.5)).sentence();
         assert!(said.starts_with("For filters like this the walk errs on the unsafe side."), "{said}");
+        // What programs read: the sizes that the words compare.
+        let numbers = c33.finding(&rules(&SILTY, 0.5)).record(true).numbers;
+        let sizes = ["d15f_mm", "range_low_mm", "range_high_mm"].map(|of| numbers[of].as_f64().unwrap());
+        assert!((sizes[0] - 0.5).abs() < 1e-9 && sizes[1..] == [0.7, 1.7], "{sizes:?}");
+        assert!(c33.finding(&[]).record(true).numbers["d15f_mm"].is_null());
+        // A design names the size of which it speaks.
+        let limit = c33.against_holding(&rules(&SILTY, 0.7 * (1.0 - 1e-9))).unwrap().sentence();
+        assert!(limit.contains(". A D15F of 0.700 mm is at the lower end of the range in which"), "{limit}");
         assert!(said.contains("One filter was walked, C33 sand with a Cu of 5.3, with"), "{said}");
         // Its 86 soils lie within a factor of 1.92, and 95 % reach beyond the range.
         let silty = [(0.03, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
@@ -416,6 +427,8 @@ mod tests {
             let finding = of.finding(&rules(&SILTY, d15f));
             (finding.id(), finding.is_against(Verdict::Some))
         };
+        let finer = Evidence::of(&soil(&SILTY), 0.5, Some(1.5), None).unwrap().finding(&rules(&SILTY, 0.5));
+        assert!(finer.sentence().starts_with("D15F is 0.71 of the lowest D15F with erosion"), "{finer:?}");
         assert_eq!([id(0.69), id(0.75)], [("evidence_safe", true), ("evidence", false)]);
     }
 

@@ -182,46 +182,56 @@ impl Outcome {
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
-        let said = tested_words(&self.rules);
-        let tests = match tested(&self.rules) {
-            TestedClass::None => Some((0, said)),
-            TestedClass::Some | TestedClass::Excessive => Some((1, said)),
-            TestedClass::Continuing => Some((2, said)),
-            // At least some erosion.
-            TestedClass::Unknown if is_beyond_tests(&self.rules) => Some((1, said)),
-            TestedClass::Unknown => None,
-        };
-        let walked = severity(self.verdict);
-        let mut text = format!("The walk says “{}”. ", self.verdict.words());
-        text += &match tests {
-            Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
-            None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
-        };
-        text += match met_of(&self.rules, DESIGN) {
-            Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
-            Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
-            None => "The limit of design (Sherard and Dunnigan) gives no result. ",
-        };
-        text += match walked.zip(tests.map(|(class, _)| class)) {
-            _ if tested(&self.rules) == TestedClass::Unknown && walked != Some(0) => "",
-            Some((walked, tests)) if walked > tests => {
-                "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
-            }
-            Some((walked, tests)) if walked < tests => {
-                "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
+        compared_with_tests(self.verdict, &self.rules)
+    }
+}
+
+fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule]) -> String {
+    let said = tested_words(rules);
+    let tests = match tested(rules) {
+        TestedClass::None => Some((0, said)),
+        TestedClass::Some | TestedClass::Excessive => Some((1, said)),
+        TestedClass::Continuing => Some((2, said)),
+        // At least some erosion.
+        TestedClass::Unknown if is_beyond_tests(rules) => Some((1, said)),
+        TestedClass::Unknown => None,
+    };
+    let walked = severity(verdict);
+    let mut text = format!("The walk says “{}”. ", verdict.words());
+    text += &match tests {
+        // What is beyond the boundary of no erosion is said in words of this program.
+        Some((1, class)) => format!("By the boundaries of Foster and Fell the pair has {class}. "),
+        Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
+        None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
+    };
+    text += match met_of(rules, DESIGN) {
+        Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
+        Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
+        None => "The limit of design (Sherard and Dunnigan) gives no result. ",
+    };
+    text += match walked.zip(tests.map(|(class, _)| class)) {
+        _ if tested(rules) == TestedClass::Unknown && walked != Some(0) => "",
+        Some((walked, tests)) if walked > tests => {
+            "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
+        }
+        Some((walked, tests)) if walked < tests => {
+            "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
                  tests. "
-            }
-            Some(_) => "Walk and tests agree here. ",
-            None => "",
-        };
-        text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
+        }
+        Some((1, _)) => {
+            "Whether they agree is not known: neither the walk nor the rules here tell some from \
+                 excessive erosion. "
+        }
+        Some(_) => "Walk and tests agree here. ",
+        None => "",
+    };
+    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
                  to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
                  For uniform sands the model is therefore stricter than tests. For broadly graded bases it \
                  errs on the unsafe side, because a few coarse grains block for all the rest. It ignores the \
                  cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., Geotechnical \
                  Engineering of Dams, Table 9.2.)";
-        text
-    }
+    text
 }
 
 /// What practice says of a pair, in a line: whether the limit of design is kept, the class that tests of
@@ -348,6 +358,29 @@ mod tests {
         // Between the limit of design and the boundary that tests saw.
         let between = said(&[(2.5, 0.0), (5.0, 100.0)], &SAND);
         assert!(between.starts_with("not met: ") && between.contains("Fell: no erosion (up to"), "{between}");
+    }
+
+    /// Between the boundaries of no and of continuing erosion neither side tells some from excessive erosion,
+    /// and no words of this program stand as a quotation.
+    #[test]
+    fn whether_walk_and_tests_agree_between_the_boundaries_is_not_known() {
+        let between = of(&[(3.7, 0.0), (8.0, 100.0)], &SAND, false);
+        let some = compared_with_tests(Verdict::Some, &between);
+        assert!(
+            some.contains(
+                "“some erosion”. By the boundaries of Foster and Fell the pair has at least some erosion; \
+                 excessive erosion is not excluded, as its boundary is not worked out here. The limit"
+            ),
+            "{some}"
+        );
+        assert!(some.contains("Whether they agree is not known: ") && !some.contains("agree here"), "{some}");
+        assert!(!some.contains("“at least"), "{some}");
+        let held = compared_with_tests(Verdict::None, &between);
+        assert!(held.contains("more favourable than the tests here"), "{held}");
+        assert!(compared_with_tests(Verdict::Continuing, &between).contains("stricter than the tests here"));
+        let good = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
+        let good = compared_with_tests(Verdict::None, &good);
+        assert!(good.contains("in tests say “no erosion”. ") && good.contains("agree here"), "{good}");
     }
 
     #[test]

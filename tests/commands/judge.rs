@@ -227,8 +227,8 @@ fn a_broken_rule_of_retention_stands_in_the_first_lines_of_every_verdict() {
         let next = match dispersive {
             false => {
                 "Next: take a filter with a D15F of at most 4.18 mm (if the base is dispersive, which is \
-                 not stated, no source that was read gives a limit for its fines: it is at most 4.18 mm, \
-                 and the pair is to be tested); "
+                 not stated, no source that was read gives a limit of design for such fines; it is at \
+                 most 4.18 mm: have the pair tested); "
             }
             true => "Next: take a finer filter; the limit lies below a D15F of 4.18 mm, and is not known; ",
         };

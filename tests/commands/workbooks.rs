@@ -164,6 +164,12 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
             assert_eq!(found, eroded[key].as_f64(), "{run} {what}");
         }
     }
+    // Outside the checked range nobody can answer for a probability: the row says where D15F lies.
+    assert_eq!(outcome["confidence"], "outside checked range");
+    assert!(outcome["evidence"]["probability_by_tests"].is_number());
+    let beside = item(verdict, "Beside tests on such soils (not for a risk analysis)");
+    assert!(beside.words().starts_with("D15F "), "{beside:?}");
+    assert!(rows(verdict).iter().all(|row| !row["Item"].words().starts_with("Probability")));
     assert_eq!(item(verdict, "D15F/D85B").number(), outcome["ratios"]["d15f_over_d85b"].as_f64());
     assert_eq!(item(&all["Inputs"], "D15F").number(), outcome["inputs"]["filter"]["d15_mm"].as_f64());
     assert_eq!(item(&all["Inputs"], "Base particles in each run").number(), outcome["n_base"].as_f64());

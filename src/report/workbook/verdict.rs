@@ -42,12 +42,19 @@ fn verdict(outcome: &Outcome) -> Sheet {
         let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
     }
-    if let Some(evidence) = &outcome.evidence {
-        let what = "Probability that a test shows no erosion";
-        let by_range =
-            format!("{what}, by the published range (log-uniform between its ends; not for a risk analysis)");
-        sheet.item(&by_range, evidence.probability_by_tests, "-");
-        sheet.item("The same by the walk", evidence.probability_no_erosion, "-");
+    match &outcome.evidence {
+        Some(evidence) if outcome.shows_probabilities() => {
+            let of = |by: &str| format!("Probability that a test shows no erosion, by {by}");
+            let by_range = of("the published range (log-uniform between its ends; not for a risk analysis)");
+            sheet.item(&by_range, evidence.probability_by_tests, "-");
+            let by_walk = of("the walk (not for a risk analysis)");
+            sheet.item(&by_walk, evidence.probability_no_erosion, "-");
+        }
+        _ => {
+            if let Some(said) = outcome.beside_tests() {
+                sheet.item("Beside tests on such soils (not for a risk analysis)", said, "");
+            }
+        }
     }
     for (index, finding) in outcome.findings.iter().enumerate() {
         sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");

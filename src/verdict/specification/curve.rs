@@ -86,7 +86,7 @@ impl ReadCurve {
     fn broad(&self) -> Option<Finding> {
         self.of.regraded_at_mm?;
         let least =
-            || Some(format!("more than {}", significant(self.base.d(60.0)? / self.base.smallest_mm())));
+            || Some(format!("more than {}", rounded_down(self.base.d(60.0)? / self.base.smallest_mm())));
         let cu = match self.base.cu() {
             Some(cu) => (cu >= BROAD_CU).then(|| significant(cu))?,
             None => (self.base.d(60.0)? >= BROAD_CU * self.base.smallest_mm()).then(least)??,
@@ -149,10 +149,8 @@ pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
 pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
     let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
     let of = |(_, base): &NamedCurve| {
-        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) });
-        IfDispersive::of(BaseSoil::of(base, false).fines_percent, &rules, ANY_D15F)
+        IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) })
     };
     let all: Vec<IfDispersive> = bases.iter().filter_map(of).collect();
-    let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
-    Some(IfDispersive { at_most: all.iter().any(|of| of.at_most), ..*least })
+    IfDispersive::strictest(&all)
 }

@@ -158,7 +158,8 @@ impl Specification {
         Some(format!(
             "Not a complete specification: the maximum D90F is still to be set from the table of FEMA (2011) \
              or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of {} mm.",
-            rounded_up(least)
+            // Where a table is entered: a finer D10F allows no coarser D90F.
+            rounded_down(least)
         ))
     }
 
@@ -186,7 +187,7 @@ impl Specification {
             Some(_) => "the band and its limits are then not valid: ",
             None => "",
         };
-        Some(format!("If the base is dispersive (not stated): {}; {band}{DESIGN_AGAIN}", of.words()))
+        Some(format!("If the base is dispersive (not stated): {}; {band}{DESIGN_AGAIN}", of.words_of_base()))
     }
 }
 

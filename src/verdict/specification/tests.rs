@@ -261,8 +261,8 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     );
     let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
     assert!(
-        open.contains("(not stated): no source that was read gives a limit for its fines: it is at most ")
-            && open.contains(" mm, and the pair is to be tested; the band and its limits"),
+        open.contains("(not stated): no source that was read gives a limit of design for such fines; it is ")
+            && open.contains(" mm: have the base tested with the filter; the band and its "),
         "{open}"
     );
     // What is finer anyway, few fines, and what was said.
@@ -291,7 +291,7 @@ fn what_is_still_to_be_set_is_said_with_its_size() {
     let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     let said = core.still_to_set().unwrap();
     assert!(said.starts_with("Not a complete specification: the maximum D90F is still to be set"), "{said}");
-    assert!(said.ends_with("for a minimum D10F of 0.117 mm."), "{said}");
+    assert!(said.ends_with("for a minimum D10F of 0.116 mm."), "{said}");
     let none = of(&[(1.0, 0.0), (2.0, 10.0), (4.75, 40.0), (9.5, 60.0), (19.0, 80.0), (37.5, 100.0)]);
     assert_eq!((none.band.is_none(), none.still_to_set()), (true, None), "{none:?}");
 }
