@@ -4,9 +4,8 @@ use super::args::DesignArgs;
 use super::design_each::design_each;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::specification::specification;
+use super::specification::{specification, with_option};
 use super::values::{of_soils, with_options};
-use crate::outcome::design::band::SetBy;
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -85,7 +84,7 @@ fn words(design: &Design) -> String {
             design.filter, design.base.name
         ),
     }];
-    lines.push(design.answer().said);
+    lines.push(with_option(&design.answer().said));
     lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
     for row in &design.boundaries {
         lines.extend(of_row(row, design));
@@ -93,6 +92,7 @@ fn words(design: &Design) -> String {
     if let Some(of) = &design.specification {
         lines.extend(of.band_in_words().map(|band| format!("band to specify: {band}")));
         lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
+        lines.extend(of.findings.iter().map(|found| format!("warning: {}", found.words())));
         lines.extend(of.still_to_set());
     }
     lines.push(match (design.confidence, design.reasons.first()) {
@@ -140,9 +140,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
             true => "between drainage and retention, over the whole range of this curve",
             false => "between drainage and retention",
         };
-        let practice = band.practice.filter(|_| band.set_by == Some(SetBy::Walk) && !band.is_empty);
-        let practice =
-            practice.map(|limit| format!("; practice allows up to {} {}", rounded_down(limit), band.unit));
+        let practice = band.practice_in_words().map(|said| format!("; {said}"));
         lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {

@@ -7,7 +7,7 @@ use super::appendix::{BETWEEN, TWO_SOILS, TabledSoil, gradations};
 use super::figures::{
     Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten,
 };
-use super::names::is_named;
+use super::names::{as_sampled, is_named};
 use super::numbers::SizeUnit;
 use super::shell::Drawn;
 use super::sizes::{SizedSoil, of_few, of_many};
@@ -120,7 +120,8 @@ impl<'a> GivenSoils<'a> {
         let mut soils = Vec::new();
         let named = |kind: &str, name: &'a str| if is_named(kind, name) { name } else { "" };
         for curve in curves {
-            let name = if several { curve.name } else { named("base", curve.name) };
+            // The size is in the heading of the part that it is of.
+            let name = if several { curve.name } else { named("base", as_sampled(curve.name)) };
             soils.push(TabledSoil { kind: "Base, as sampled", name, rows: curve.sampled });
             if !curve.regraded.is_empty() {
                 soils.push(TabledSoil { kind: "Base, regraded", name, rows: curve.regraded });

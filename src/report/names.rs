@@ -24,6 +24,11 @@ pub(super) fn soil_name(name: &str) -> Cow<'_, str> {
     }
 }
 
+/// The name of a soil without the size on which it is walked regraded.
+pub(super) fn as_sampled(name: &str) -> &str {
+    name.rsplit_once(REGRADED).map_or(name, |(soil, _)| soil)
+}
+
 /// Whether a soil has a name that says more than what it is: a column of a table may be called `Base`.
 pub(super) fn is_named(kind: &str, name: &str) -> bool {
     let soil = soil_name(name);

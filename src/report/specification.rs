@@ -19,7 +19,8 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
-use crate::outcome::design::{Specification, SpecificationStep};
+use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
+use crate::verdict::fitting::{FITS, OUTSIDE};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -29,8 +30,7 @@ use crate::outcome::design::{Specification, SpecificationStep};
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let of: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        (titled_by_file("Base", "Base", &of.base))
-        @if of.dispersive { ", dispersive" }
+        (titled_by_file("Base", "Base", &of.base)) @if of.dispersive { ", dispersive" }
         ", by the rules of practice alone"
     };
     let footer = html! {
@@ -94,9 +94,7 @@ fn answer(of: &Specification) -> Markup {
                 p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
-            @for found in of.findings.iter().take(WARNINGS) {
-                p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
-            }
+            (cautions(&of.findings))
             @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
             p { (clean(&products_in_short(of))) }
@@ -111,6 +109,15 @@ fn more_warnings(of: &Specification) -> Markup {
     let more = of.findings.iter().skip(WARNINGS);
     html! {
         @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } }
+    }
+}
+
+/// The first warnings of the base itself.
+pub(super) fn cautions(of: &[DesignFinding]) -> Markup {
+    html! {
+        @for found in of.iter().take(WARNINGS) {
+            p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
+        }
     }
 }
 
@@ -140,13 +147,16 @@ pub(super) fn to_specify(of: &Specification) -> Markup {
 /// Which standard products fit, or which comes closest.
 fn products_in_short(of: &Specification) -> String {
     let named = |of: &ProductMargin| match of.worst_sieve_mm {
-        Some(_) => format!("{} (but lies outside this band)", of.product),
+        Some(_) => format!("{} ({OUTSIDE})", of.product),
         None => of.product.clone(),
     };
     let fitting: Vec<String> = of.products.iter().filter(|of| of.fits() == Some(true)).map(named).collect();
     let other = if of.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
     match (fitting.is_empty(), of.nearest_product()) {
-        (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
+        (false, _) => {
+            let no_band = if of.band.is_none() { "; there is no band" } else { "" };
+            format!("D15 of both sides drains and retains: {}{no_band}.", fitting.join(", "))
+        }
         (true, Some(nearest)) => {
             format!(
                 "Of no standard product does D15 of both sides drain and retain. {} comes closest.",
@@ -227,7 +237,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
     };
-    let (drainage_open, unit) = (of.d15f_min_at_most, SizeUnit::of(false, of.inches));
+    let unit = SizeUnit::of(false, of.inches);
     let mut table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
@@ -239,14 +249,10 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
         .text("Leaves the band by most", beyond);
     if says_fit {
-        table = table.text("", |of| match of.fits() {
-            Some(true) if of.worst_sieve_mm.is_some() => html! { "D15 fits, lies outside this band" },
-            Some(true) => html! { span.keeps { "✓ D15 fits" } },
-            Some(false) => html! { span.breaks { "✗ does not fit" } },
-            None if of.drains_by.is_none() && drainage_open => {
-                html! { "may drain: needs a hydrometer test" }
-            }
-            None => html! { "no result" },
+        table = table.text("", |product| match (of.product_in_words(product), product.fits()) {
+            (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
+            (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
+            (said, _) => html! { (said) },
         });
     }
     let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));

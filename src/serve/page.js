@@ -594,11 +594,11 @@ function boundariesOf(job) {
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
-    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null && row.band.set_by === "walk"
-      ? [el("br"), el("span", { class: "small" }, `practice allows up to ${number(row.band.practice)} ${row.band.unit}`)] : null,
+    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
+    ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),

@@ -24,7 +24,7 @@ pub(super) fn files_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<Pat
 /// A file that cannot be read.
 pub(super) fn input_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<Vec<InputFile>, RunError> {
     let of = |file: PathBuf| {
-        let bytes = bytes_of(&file).map_err(|error| RunError::refused(error))?;
+        let bytes = bytes_of(&file).map_err(RunError::refused)?;
         Ok(InputFile::of(file.display().to_string(), &bytes))
     };
     files_of(paths).into_iter().map(of).collect()

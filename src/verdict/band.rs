@@ -52,6 +52,12 @@ impl Band {
         }
     }
 
+    /// What practice allows beyond the walk that sets the greatest; `None` where it allows no more.
+    pub fn practice_in_words(&self) -> Option<String> {
+        let limit = self.practice.filter(|_| self.set_by == Some(SetBy::Walk) && !self.is_empty)?;
+        Some(format!("practice allows up to {} {}", rounded_down(limit), self.unit))
+    }
+
     /// That nothing lies between the minimum D15F that drains a base and the greatest that holds it.
     pub fn empty(&self) -> Option<Finding> {
         let size = |rounded: String| format!("{rounded} {}", self.unit);

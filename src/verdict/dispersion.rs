@@ -50,22 +50,36 @@ impl IfDispersive {
 
     /// What is known of a limit that is not known itself: why, its most, and what to do.
     fn open(&self) -> String {
+        self.open_with("have the pair tested")
+    }
+
+    /// The same, with what to do where no text has the limit.
+    fn open_with(&self, test: &str) -> String {
         let (why, tests) = match self.lacks {
             Some(DispersiveLack::LimitOfDesign) => {
-                ("no source that was read gives a limit of design for such fines", "have the pair tested")
+                ("no source that was read gives a limit of design for such fines", test)
             }
             Some(DispersiveLack::D85B) => {
                 ("the limit is not known, as D85B is not", "have the base tested with a hydrometer")
             }
-            None => ("the limit is not known", "have the pair tested"),
+            None => ("the limit is not known", test),
         };
         format!("{why}; it is at most {} mm: {tests}", rounded_down(self.d15f_max_mm))
     }
 
-    /// The limit in words.
+    /// The limit in words, of a pair.
     pub fn words(&self) -> String {
+        self.words_with("have the pair tested")
+    }
+
+    /// The same of a base for which a filter is specified.
+    pub fn words_of_base(&self) -> String {
+        self.words_with("have the base tested with the filter")
+    }
+
+    fn words_with(&self, test: &str) -> String {
         match self.at_most {
-            true => self.open(),
+            true => self.open_with(test),
             false => format!("D15F up to {} mm", rounded_down(self.d15f_max_mm)),
         }
     }

@@ -14,7 +14,7 @@
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
-//!   is which standard products are said to fit.
+//!   is which standard products are said to fit, and `base_cautions` what is said of the base itself.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
@@ -26,6 +26,7 @@
 mod amount;
 mod answer;
 mod band;
+mod base_cautions;
 pub(crate) mod batch;
 mod batch_table;
 mod batch_words;
@@ -39,7 +40,7 @@ pub(crate) mod dispersion;
 mod entry;
 pub(crate) mod evidence;
 pub(crate) mod finding;
-mod fitting;
+pub(crate) mod fitting;
 pub(crate) mod left_out;
 mod next;
 mod pair;
@@ -71,5 +72,5 @@ pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
-pub use specification::SpecificationOptions;
+pub use specification::{DESIGN_AGAIN, DESIGN_EACH_AGAIN, SpecificationOptions};
 pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

@@ -55,9 +55,17 @@ fn cells<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
 
 #[test]
 fn a_design_has_both_gradations_and_their_files() {
+    // A file that is called `base` names no soil.
+    for (name, named) in [("base.csv", ""), ("till.csv", ": <bdi>till</bdi>")] {
+        has_both_gradations(name, named);
+    }
+}
+
+fn has_both_gradations(base: &str, named: &str) {
     let root = site();
-    let words = "design base.csv --filter filter.csv --density loose --bracket 2,12 --out d";
-    let output = call(root.path(), &[&call_of(words, &SMALL)[..], &["--set", "replicates=1"]].concat());
+    fs::write(root.path().join(base), TILL).unwrap();
+    let words = format!("design {base} --filter filter.csv --density loose --bracket 2,12 --out d");
+    let output = call(root.path(), &[&call_of(&words, &SMALL)[..], &["--set", "replicates=1"]].concat());
     done(&output);
     let design = record(&root.path().join("d/design.json"));
     assert_eq!(design["base"]["gradation"], serde_json::json!(rising(TILL)));
@@ -67,16 +75,17 @@ fn a_design_has_both_gradations_and_their_files() {
     let at = regraded.iter().find(|row| row[0] == 0.425).unwrap()[1].as_f64().unwrap();
     assert!((at - 100.0 * 60.0 / 70.0).abs() < 1e-9, "{at}");
     let page = fs::read_to_string(root.path().join("d/design.html")).unwrap().replace('\u{202f}', " ");
+    let title = if named.is_empty() { base } else { "till" };
     for part in [
-        "Base <b><bdi>base.csv, regraded on 4.75 mm</bdi></b>",
+        &format!("Base <b><bdi>{title}, regraded on 4.75 mm</bdi></b>"),
         "filter of the shape <b><bdi>filter.csv</bdi></b> (D15F 0.250 mm, Cu ",
         ", as given)",
         "Appendix: the two gradations</h2>",
-        "<h3>Base, as sampled</h3>",
-        "<h3>Base, regraded</h3>",
+        &format!("<h3>Base, as sampled{named}</h3>"),
+        &format!("<h3>Base, regraded{named}</h3>"),
         "<h3>Filter, as given</h3>",
         "checked> filter, as given</label>",
-        &input("base.csv", TILL),
+        &input(base, TILL),
         &input("filter.csv", SAND),
         "Dotted: the filter as it was given.",
     ] {
@@ -119,6 +128,22 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
         assert!(said.contains(words), "{words}: {said}");
     }
     assert!(said.contains("Not a complete specification: the maximum D90F"), "{said}");
+    // Nor is it silent where the same soil is walked, and it says each once.
+    let words = call_of("design gap.csv --filter filter.csv --density loose --bracket 2,12 --out d", &SMALL);
+    let output = call(root.path(), &[&words[..], &["--set", "replicates=1"]].concat());
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    done(&output);
+    let page = fs::read_to_string(root.path().join("d/design.html")).unwrap().replace('\u{202f}', " ");
+    let answer = page.split("<section class=\"verdict ").nth(1).unwrap().split("</section>").next().unwrap();
+    for words in [
+        "The base itself is not internally stable by Kenney and Lau",
+        "The base is broadly graded (Cu ",
+        "The base is gap-graded by this program",
+    ] {
+        assert!(answer.contains(&format!("<b>Warning</b>: {words}")), "{words}: {answer}");
+        assert!(said.contains(&format!("warning: {words}")), "{words}: {said}");
+        assert_eq!(page.matches(words).count(), 1, "{words}");
+    }
     // A sand has nothing of this.
     done(&call(root.path(), &call_of("design filter.csv --steps --out sand", &[])));
     assert!(record(&root.path().join("sand/specification.json")).get("findings").is_none());
@@ -128,8 +153,13 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
 #[test]
 fn a_specification_has_every_curve_of_its_base() {
     let root = site();
-    done(&call(root.path(), &call_of("design base.csv --steps --out one", &[])));
+    let output = call(root.path(), &call_of("design base.csv --steps --out one", &[]));
+    let said = String::from_utf8(output.stdout.clone()).unwrap();
+    done(&output);
     let page = fs::read_to_string(root.path().join("one/specification.html")).unwrap();
+    // The option stands on the terminal alone.
+    assert!(said.contains("design again for a dispersive base (--dispersive)."), "{said}");
+    assert!(page.contains("design again for a dispersive base.") && !page.contains("--dispersive"));
     for part in [
         "Base <b><bdi>base.csv</bdi></b>",
         "Appendix: the gradation of the base</h2>",

@@ -192,7 +192,12 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
         let said = words.iter().find(|(of, _)| *of == met);
         assert!(said.is_none_or(|(_, words)| book["Result"].words() == *words), "{id}");
         assert!(!book["Result"].words().is_empty(), "{id}");
+        // Nor is it the most that is allowed.
+        let is_boundary = json["role"] == "continuation" && json["limit"].is_number();
+        let beyond = book["The limit is"] == Cell::Words("a boundary: continuing erosion beyond it".into());
+        assert_eq!(beyond, is_boundary, "{id}");
     }
+    assert!(of_json.iter().any(|of| of["role"] == "continuation" && of["limit"].is_number()));
     // Run by run.
     let runs: Vec<&Value> = outcome["replicates"]
         .as_array()

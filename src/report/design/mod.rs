@@ -19,7 +19,7 @@ use super::names::titled_by_file;
 use super::numbers::{significant, threshold, whole};
 use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
-use super::specification::{Stated, still_to_set, to_specify};
+use super::specification::{Stated, cautions, still_to_set, to_specify};
 use super::written::Written;
 use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::Confidence;
@@ -115,7 +115,7 @@ fn told(design: &Design) -> Vec<String> {
     let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
     let is_said = |of: &&DesignFinding| {
         let is_noted = notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
-        is_noted || of.finding.id == NOT_COUNTED
+        is_noted || of.finding.id == NOT_COUNTED || design.is_cautioned(of)
     };
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
@@ -217,6 +217,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     },
                 }
                 (to_specify(of))
+                (cautions(design.cautions()))
                 (still_to_set(of))
             }
             @for row in &design.boundaries {

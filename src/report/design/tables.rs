@@ -13,6 +13,7 @@ use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, t
 use crate::report::rules;
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
+use crate::verdict::fitting::FITS;
 use crate::verdict::words::capital;
 
 /// The boundaries of the walk alone, a row a density and thickness.
@@ -160,7 +161,7 @@ pub(super) fn products(design: &Design) -> Markup {
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
                 .number("Result", |fit| match design.product_in_words(fit) {
-                    said @ "fits" => html! { b { (said) } },
+                    said @ FITS => html! { b { (said) } },
                     said => html! { (said) },
                 })
                 .render())

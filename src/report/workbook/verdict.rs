@@ -144,6 +144,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 15] {
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
     let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
         (None, ..) => "",
+        _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
         (_, true, _) => "the least",
         (_, false, false) => "the most",
         (_, false, true) => "the most that it can be",

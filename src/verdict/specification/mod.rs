@@ -16,6 +16,12 @@ use crate::outcome::rules::{
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
 
+/// What to do where a base is found to be dispersive.
+pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
+
+/// The same of many samples.
+pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
+
 /// What a specification is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpecificationOptions {
@@ -178,13 +184,10 @@ impl Specification {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
         let band = match self.band {
-            Some(_) => "the band and the limits at the sieves are then not valid: ",
+            Some(_) => "the band and its limits are then not valid: ",
             None => "",
         };
-        Some(format!(
-            "If the base is dispersive (not stated): {}; {band}run again with --dispersive",
-            of.words()
-        ))
+        Some(format!("If the base is dispersive (not stated): {}; {band}{DESIGN_AGAIN}", of.words_of_base()))
     }
 }
 
