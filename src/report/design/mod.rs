@@ -143,6 +143,15 @@ fn others(rest: &[String]) -> Markup {
     } }
 }
 
+/// The first sentence of a text, and what follows it.
+fn first_sentence(text: &str) -> (&str, Option<&str>) {
+    let begins = |at: &usize| text[at + 2..].starts_with(char::is_uppercase);
+    match text.match_indices(". ").map(|(at, _)| at).find(begins) {
+        Some(at) => (&text[..at], Some(&text[at + 2..])),
+        None => (text, None),
+    }
+}
+
 fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     let (found, said) = (design.least_held(), design.answer());
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
@@ -159,11 +168,11 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
         // only the most is known, or a row has no answer.
         (_, Some(_)) => "doubted",
     };
+    let (limit, beside) = first_sentence(&said.said);
     html! {
         section class=(format!("verdict {class}")) {
-            p.word.long {
-                (clean(&said.said))
-            }
+            p.word.long { (clean(limit)) }
+            @if let Some(beside) = beside { p { b { (clean(beside)) } } }
             @if design.confidence != Confidence::Within {
                 p { b { (capital(design.confidence.words())) } "." }
             }
