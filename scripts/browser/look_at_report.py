@@ -25,7 +25,7 @@ INSPECT = """(() => {
     texts.forEach(([a, p], i) => {
       if (p.left < frame.left - 0.5 || p.right > frame.right + 0.5 || p.top < frame.top - 0.5
           || p.bottom > frame.bottom + 0.5) found.push(`${svg.id}: "${a}" is cut off`);
-      if (p.height < 10) found.push(`${svg.id}: "${a}" is ${p.height.toFixed(1)} px high`);
+      if (p.height < 9.95) found.push(`${svg.id}: "${a}" is ${p.height.toFixed(1)} px high`);
       for (const [b, q] of texts.slice(i + 1))
         if (p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 3 && q.top < p.bottom - 3)
           found.push(`${svg.id}: "${a}" lies on "${b}"`);
@@ -69,7 +69,7 @@ PRINTED_CURVES = """[...document.querySelectorAll('[class^=curve-]')].filter(par
   .concat([...document.querySelectorAll('.looks')].filter(part => part.getClientRects().length > 0)).length"""
 
 # What must stand on the first printed page, so that it can be handed in by itself.
-FIRST_PAGE = """[...document.querySelectorAll('.names, .model, .about, .verdict .word, .practice, .counted, .verdict li, .band, .sizes, .short, .pair figcaption')]
+FIRST_PAGE = """[...document.querySelectorAll('.names, .model, .about, .verdict .word, .practice, .counted, .verdict li, .band, .pair .sizes, .caution, .short, .pair figcaption')]
   .map(part => part.innerText).concat(document.querySelector('.sign') ? ['Name Date Signature Prepared Checked Approved'] : [])"""
 
 # The least lettering of Figure 1 in print (points), where it stands on the first page.

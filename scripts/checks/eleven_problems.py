@@ -88,10 +88,12 @@ def faults_of_practice(line, hand):
         yield f"D15F {sizes[1]}"
     if not near(sizes[2], design) and not near(sizes[2], strictest):
         yield f"limit {sizes[2]}"
-    beyond = "erosion, class not known" if continuing is None else "some or excessive erosion" if d15f <= continuing else "continuing erosion"
+    beyond = "at least some erosion" if continuing is None or d15f <= continuing else "continuing erosion"
     wanted = "no erosion" if d15f <= no_erosion else beyond
     if f"Foster and Fell: {wanted}" not in line:
         yield f"Foster and Fell: not {wanted}"
+    if wanted.startswith("at least") and "excessive erosion is not excluded" not in line:
+        yield "nothing of excessive erosion"
     for word, limit in (("up to", no_erosion), ("beyond", continuing)):
         for said in re.findall(rf"{word} ([\d.]+) mm", line):
             if limit is None or not near(said, limit):

@@ -210,7 +210,7 @@ class Trial:
         self.work = work / name
         self.work.mkdir()
         self.clone = self.work / "clone"
-        subprocess.run(["git", "clone", "--quiet", "--local", ROOT, self.clone], check=True)
+        subprocess.run(["git", "clone", "--quiet", ROOT, self.clone], check=True)
         BUILT.mkdir(parents=True, exist_ok=True)
         # Environments of Python that stand on that of an earlier run, which is gone.
         for environment in ("forge", "python", "book-environment"):

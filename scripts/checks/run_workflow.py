@@ -123,7 +123,7 @@ def main():
     work = Path(tempfile.mkdtemp(prefix="workflow-"))
     clone = args.keep or work / "clone"
     try:
-        subprocess.run(["git", "clone", "--quiet", "--local", ROOT, clone], check=True)
+        subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
         clone = clone.resolve()
         if args.target:
             args.target.mkdir(parents=True, exist_ok=True)

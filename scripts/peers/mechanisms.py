@@ -2,11 +2,12 @@
 """Prints what arches and openings beside particles cost: processor time by that of the same scene without them, in Markdown.
 
     scripts/peers/mechanisms.py [--binary target/release/voidwalk] [--particles 2000000 200000000] [--turns 5]
-        [--instructions portable avx2 avx512] [--only by-void]
+        [--instructions portable avx2 avx512] [--only by-void] [--engines particles]
 
 Scenes follow one another in each turn; whole processes, one thread, medians. Another mechanism lets other particles pass, so that the
 number of moves differs: time by move is given beside the time of the scene. `--instructions` walks all of it with each set of instructions
-(VOIDWALK_ISA), else with the widest of the machine. `--only` takes the mechanisms whose name holds one of these words, and what they are set against.
+(VOIDWALK_ISA), else with the widest of the machine. `--only` takes the mechanisms whose name holds one of these words, and what they are set against;
+`--engines` those of these engines.
 """
 
 import argparse
@@ -51,8 +52,9 @@ def main():
     parser.add_argument("--turns", type=int, default=5)
     parser.add_argument("--instructions", nargs="*", default=[os.environ.get("VOIDWALK_ISA", "")], choices=["portable", "avx2", "avx512"])
     parser.add_argument("--only", nargs="*", default=[""])
+    parser.add_argument("--engines", nargs="*", default=["particles", "counts", "expected"])
     options = parser.parse_args()
-    of_only = [scene for scene in SCENES if scene[2] and any(word in scene[1] for word in options.only)]
+    of_only = [scene for scene in SCENES if scene[0] in options.engines and scene[2] and any(word in scene[1] for word in options.only)]
     scenes = [scene for scene in SCENES if scene in of_only or (not scene[2] and any(scene[0] == other[0] for other in of_only))]
     print("| particles | instructions | engine | mechanism | processor s | by that without | thousand million moves | ns a move | eroded |")
     print("|---|---|---|---|---|---|---|---|---|")

@@ -97,12 +97,12 @@ class Walks:
             settings["walk.concentration"] = concentration
         return settings
 
-    def outcome(self, settings):
+    def outcome(self, settings, threads=None):
         """The outcome of a run of the built-in scene with these settings."""
         with tempfile.TemporaryDirectory() as folder:
             scene = Path(folder) / "s.toml"
             scene.write_text("")
-            command = [self.binary, "run", scene, "--out", Path(folder) / "o", "-q", "--threads", self.threads]
+            command = [self.binary, "run", scene, "--out", Path(folder) / "o", "-q", "--threads", threads or self.threads]
             command += [part for name, value in settings.items() for part in ("--set", f"{name}={value}")]
             done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
             if done.returncode != 0:
@@ -131,9 +131,7 @@ class Walks:
         return self.eroded_row(SHARES_CELL, cell, self.settings((*of, "", 60, 10), ratio))
 
     def eroded_row(self, names, cell, settings):
-        shares = [100 * replicate["runs"][0]["eroded_mass_fraction"] for replicate in self.outcome(settings)["replicates"]]
-        values = sum(shares) / len(shares), min(shares), max(shares)
-        return dict(zip(names, cell)) | {name: round(value, 2) for name, value in zip(ERODED, values)}
+        return dict(zip(names, cell)) | eroded_of([replicate["runs"][0] for replicate in self.outcome(settings)["replicates"]])
 
     def boundary(self, cell):
         began = time.monotonic()
@@ -165,6 +163,13 @@ class Walks:
         if max(single) < math.inf:
             row |= {"most": round(max(single), 2)}
         return row
+
+
+def eroded_of(runs):
+    """What erodes in these runs, in percent: mean, least and most."""
+    shares = [100 * run["eroded_mass_fraction"] for run in runs]
+    values = sum(shares) / len(shares), min(shares), max(shares)
+    return {name: round(value, 2) for name, value in zip(ERODED, values)}
 
 
 def crossing(shares):

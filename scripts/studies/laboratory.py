@@ -1,20 +1,28 @@
 #!/usr/bin/env python3
 """Models of filters beside tests: where the base begins to erode, with and without water, arches and openings; the largest particle that passes.
 
-    scripts/studies/laboratory.py --work FOLDER --out results/laboratory [--binary target/release/voidwalk] [--minutes 40]
+    scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
+        [--binary target/release/voidwalk] [--minutes 40]
 
 Walks the cells of PLAN in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
 again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
 
 Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
-Graph: the voids of five packings, one a replicate, as thick as 60 layers. Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first
-run and in the second, bracketed to 4 %: where the mean crosses, and where the first and the last replicate do, by interpolation. Ratios are walked
-until every replicate holds at the least and erodes at the greatest, or the cell has used its time. `k_over_k0`: at the end of the first run, at the
-greatest ratio below its boundary. Rows `largest`: the largest eroded particle by D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own
-largest particle did not pass.
+Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A constriction of a graph has
+no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water leaves by, in three packings and the first
+run alone. Of a packing that is the finer part of its filter the base is that of the whole.
+
+Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses, and where the
+first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at the greatest, or the cell
+has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows `largest`: the largest eroded particle by
+D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not pass.
+
+`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV and nothing
+else.
 """
 
 import argparse
+import concurrent.futures
 import json
 import math
 import resource
@@ -23,22 +31,30 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from arches import THRESHOLD, Walks, crossing, each
+from arches import ERODED, THRESHOLD, Walks, crossing, each, eroded_of
 
 CELL = ["measure", "filter_cu", "density", "base_cu", "network", "exit", "law", "concentration", "blocked"]
 RUNS = ["first", "second"]
 FOUND = ["", "_least", "_most", "_holds_to", "_erodes_from"]
 COLUMNS = CELL + [run + what for run in RUNS for what in FOUND] + ["k_over_k0", "walked_concentration", "replicates", "cpu_seconds"]
 REPLICATES, LAYERS, CLOSE, LONGEST = 5, 60, 1.04, 90.0
+REPLICATES_BY_AREA = 3
+# How far the next ratio lies outwards.
+STEP, STEP_BY_AREA = 1.15, 1.08
 FARTHEST = 16.1
-# Friction and number of grains of the packings of the graphs, as in the library.
-PACKED = {("1.5", "loose"): (0.3, 3000), ("1.5", "dense"): (0.0, 3000), ("3", "loose"): (0.3, 6000)}
-# What base brings into the first layer of a filter of Cu 6, whose packing the library has not whole: void ratio 0.34 (Table 2 of the paper). Of
-# graphs: that of the same filter as a lattice.
-CONCENTRATIONS = {("6", "loose"): 0.05 * 0.01 * 60 / 0.34, ("1.5", "loose"): 0.0468, ("1.5", "dense"): 0.0583, ("3", "loose"): 0.0641}
+# Friction, as in the library, and number of grains of the packings of the graphs. With 10,000 grains of Cu 6 the cell takes the finer 78 % of the mass.
+FRICTIONS, GRAINS = {"loose": 0.3, "dense": 0.0}, {"1.5": 3000, "3": 6000, "6": 10000}
+MASS_RATIO = 0.05
+# What base brings into the first layer of a filter of Cu 6, whose packing the library has not whole: void ratio 0.34 loose (Table 2 of the paper) and
+# 0.2675 dense (`results/graph.md`). Of graphs: that of the same filter as a lattice.
+CONCENTRATIONS = {("6", "loose"): round(MASS_RATIO * 0.01 * 60 / 0.34, 4), ("6", "dense"): round(MASS_RATIO * 0.01 * 60 / 0.2675, 4),
+                  ("1.5", "loose"): 0.0468, ("1.5", "dense"): 0.0583, ("3", "loose"): 0.0641, ("3", "dense"): 0.0792}
 NONE, MARIN, ZURIGUEL, CRITICAL = "none", "marin-2018", "zuriguel-2005", "critical-3"
 SANDS = [("1.5", "loose"), ("1.5", "dense"), ("3", "loose"), ("3", "dense")]
-LOOSE, BEADS, BROAD = ("1.5", "loose"), ("1.2", "dense"), ("6", "loose")
+LOOSE, BEADS, BROAD, BROAD_DENSE = ("1.5", "loose"), ("1.2", "dense"), ("6", "loose"), ("6", "dense")
+BASES = ["1.5", "3", "4.5"]
+# How a particle chooses its exit on a graph where water does not choose it.
+BY_AREA = "area-along-flow"
 
 
 def plan():
@@ -51,13 +67,13 @@ def cells():
     def lattice(filters, bases, law=NONE, exit="area", blocked="closed", measure="boundary", concentration=""):
         for of in filters:
             for base in bases:
-                given = concentration or (round(CONCENTRATIONS[of], 4) if of == BROAD and law == MARIN else "")
+                given = concentration or (CONCENTRATIONS[of] if of[0] == "6" and law == MARIN else "")
                 yield measure, *of, base, "lattice", exit, law, given, blocked
 
-    def graph(filters, bases, law=NONE, blocked="closed"):
+    def graph(filters, bases, law=NONE, blocked="closed", exit="flux"):
         for of in filters:
             for base in bases:
-                yield "boundary", *of, base, "graph", "flux", law, CONCENTRATIONS[of] if law == MARIN else "", blocked
+                yield "boundary", *of, base, "graph", exit, law, CONCENTRATIONS[of] if law == MARIN else "", blocked
 
     tested = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
     for law in (NONE, MARIN):
@@ -70,12 +86,12 @@ def cells():
     yield from graph([LOOSE], ["1.5"])
     yield from graph([LOOSE], ["1.5"], MARIN)
     # By area, which costs little: broader bases, broader and denser filters.
-    yield from lattice([*SANDS, BROAD], ["1.5", "3", "4.5"])
+    yield from lattice([*SANDS, BROAD], BASES)
     yield from lattice([BEADS], ["1.2"])
     yield from lattice([BEADS], ["1"])
     for base in ("3", "4.5"):
         yield from lattice(SANDS, [base], MARIN)
-    yield from lattice([BROAD], ["1.5", "3", "4.5"], MARIN)
+    yield from lattice([BROAD], BASES, MARIN)
     yield from lattice([("1.5", "dense")], ["1.5"], NONE, "area", "open")
     yield from lattice([("3", "loose")], ["3"], NONE, "area", "open")
     # With water, the models in which a filter is not sealed last, as they cost the most.
@@ -94,11 +110,28 @@ def cells():
     yield from lattice([BEADS], ["1.2"], NONE, "area", "open")
     yield from lattice([BEADS], ["1.2"], MARIN, "flux")
     yield from lattice([("1.5", "dense")], ["1.5"], MARIN, "flux")
+    yield from lattice([BROAD_DENSE], BASES, MARIN)
+    # Every filter and base on the voids of its packing, by area.
+    for law in (CRITICAL, ZURIGUEL):
+        yield from graph([LOOSE], ["1.5"], law, exit=BY_AREA)
+    for law in (NONE, MARIN, CRITICAL, ZURIGUEL):
+        for base in BASES:
+            yield from graph([*SANDS, BROAD, BROAD_DENSE], [base], law, exit=BY_AREA)
     yield from lattice([LOOSE], ["3"], MARIN, "flux", "open")
     yield from graph([("3", "loose")], ["3"], MARIN)
     for law in (ZURIGUEL, CRITICAL):
         yield from lattice([LOOSE], ["1.5", "3"], law)
     yield from lattice(tested, ["1.2"], ZURIGUEL, measure="largest")
+
+
+INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "d15f_over_d85b", "inject_share"]
+
+
+def increments_cells():
+    """One filter just below four of its boundaries on graphs by area, by the share of the base in an increment."""
+    for base, law, ratio in [("3", NONE, 3.1), ("1.5", NONE, 2.8), ("1.5", MARIN, 5.5), ("1.5", CRITICAL, 8.0)]:
+        for share in ("0.01", "0.003", "0.001"):
+            yield *LOOSE, base, law, ratio, share
 
 
 class Models(Walks):
@@ -112,15 +145,18 @@ class Models(Walks):
         self.used = 0.0
 
     def outcomes(self, cell, settings):
-        """One outcome with five replicates; of a graph, five with one."""
+        """One outcome with five replicates; of a graph, five with one, several at a time."""
         if cell[4] == "lattice":
             return [self.outcome(settings)]
-        return [self.outcome(settings | {"network.packing": f'"{self.packing(cell, k)}"', "seed": k}) for k in range(1, REPLICATES + 1)]
+        seeds = range(1, (REPLICATES_BY_AREA if cell[5] == BY_AREA else REPLICATES) + 1)
+        with concurrent.futures.ThreadPoolExecutor(int(self.threads)) as workers:
+            one = lambda of: self.outcome(settings | of, threads=1)
+            return list(workers.map(one, [self.packing(cell, seed) | {"seed": seed} for seed in seeds]))
 
     def packing(self, cell, seed):
-        """The grains of a packing of the cell's filter, made where they are not there yet."""
+        """The settings of a packing of the cell's filter, made where it is not there yet."""
         cu, density = cell[1:3]
-        friction, grains = PACKED[cu, density]
+        friction, grains = FRICTIONS[density], GRAINS[cu]
         folder = self.work / f"cu{cu}-{density}-seed{seed}"
         if not (folder / "packing.json").exists():
             with tempfile.TemporaryDirectory() as scratch:
@@ -128,13 +164,16 @@ class Models(Walks):
                 scene.write_text(f"[filter]\ncu = {cu}\nfriction = {friction}\n[packing]\ngrains = {grains}\n")
                 command = [self.binary, "pack", scene, "--seed", seed, "--out", folder, "--threads", self.threads, "--quiet"]
                 subprocess.run([str(part) for part in command], check=True)
-        return (folder / "grains.csv").resolve()
+        part = json.loads((folder / "packing.json").read_text()).get("part")
+        share = part["percent"] / 100 if part else 1.0
+        return {"network.packing": f'"{(folder / "grains.csv").resolve()}"', "base.mass_ratio": MASS_RATIO / share}
 
     def settings(self, cell, ratio):
         """What differs from the built-in scene."""
         measure, filter_cu, density, base_cu, network, exit, law, concentration, blocked = cell
         settings = {
-            "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu, "base.d15f_over_d85b": round(ratio, 6), "runs": 2,
+            "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu, "base.d15f_over_d85b": round(ratio, 6),
+            "runs": 1 if exit == BY_AREA else 2,
             "record.sensitivity": "[]", "record.thickness": "[]", "walk.arching": law, "walk.blocked": blocked,
             "engine": "particles" if blocked == "open" else "expected",
         }
@@ -142,8 +181,8 @@ class Models(Walks):
             settings |= {"filter.library": density, "replicates": REPLICATES, "network.nx": 10, "network.ny": 10, "network.nz": LAYERS}
         else:
             settings |= {"network.kind": '"graph"', "network.thickness_mm": LAYERS * d50_by_number(float(filter_cu)), "replicates": 1}
-        if exit == "flux":
-            settings["walk.exit"] = '"flux"'
+        if exit != "area":
+            settings["walk.exit"] = f'"{exit}"'
         if concentration != "":
             settings["walk.concentration"] = concentration
         return settings
@@ -159,6 +198,15 @@ class Models(Walks):
         print(*cell, row, f"{seconds:.0f} s", flush=True)
         return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
 
+    def increments(self, of):
+        """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
+        *pair, law, ratio, share = of
+        cell = ("boundary", *pair, "graph", BY_AREA, law, CONCENTRATIONS[LOOSE] if law == MARIN else "", "closed")
+        runs = [outcome["replicates"][0]["runs"][0] for outcome in self.outcomes(cell, self.settings(cell, ratio) | {"inject_share": share})]
+        print(*of, flush=True)
+        kept = statistics.mean(run["k_over_k0"] for run in runs)
+        return dict(zip(INCREMENTS_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{kept:.3g}"}
+
     @staticmethod
     def time():
         """Processor time of all walks so far."""
@@ -166,20 +214,22 @@ class Models(Walks):
         return used.ru_utime + used.ru_stime
 
     def boundaries(self, cell, before):
-        """Both boundaries, the first run's first."""
+        """The boundaries of its runs, the first run's first."""
         walked, kept, concentration = {}, {}, None
+        runs = RUNS[: self.settings(cell, guess(cell))["runs"]]
+        step = STEP_BY_AREA if cell[5] == BY_AREA else STEP
         shares = lambda run: {ratio: of[run] for ratio, of in walked.items()}
         while self.time() - before < LONGEST:
-            ratio = next((ratio for run in (0, 1) if (ratio := next_ratio(shares(run), guess(cell))) is not None), None)
+            ratio = next((ratio for run in range(len(runs)) if (ratio := next_ratio(shares(run), guess(cell), step)) is not None), None)
             if ratio is None:
                 break
             outcomes = self.outcomes(cell, self.settings(cell, ratio))
             replicates = [replicate["runs"] for outcome in outcomes for replicate in outcome["replicates"]]
-            walked[ratio] = [[runs[run]["eroded_mass_fraction"] for runs in replicates] for run in (0, 1)]
-            kept[ratio] = [runs[0].get("k_over_k0") for runs in replicates]
+            walked[ratio] = [[of[run]["eroded_mass_fraction"] for of in replicates] for run in range(len(runs))]
+            kept[ratio] = [of[0].get("k_over_k0") for of in replicates]
             concentration = (outcomes[0].get("arching") or {}).get("concentration")
-        row = {"walked_concentration": concentration, "replicates": min((len(of) for runs in walked.values() for of in runs), default=0)}
-        for at, run in enumerate(RUNS):
+        row = {"walked_concentration": concentration, "replicates": min((len(of) for both in walked.values() for of in both), default=0)}
+        for at, run in enumerate(runs):
             row |= {run + what: value for what, value in zip(FOUND, boundary(shares(at)))}
         below = [ratio for ratio, of in kept.items() if row["first_holds_to"] == round(ratio, 3) and None not in of]
         if below:
@@ -213,13 +263,17 @@ def d50_by_number(cu):
 def guess(cell):
     """The ratio at which a cell's search begins."""
     exit, law = cell[5:7]
+    if exit == BY_AREA:
+        # What sieving holds of a narrow base, and laws by that; `marin-2018` the more, the denser the base arrives.
+        sieved = {("1.5", "dense"): 3.5, ("3", "dense"): 3.5, BROAD: 3.4, BROAD_DENSE: 4.1}.get(cell[1:3], 2.9)
+        return sieved * {NONE: 1.0, MARIN: 2.0 if cell[1:3] == LOOSE else 2.8, CRITICAL: 3.0, ZURIGUEL: 3.0}[law]
     without = 3.2 if exit == "flux" else 4.6
     # Openings with water let arches hold less, and every particle is walked.
     with_arches = 5.0 if exit == "flux" and cell[8] == "open" else 8.0
     return without if law == NONE else with_arches
 
 
-def next_ratio(walked, begin):
+def next_ratio(walked, begin, step):
     """Where to walk next: outwards until every replicate holds below and erodes above, and between until the mean's crossing is close."""
     if not walked:
         return begin
@@ -227,9 +281,9 @@ def next_ratio(walked, begin):
     holds = [ratio for ratio in ratios if max(walked[ratio]) < THRESHOLD]
     erodes = [ratio for ratio in ratios if min(walked[ratio]) >= THRESHOLD]
     if not holds and ratios[0] > 1.0:
-        return ratios[0] / 1.15
-    if not erodes and ratios[-1] * 1.15 <= FARTHEST:
-        return ratios[-1] * 1.15
+        return ratios[0] / step
+    if not erodes and ratios[-1] * step <= FARTHEST:
+        return ratios[-1] * step
     mean = [ratio for ratio in ratios if statistics.mean(walked[ratio]) >= THRESHOLD]
     below = [ratio for ratio in ratios if mean and ratio < mean[0]]
     if not below:
@@ -241,7 +295,7 @@ def next_ratio(walked, begin):
 def boundary(walked):
     """Where the mean crosses, where the first and the last replicate do, and the ratios walked on both sides of the mean's crossing."""
     mean = {ratio: statistics.mean(of) for ratio, of in walked.items()}
-    single = [crossing({ratio: of[k] for ratio, of in walked.items()}) for k in range(REPLICATES)]
+    single = [crossing(dict(zip(walked, of))) for of in zip(*walked.values())]
     at, ratios = crossing(mean), sorted(mean)
     erodes = next((ratio for ratio in ratios if mean[ratio] >= THRESHOLD), None)
     holds = max((ratio for ratio in ratios if erodes is None or ratio < erodes), default=None)
@@ -255,12 +309,16 @@ def boundary(walked):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=Path, required=True, help="folder for the packings")
-    parser.add_argument("--out", required=True)
+    parser.add_argument("--out", help="of the cells")
+    parser.add_argument("--increments", type=Path)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="1")
     parser.add_argument("--minutes", type=float, default=40.0, help="of processor time, after which no cell begins")
     options = parser.parse_args()
-    each(Path(f"{options.out}.csv"), CELL, COLUMNS, plan(), Models(options).row)
+    if options.increments:
+        each(options.increments, INCREMENTS_CELL, [*INCREMENTS_CELL, *ERODED, "k_over_k0"], increments_cells(), Models(options).increments)
+    if options.out:
+        each(Path(f"{options.out}.csv"), CELL, COLUMNS, plan(), Models(options).row)
 
 
 if __name__ == "__main__":

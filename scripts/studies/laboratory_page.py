@@ -3,8 +3,8 @@
 
     scripts/studies/laboratory_page.py --out results/laboratory
 
-Writes OUT.md and OUT.svg from OUT.csv, and from `arches.csv` and `openings.csv` beside it, whose cells have the same lattice and stand where OUT.csv
-has none. TESTS holds every number of a test, with where it was read. What was not read in a source is in no count of agreement.
+Writes OUT.md and OUT.svg from OUT.csv and OUT-increments.csv, and from `arches.csv` and `openings.csv` beside it, whose cells have the same lattice and
+stand where OUT.csv has none. TESTS holds every number of a test, with where it was read. What was not read in a source is in no count of agreement.
 """
 
 import argparse
@@ -34,14 +34,15 @@ TESTS = [
      "**no source that was read**: this project's notes quote Tomlinson & Vaid (2000), searched again on 2026-11-25", "s_NE of beads, not counted"),
     ("the paper's loose filters", "below 5 no erosion", "the paper, a model: ours is the same model without arches, so that agreement is none", "not counted"),
 ]
+LAWS = ["none", "marin-2018", "zuriguel-2005", "critical-3"]
+BY_AREA = "area-along-flow"
+WAYS = {"area": "area", "flux": "flow", BY_AREA: "area along flow"}
 # Name, and where its cells stand.
 MODELS = [
-    (f"{network}, {'flow' if exit == 'flux' else 'area'}; {law}; {blocked}", network, exit, law, blocked)
-    for network, exit, laws in [
-        ("lattice", "area", ["none", "marin-2018", "zuriguel-2005", "critical-3"]), ("lattice", "flux", ["none", "marin-2018"]),
-        ("graph", "flux", ["none", "marin-2018"])]
+    (f"{network}, {WAYS[exit]}; {law}; {blocked}", network, exit, law, blocked)
+    for network, exit, laws in [("lattice", "area", LAWS), ("lattice", "flux", LAWS[:2]), ("graph", "flux", LAWS[:2]), ("graph", BY_AREA, LAWS)]
     for law in laws for blocked in ("closed", "open")
-    if blocked == "closed" or law in ("none", "marin-2018")
+    if blocked == "closed" or law in LAWS[:2] and exit != BY_AREA
 ]
 PAIRS = [("1.5", "loose", "1.5"), ("1.5", "dense", "1.5"), ("3", "loose", "1.5"), ("3", "dense", "1.5"), ("6", "loose", "1.5"), ("1.5", "loose", "3"),
          ("1.5", "dense", "3"), ("3", "loose", "3"), ("3", "dense", "3"), ("6", "loose", "3"), ("1.5", "loose", "4.5"), ("1.5", "dense", "4.5"),
@@ -84,6 +85,7 @@ class Cells:
         self.shares, self.thickness = {}, {}
         for row in csv.DictReader((beside / "arches-shares.csv").open()):
             self.shares.setdefault((row["filter_cu"], row["density"], row["base_cu"]), {})[float(row["d15f_over_d85b"])] = row
+        self.increments = list(csv.DictReader(Path(f"{out}-increments.csv").open()))
         for row in csv.DictReader((beside / "arches.csv").open()):
             if row["law"] == "marin-2018" and not row["concentration"] and row["across"] == "10" and (row["filter_cu"], row["density"], row["base_cu"]) == PAIRS[0]:
                 self.thickness[row["layers"]] = row
@@ -136,7 +138,7 @@ def parted(found, beyond, digits=1):
 
 def is_sealed(row):
     """Whether no water flows through the filter just below the boundary, so that it cannot be set beside a test."""
-    return row["exit"] == "flux" and bool(row.get("k_over_k0")) and float(row["k_over_k0"]) < SEALED
+    return row["exit"] != "area" and bool(row.get("k_over_k0")) and float(row["k_over_k0"]) < SEALED
 
 
 def table(cells):
@@ -153,6 +155,16 @@ def table(cells):
         spread = parted(*found_and_beyond(others), digits=2) + (f"; {by_hand} of them †" if by_hand else "")
         largest = [largest_shown(cells, of_filter, model) for of_filter in LARGEST]
         row = [model[0], *map(of, first), spread, of(ONE_SIZE), of(BEADS), *largest]
+        lines.append("| " + " | ".join(row) + " |")
+    return lines
+
+
+def lattice_beside_graph(cells):
+    """A row a pair of sands: its boundaries by area on both networks, law by law."""
+    head = ["filter", "base Cu", *(f"{where}, `{law}`" for law in LAWS for where in ("lattice", "graph"))]
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for pair in sorted(PAIRS, key=lambda pair: (float(pair[2]), float(pair[0]), pair[1] == "dense")):
+        row = [f"Cu {pair[0]}, {pair[1]}", pair[2], *(shown(cells.of(model, pair)) for both in BOTH for model in both)]
         lines.append("| " + " | ".join(row) + " |")
     return lines
 
@@ -187,7 +199,7 @@ def figure(cells):
     for base, colour in COLOURS.items():
         parts += [f'<circle cx="{at + 5}" cy="44" r="4" fill="{colour}"/>', text(at + 14, 48, f"base Cu {base}")]
         at += 100
-    parts.append(text(at, 48, "line: least and most of five replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
+    parts.append(text(at, 48, "line: least and most of the replicates, dashed: end not known; arrow: holds at the greatest walked; hollow: sealed"))
     for place, model in enumerate(MODELS):
         middle = TOP + ROW * place + ROW / 2
         parts.append(f'<line x1="{LEFT}" y1="{middle + ROW / 2}" x2="{RIGHT}" y2="{middle + ROW / 2}" stroke="#ddd"/>')
@@ -244,6 +256,8 @@ FLOWING_OPEN = model_of("lattice", "flux", "marin-2018", "open")
 # Concentrations ten times apart.
 HIGH, LOW = "0.06", "0.006"
 FLOWING_SUSPENSION = model_of("lattice", "flux", "marin-2018", "closed")
+# Both networks, law by law, by area.
+BOTH = [(model_of("lattice", "area", law, "closed"), model_of("graph", BY_AREA, law, "closed")) for law in LAWS]
 
 
 def in_range(rows):
@@ -292,6 +306,55 @@ def stricter(cells):
             f"With filter Cu 1.5, loose, and bases of Cu {bases}, `marin-2018` has it {'; '.join(limits)}. At {SANDS[0]:g} D85B {eroded} % erodes "
             "(mean, least and most of five; `arches-shares.csv`). So the cells within the range of tests are within it by the limit of 7.5 % alone, "
             "and \"hold too much\" is by that limit.")
+
+
+def increments(cells):
+    """What erodes by the share of the base in an increment."""
+    pairs = {}
+    for row in cells.increments:
+        pairs.setdefault((row["base_cu"], f"`{row['law']}`", row["d15f_over_d85b"]), {})[row["inject_share"]] = row
+    shares = list(dict.fromkeys(row["inject_share"] for row in cells.increments))
+    yield paragraph(
+        "**Boundaries of graphs hang on the increments, and those that are sealed (‡) are no boundaries of filters.** The filter of Cu 1.5, loose, just below four of its boundaries, by the share of the "
+        "base that an increment inserts; percent that erodes, mean, least and most of three (`laboratory-increments.csv`; \"sealed\": k/k0 is 0 at the end):")
+    yield ""
+    yield "| " + " | ".join(["base Cu", "law", "D15F/D85B", *shares]) + " |"
+    yield "|---" * (3 + len(shares)) + "|"
+    of = lambda row: f"{row['eroded_percent']} ({row['least']} to {row['most']}){'' if float(row['k_over_k0']) >= SEALED else ', sealed'}"
+    for pair, rows in pairs.items():
+        yield "| " + " | ".join([*pair, *(of(rows[share]) for share in shares)]) + " |"
+    yield ""
+    yield paragraph(f"All other cells have {shares[0]}. With it much of the base is in the filter before the first particle can be through, and a filter that seals keeps all of it (`src/docs/graph.md`).")
+    yield ""
+
+
+def networks(cells):
+    """The boundaries by area on both networks: what was walked, a table, and what the graph changes, law by law."""
+    yield paragraph(
+        "Six filters, three bases, every law, constrictions closed, no openings; the boundary of the first run. The lattice has 10 x 10 x 60 voids and five replicates. "
+        "The graph has the voids of three packings of 3,000 grains (Cu 1.5), 6,000 (Cu 3) and 10,000 (Cu 6), seeds 1 to 3, one run each; its bracket is that of three. "
+        "Its thickness is 60 layers rounded up to whole copies of the packing: 61 to 63 layers, of Cu 3 73 to 74. Of Cu 6 the packing is the finer 78 % of the mass, with the base of the "
+        "whole; its constrictions are finer by up to 2 %. A constriction of a packing has no direction, so that area alone leads nowhere: a particle chooses by area among the exits that water leaves by. "
+        "The lattice needs no water, so a graph may be sealed (‡) where the lattice cannot be. An empty cell was not walked.")
+    yield ""
+    yield from lattice_beside_graph(cells)
+    yield ""
+    yield from increments(cells)
+    for law, (lattice, graph) in zip(LAWS, BOTH):
+        both = [(cells.of(lattice, pair), row) for pair, row in cells.sands(graph)]
+        if not both:
+            yield bullet(f"**`{law}`**: no graph was walked.")
+            continue
+        rows = [row for _, row in both]
+        found, beyond = found_and_beyond(rows)
+        times = {sealed: [value(row) / value(old) for old, row in both if old and row.get("first") and old.get("first") and is_sealed(row) == sealed] for sealed in (False, True)}
+        least = [value(row) / value(old) for old, row in both if old and row.get("first") and not old.get("first")]
+        words = [f"the graph has its boundary at {parted(found, beyond)}"]
+        words += [f"{span(of, 2)} times that of the lattice where the graph is {'sealed' if sealed else 'not sealed'} ({plural(len(of), 'pair')})" for sealed, of in times.items() if of]
+        if least:
+            words.append(f"at most {span(least, 2)} times it where the lattice holds at the greatest ratio walked ({len(least)})")
+        sealed_rows = sum(map(is_sealed, rows))
+        yield bullet(f"**`{law}`**: {'; '.join(words)}. Sealed just below the boundary: {sealed_rows} of {len(rows)}.")
 
 
 def plural(count, word):
@@ -362,7 +425,7 @@ def largest_words(cells):
 
 def sealed(cells):
     """The cells with water and closed constrictions whose filter lets nothing through."""
-    of = [(model, row) for model in MODELS if model[2] == "flux" and model[4] == "closed" for _, row in cells.sands(model) if row.get("k_over_k0")]
+    of = [(model, row) for model in MODELS if model[2] != "area" and model[4] == "closed" for _, row in cells.sands(model) if row.get("k_over_k0")]
     rows, arched = [row for _, row in of if is_sealed(row)], [is_sealed(row) for model, row in of if model[3] != "none"]
     if rows:
         every = f", of which {len(arched)} are all that have arches" if arched and all(arched) else ""
@@ -374,6 +437,11 @@ def page(cells, name, head):
     of = cells.of
     one, beads = of(SIEVING, ONE_SIZE), of(SIEVING, BEADS)
     dense, critical = (parted(*found_and_beyond([row for _, row in cells.sands(model)])) for model in (DENSE, CRITICAL))
+    on_graph = [[row for _, row in cells.sands(graph)] for _, graph in BOTH]
+    _, _, dense_graph, critical_graph = (parted(*found_and_beyond(rows)) for rows in on_graph)
+    laws_rows = on_graph[2] + on_graph[3]
+    sealed_laws = sum(map(is_sealed, laws_rows))
+    graph_rows = sum(on_graph, [])
     arches = cells.sands(SUSPENSION)
     _, inside, above, edges = in_range([row for _, row in arches])
     found, beyond = found_and_beyond([row for _, row in arches])
@@ -389,24 +457,26 @@ def page(cells, name, head):
     assert all(b < a for a, b in zip(off, off_arched)), "the page says that all three are nearer with arches"
     lines = ["# Which model explains which test", "",
              paragraph(f"**None explains all. Sieving puts the boundary of no erosion of sands at D15F/D85B {span(sieving)} in {len(sieving)} cells, below the {SANDS[0]:g} to {SANDS[1]:g} "
-                       f"of tests in {sum(at < SANDS[0] for at in sieving)}. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much: "
+                       f"of tests in {sum(at < SANDS[0] for at in sieving)}. It lets one size through from {value(one):.1f} on, where tests caught it at {caught:.1f}. At 60 layers, the concentration worked out there and a limit of 7.5 %, arches by `marin-2018` hold too much on the lattice: "
                        f"one size to {value(one_arched):.1f}, {value(one_arched) * SUSPENDED:.1f} times what tests caught. Of sands they put the boundary at {span(found)} in {len(found)} cells; "
                        f"{len(beyond)} more hold at the greatest ratio walked, {span(beyond)}. {inside} of the {len(arches)} cells lie within the range of tests, all of "
                        f"{plural(len(filters), 'filter')} ({' and '.join(f'Cu {cu}, {density}' for cu, density in filters)}); {edges}; {above} of {len(arches)} "
-                       f"lie beyond it. With 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
+                       f"lie beyond it. On the voids of packings, by area, sieving puts it at {parted(*found_and_beyond(on_graph[0]))}, `marin-2018` at {parted(*found_and_beyond(on_graph[1]))}; but of {len(graph_rows)} "
+                       f"such cells with and without arches {sum(map(is_sealed, graph_rows))} are sealed just below the boundary, and boundaries there hang on the increments. On the lattice with 30 layers the same law puts the one cell walked at {thin:.1f}, below tests, with 120 at {thick:.1f}. By continuing erosion, which tests have from {CONTINUING:g} D95B on, they hold too much where that was computed: {parted(second_found, second_beyond, 2)} times that. "
                        "That is no agreement: how densely the base arrives follows from the increments of the walk. With water the same arches seal "
                        f"the filter of Cu 1.5, loose; with openings, by which water flows, they put its boundary at {value(of(FLOWING_OPEN, PAIRS[0])):.1f}.**"), head, "",
              f"![Boundaries of models against the range of tests]({name}.svg)", "",
              "## Tests", ""]
     lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
     lines += ["", "## Table", "",
-              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
+              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates (of graphs by area along flow: three). \"Beyond\": holds at "
                         "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5, 3 and 6, loose and dense, with bases of Cu 1.5, 3 and "
                         f"4.5, as far as they were computed; in brackets how many were found, and how many hold at the greatest ratio walked. **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
-    lines += ["", paragraph("\\* not read in a source, in no count. † concentration set by hand: of graphs that of the same filter as a lattice; of Cu 6 by the void ratio 0.34 of "
+    lines += ["", paragraph("\\* not read in a source, in no count. † concentration set by hand: of graphs that of the same filter as a lattice; of Cu 6 by the void ratio, dense 0.2675 (60,000 grains, `graph.md`), loose 0.34 of "
                                  f"Table 2 of the paper, which is denser than the samples of Kenney et al.: {span(KENNEY_VOID_RATIOS, 2)} (the paper, section 5). By those it would be "
-                                 f"{span([TABLE_2_VOID_RATIO / e * float(cells.largest['6', 'marin-2018']['concentration']) for e in KENNEY_VOID_RATIOS], 3)} and not {cells.largest['6', 'marin-2018']['concentration']}. ‡ sealed: no water flows just below the boundary."), "", "## By model", "",
+                                 f"{span([TABLE_2_VOID_RATIO / e * float(cells.largest['6', 'marin-2018']['concentration']) for e in KENNEY_VOID_RATIOS], 3)} and not {cells.largest['6', 'marin-2018']['concentration']}. ‡ sealed: no water flows just below the boundary."),
+              "", "## Lattice beside graph", "", *networks(cells), "", "## By model", "",
               paragraph(f"The centre of the range is {CENTRE:.1f} D85B. \"No erosion\" is here 7.5 % of the base, which is not the criterion of the tests. {stricter(cells)} "
                         "A bound has no factor. Table 9.2 describes filters by D15F alone, so every filter here stands beside the same range. Bases here are straight on a sieve diagram; the curves of the tested ones were not read."), ""]
     lines += map(bullet, by_model(cells))
@@ -416,6 +486,8 @@ def page(cells, name, head):
         (SUSPENSION, FLOWING_SUSPENSION, "with arches"),
         (FLOWING, model_of("graph", "flux", "none", "closed"), "the packing's own voids instead of the lattice, with water,"),
         (FLOWING_SUSPENSION, model_of("graph", "flux", "marin-2018", "closed"), "with arches"),
+        (SIEVING, BOTH[0][1], "the packing's own voids instead of the lattice, by area, without arches,"),
+        (SUSPENSION, BOTH[1][1], "with arches"),
         (FLOWING, model_of("lattice", "flux", "none", "open"), "openings, with water,"),
         (FLOWING_SUSPENSION, model_of("lattice", "flux", "marin-2018", "open"), "with arches"),
     ] for part in change(cells, *args))
@@ -442,14 +514,15 @@ def page(cells, name, head):
         "**`marin-2018`**: a boundary that stays where it is when the base arrives ten times more diluted. The walk moves it from "
         f"{float(cells.by_concentration[HIGH]):.1f} to {float(cells.by_concentration[LOW]):.1f}. At the concentrations worked out here it is refuted already by the same ranges: {above} of {len(arches)} cells "
         f"lie beyond them at 60 layers. That hangs on the layers, as the concentration does: the one cell walked lies at {thin:.1f} with 30 and at {thick:.1f} with 120.",
-        "**`zuriguel-2005`** (the dense limit) and **`critical-3`** (every particle below R = 3): a base that erodes where the law holds it. Both hold what eroded in tests, "
-        f"whose boundary lies at {SANDS[0]:g} to {SANDS[1]:g}: the first {dense}, the second {critical}. So both are refuted already as laws of these tests. Neither bounds the other or "
-        "`marin-2018`.",
+        "**`zuriguel-2005`** (the dense limit) and **`critical-3`** (every particle below R = 3): a base that erodes where the law holds it. On the lattice both hold what eroded in tests, "
+        f"whose boundary lies at {SANDS[0]:g} to {SANDS[1]:g}: the first {dense}, the second {critical}. So on the lattice both are refuted already as laws of these tests. On the voids of "
+        f"packings, by area, the first lies at {dense_graph} and the second at {critical_graph}, as far as they were walked. {sealed_laws} of these {len(laws_rows)} cells are sealed just below, so that they neither refute nor support. "
+        "Neither bounds the other or `marin-2018`.",
         "**Closed constrictions or openings, with water**: k/k0 of a filter after it stopped eroding, which is next to 0 for the first. A test with that number was not looked for.",
         "**Lattice or graph**: the same packing in a test, with the mass that erodes at three ratios.",
     ])
     lines += ["", "## Not computed", "",
-              bullet("Empty cells of the table; `marin-2018` on dense filters of Cu 6, whose void ratio is not known; one size with water; the graph by area; concentration by void beside tests (`arches.md`)."),
+              bullet("Empty cells of the tables; one size with water; the second run of graphs by area; concentration by void beside tests (`arches.md`)."),
               *(bullet(f"{model[0]}, filter Cu {pair[0]}, {pair[1]}, base Cu {pair[2]}: it erodes at {row['first_erodes_from']}, the least ratio for which there was time; empty in the table.")
                 for model in MODELS for pair in PAIRS if (row := of(model, pair)) and not is_computed(row) and row.get("first_erodes_from")),
               bullet("Bases with more than 15 % fines: tests have cohesion and the walk has none. Without arches they are in `real-soils.md`."),
@@ -462,12 +535,12 @@ def page(cells, name, head):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12.", help="date, machine and commit of the walks")
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12; graphs by area and dense filters of Cu 6 with `marin-2018` by c8430d8.", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
     name = Path(options.out).name
-    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5.")
+    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5; by area three, one run.")
     command = f"    scripts/studies/laboratory.py --work FOLDER --out results/{name}    # goes on where it was stopped\n    scripts/studies/laboratory_page.py --out results/{name}"
     Path(f"{options.out}.md").write_text(page(cells, name, f"{head}\n\n{command}"))
 

@@ -1,5 +1,7 @@
 //! A file that went into a case.
 
+use crate::outcome::record::InputFile;
+
 /// A file that was read, and the name under which a run folder keeps it.
 #[derive(Clone, Debug)]
 pub struct Input {
@@ -16,4 +18,11 @@ pub struct Input {
     pub soil: Option<String>,
     /// What was assumed to understand it.
     pub notes: Vec<String>,
+}
+
+impl Input {
+    /// Its name and its checksum.
+    pub fn file(&self) -> InputFile {
+        InputFile::of(&self.name, &self.bytes)
+    }
 }

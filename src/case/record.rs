@@ -10,11 +10,7 @@ use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSour
 impl Case {
     /// Files that were read, with their checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
-        let one = |i: &Input| InputFile {
-            name: i.name.clone(),
-            xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&i.bytes)),
-        };
-        self.inputs.iter().map(one).collect()
+        self.inputs.iter().map(Input::file).collect()
     }
 
     /// What the user called the file of a setting.

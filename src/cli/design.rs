@@ -4,9 +4,8 @@ use super::args::DesignArgs;
 use super::design_each::design_each;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::specification::specification;
+use super::specification::{specification, with_option};
 use super::values::{of_soils, with_options};
-use crate::outcome::design::band::SetBy;
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -85,7 +84,7 @@ fn words(design: &Design) -> String {
             design.filter, design.base.name
         ),
     }];
-    lines.push(design.answer().said);
+    lines.push(with_option(&design.answer().said));
     lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
     for row in &design.boundaries {
         lines.extend(of_row(row, design));
@@ -93,6 +92,8 @@ fn words(design: &Design) -> String {
     if let Some(of) = &design.specification {
         lines.extend(of.band_in_words().map(|band| format!("band to specify: {band}")));
         lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
+        lines.extend(of.findings.iter().map(|found| format!("warning: {}", found.words())));
+        lines.extend(of.still_to_set());
     }
     lines.push(match (design.confidence, design.reasons.first()) {
         (Confidence::Within, _) => "within the range in which the model was checked".into(),
@@ -103,27 +104,7 @@ fn words(design: &Design) -> String {
     if more > 0 {
         lines.push(format!("  and {more} more reason{} on the page", if more == 1 { "" } else { "s" }));
     }
-    if !design.products.is_empty() {
-        let by_practice: Vec<&str> =
-            design.products.iter().filter(|of| of.fits()).map(|of| of.name.as_str()).collect();
-        let fit = design.products_that_fit();
-        lines.push(match (design.may_fit(), fit.is_empty()) {
-            (true, true) => "none of the standard products fits within the band".into(),
-            (true, false) => {
-                format!("D15 within the band (their own shapes were not walked): {}", fit.join(", "))
-            }
-            (false, _) if design.fits_by_practice() && !by_practice.is_empty() => {
-                format!("D15 within the band by practice: {}", by_practice.join(", "))
-            }
-            (false, _) if design.fits_by_practice() && design.products.iter().any(|of| of.may_fit()) => {
-                "of the standard products none is known to fit within the band".into()
-            }
-            (false, _) if design.fits_by_practice() => {
-                "none of the standard products fits within the band".into()
-            }
-            (false, _) => "of the standard products none is said to fit, as the answer is in doubt".into(),
-        });
-    }
+    lines.extend(design.products_in_words());
     let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
     lines.extend(to_be_checked(sources));
     lines.push(left_out_in_brief(&design.model_leaves_out));
@@ -159,9 +140,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
             true => "between drainage and retention, over the whole range of this curve",
             false => "between drainage and retention",
         };
-        let practice = band.practice.filter(|_| band.set_by == Some(SetBy::Walk) && !band.is_empty);
-        let practice =
-            practice.map(|limit| format!("; practice allows up to {} {}", rounded_down(limit), band.unit));
+        let practice = band.practice_in_words().map(|said| format!("; {said}"));
         lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {

@@ -7,6 +7,7 @@ use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
+use super::specification::with_option;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
 use crate::run::RunError;
@@ -41,7 +42,7 @@ fn words(all: &DesignedSamples, out: &Path) -> String {
         + &in_notes(&all.notes)
         + "\n";
     for said in all.in_words() {
-        let said = if all.inches { with_inches(&said) } else { said };
+        let said = with_option(&if all.inches { with_inches(&said) } else { said });
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", plain(&said));
     }

@@ -11,12 +11,13 @@ use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
 use crate::verdict::left_out::NOT_COVERED;
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
 
 /// Spaces before what is said below a row.
-const INDENT: usize = 13;
+const INDENT: usize = 14;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
@@ -136,19 +137,19 @@ fn words(
 
 /// Result, name, value and limit of a rule.
 fn row(rule: &AppliedRule) -> String {
-    let result = match (rule.met, rule.applies) {
-        (Some(true), _) => "met",
-        (Some(false), _) => "NOT MET",
-        (None, true) if rule.needs.is_empty() && rule.limit.is_none() => "no limit",
-        (None, true) => "no result",
-        (None, false) => "not for it",
+    // Short words, as in a column: what is not judged stands in the note below.
+    let result = match result_of(rule) {
+        RuleResult::NotMet => "NOT MET",
+        RuleResult::DoesNotApply => "not for it",
+        RuleResult::ExcessiveNotJudged => RuleResult::NotReached.words(),
+        of => of.words(),
     };
-    let (sign, at_most) = match (rule.at_least, rule.limit_at_most) {
-        (true, true) => ("not known, at most", ""),
-        (true, false) => (">=", ""),
-        (false, true) => ("<=", " at most"),
-        (false, false) => ("<=", ""),
+    let sign = match limit_begins(rule) {
+        "≥" => ">=",
+        "≤" => "<=",
+        words => words,
     };
+    let at_most = if rule.limit_at_most && !rule.at_least { " at most" } else { "" };
     let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
     let (value, limit) = match (rule.value, rule.limit) {
         (Some(value), Some(limit)) => value_and_limit(value, limit, rule.at_least, 3).map(Some).into(),
@@ -156,7 +157,7 @@ fn row(rule: &AppliedRule) -> String {
     };
     let value = value.unwrap_or_default();
     let limit = limit.map_or(String::new(), |limit| format!(", {sign} {limit}{unit}{at_most}"));
-    format!("  {result:<11}{}: {} = {value}{unit}{limit}", rule.name, rule.quantity)
+    format!("  {result:<12}{}: {} = {value}{unit}{limit}", rule.name, rule.quantity)
 }
 
 /// Four digits that mean something.

@@ -20,6 +20,7 @@ use crate::store::format;
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct Soils {
+    /// Each soil, in the order of the file.
     soils: Vec<SoilSummary>,
 }
 

@@ -14,6 +14,7 @@ use crate::run::RunError;
 use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
+use crate::verdict::{DESIGN_AGAIN, DESIGN_EACH_AGAIN};
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
@@ -38,6 +39,12 @@ pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String])
         to_stdout(&format!("{}report: {}\n", words(&found), shown(&out.join("specification.html"))));
     }
     Ok(())
+}
+
+/// A sentence that asks for another design, with the option that makes it.
+pub(super) fn with_option(said: &str) -> String {
+    let with = |said: String, again: &str| said.replace(again, &format!("{again} (--dispersive)"));
+    [DESIGN_AGAIN, DESIGN_EACH_AGAIN].into_iter().fold(said.to_owned(), with)
 }
 
 /// Steps, limits and products.
@@ -71,9 +78,14 @@ fn words(of: &Specification) -> String {
     if let Some(why) = &of.no_band {
         line(&sized(&format!("No band. {why}")));
     }
-    if let Some(said) = of.if_dispersive_in_words() {
-        line(&sized(&format!("{said}.")));
+    if let Some(said) = of.still_to_set() {
+        wrapped(&sized(&said), 0).iter().for_each(|said| line(said));
     }
+    if let Some(said) = of.if_dispersive_in_words() {
+        line(&sized(&format!("{}.", with_option(&said))));
+    }
+    let findings = of.findings.iter().map(|found| sized(&found.words()));
+    findings.flat_map(|found| wrapped(&found, 0)).for_each(|text| line(&text));
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {
@@ -95,15 +107,7 @@ fn words(of: &Specification) -> String {
             product.product,
             significant(product.d15_fine_mm),
             significant(product.d15_coarse_mm),
-            match product.fits() {
-                Some(true) if product.worst_sieve_mm.is_some() => "fits by D15, but lies outside this band",
-                Some(true) => "fits by D15",
-                Some(false) => "does not fit",
-                None if of.d15f_min_at_most && product.drains_by.is_none() => {
-                    "may drain: needs a hydrometer test"
-                }
-                None => "no result",
-            }
+            of.product_in_words(product)
         )));
         line(&format!("    {}", margins(product)));
     }

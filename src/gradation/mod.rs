@@ -56,5 +56,5 @@ pub use soil::{
 };
 pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit};
 pub use supply::{BaseSupply, base_particles};
-pub(crate) use table::{Direction, Row, Table, check_size, rising};
+pub(crate) use table::{Direction, Row, Table, bytes_of, check_size, rising};
 pub use table::{FILE_LIMIT_BYTES, SIZE_MAX_MM, SIZE_MIN_MM};

@@ -203,7 +203,7 @@ impl Table {
 }
 
 /// The bytes of a file, of which no more than a table can have are read.
-pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     let file = path.display().to_string();
     let read = |source| TableError::Read { file: file.clone(), source };
     if std::fs::metadata(path).map_err(read)?.is_dir() {

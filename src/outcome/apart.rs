@@ -34,18 +34,30 @@ pub(crate) fn digits_of(value: f64, digits: i32) -> String {
     format!("{value:.*}", decimals_of(value, digits))
 }
 
+/// Decimals of a number with so many digits that mean something, as many as are shown at most.
 fn decimals_of(value: f64, digits: i32) -> usize {
-    (digits - 1 - libm::floor(libm::log10(value.abs())) as i32).clamp(0, digits + 4) as usize
+    places(value, digits).clamp(0, digits + 4) as usize
 }
 
-/// The same of a limit: a greatest rounded down, a least rounded up.
-pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
+/// The place of the last of so many digits behind the point; none of them is cut off before it.
+fn places(value: f64, digits: i32) -> i32 {
+    (digits - 1 - libm::floor(libm::log10(value.abs())) as i32).max(0)
+}
+
+/// A limit rounded inward to so many digits: a greatest down, a least up.
+pub(super) fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     if limit <= 0.0 || !limit.is_finite() {
-        return digits_of(limit, digits);
+        return limit;
     }
-    let decimals = decimals_of(limit, digits);
-    let parts = libm::pow(10.0, decimals as f64);
-    format!("{:.*}", decimals, whole_within(limit * parts, at_least) / parts)
+    let parts = libm::pow(10.0, f64::from(places(limit, digits)));
+    whole_within(limit * parts, at_least) / parts
+}
+
+/// The same as a text.
+pub(crate) fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
+    let shown = within(limit, digits, at_least);
+    // Decimals of the limit itself: what was rounded up to the next power of ten keeps as many of them.
+    if shown > 0.0 { format!("{shown:.*}", decimals_of(limit, digits)) } else { digits_of(shown, digits) }
 }
 
 #[cfg(test)]

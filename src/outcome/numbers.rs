@@ -7,8 +7,8 @@
 //! assert_eq!([duration(12.34), duration(600.0)], ["12.3\u{202f}s", "10.0\u{202f}min"]);
 //! ```
 
-use super::apart::value_and_limit;
 pub use super::apart::whole_within;
+use super::apart::{value_and_limit, within};
 use super::record::Statistic;
 
 /// A narrow space that no line breaks at: it groups thousands and stands before units.
@@ -37,22 +37,12 @@ pub fn significant(value: f64) -> String {
 
 /// A greatest value: three significant digits, rounded down.
 pub fn rounded_down(value: f64) -> String {
-    in_steps(value, |steps| whole_within(steps, false))
+    significant(within(value, 3, false))
 }
 
 /// A least value: three significant digits, rounded up.
 pub fn rounded_up(value: f64) -> String {
-    in_steps(value, |steps| whole_within(steps, true))
-}
-
-/// A number rounded in steps of its third digit.
-fn in_steps(value: f64, round: impl Fn(f64) -> f64) -> String {
-    let magnitude = libm::floor(libm::log10(value.abs()));
-    if !magnitude.is_finite() {
-        return significant(value);
-    }
-    let steps = libm::pow(10.0, 2.0 - magnitude);
-    significant(round(value * steps) / steps)
+    significant(within(value, 3, true))
 }
 
 /// A whole number with its thousands apart.
@@ -270,6 +260,7 @@ pub fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::apart::digits_within;
 
     #[test]
     fn digits_are_sensible() {
@@ -283,6 +274,13 @@ mod tests {
         let down = [0.7, 0.2859, 12.39, 0.07, 0.0].map(rounded_down);
         assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
         assert_eq!([0.14, 0.2851, 0.9999, 12.31].map(rounded_up), ["0.140", "0.286", "1.00", "12.4"]);
+        // A table and a sentence beside it have one limit.
+        for step in 0..4000 {
+            let limit = 0.001 * libm::pow(1.003, f64::from(step));
+            let both = [rounded_down(limit), rounded_up(limit)].map(|text| text.parse::<f64>().unwrap());
+            let digits = [false, true].map(|at_least| digits_within(limit, 3, at_least));
+            assert_eq!(digits.map(|text| text.parse::<f64>().unwrap()), both, "{limit}");
+        }
     }
 
     #[test]

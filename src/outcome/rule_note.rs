@@ -71,6 +71,8 @@ notes! {
     NoClearBoundary,
     /// It is not kept, though tests found no clear boundary for such bases.
     BeyondUnclearBoundary,
+    /// The filter is finer than that, but nobody judges whether the erosion is excessive.
+    ExcessiveNotJudged,
     /// The limit of design is its floor: so many times D85B are less (mm).
     FloorGoverns(f64, f64),
     /// D15B lies in the base's finest part, and so many times it are less (mm) than the least that any filter

@@ -1,42 +1,68 @@
-//! The appendix of a report page: both gradations as tables of numbers.
+//! The appendix of a report page: gradations as tables of numbers, and the files that were read.
 
 use maud::{Markup, html};
 
-use super::names::{is_named, soil_name};
+use super::names::{input_name, is_named, soil_name};
 use super::numbers::{SizeUnit, in_digits, percent, trimmed};
-use super::shell::clean;
+use super::shell::{clean, fact};
 use super::table::Table;
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{InputFile, Outcome};
 use crate::outcome::soil_sizes::us_sieve;
 
-/// Rows shown of each gradation; all are in `outcome.json`.
+/// Rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
 
-/// Filter and base as the walk read them: what a reader types in to check it.
-pub(super) fn gradations(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let inputs = &outcome.inputs;
-    let (filter, base) = (&inputs.filter, &inputs.base);
-    html! {
-        section.appendix {
-            h2 { "Appendix: the two gradations" }
-            p.small {
-                "Percent finer by mass, as walked and as the rules read them; between two rows straight \
-                 lines on semi-logarithmic paper. Files that they were read from are kept in the folder "
-                code { "inputs" } " of this run."
-            }
-            div.gradations {
-                (gradation("Filter", &filter.name, &filter.gradation, unit))
-                (gradation("Base", &base.name, &base.gradation, unit))
-            }
-        }
-    }
+/// What the appendix of two soils is called.
+pub(super) const TWO_SOILS: &str = "Appendix: the two gradations";
+
+/// A gradation: what it is, its name, and its rows of size and percent finer.
+pub(super) struct TabledSoil<'a> {
+    /// What it is, as `Filter`.
+    pub kind: &'a str,
+    /// Its name, which may say no more.
+    pub name: &'a str,
+    /// Size, and percent finer by mass.
+    pub rows: &'a [[f64; 2]],
 }
 
-fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: SizeUnit) -> Markup {
+/// Filter and base as the walk read them: what a reader types in to check it.
+pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let inputs = &outcome.inputs;
+    let (filter, base) = (&inputs.filter, &inputs.base);
+    let soils = [
+        TabledSoil { kind: "Filter", name: &filter.name, rows: &filter.gradation },
+        TabledSoil { kind: "Base", name: &base.name, rows: &base.gradation },
+    ];
+    let note = html! {
+        p.small {
+            "Percent finer by mass, as walked and as the rules read them; " (BETWEEN) " Files that they were \
+             read from are kept in the folder " code { "inputs" } " of this run."
+        }
+    };
+    html! { section.appendix { h2 { (TWO_SOILS) } (note) (gradations(&soils, unit, "outcome.json")) } }
+}
+
+/// How a gradation is read between its rows.
+pub(super) const BETWEEN: &str = "between two rows straight lines on semi-logarithmic paper.";
+
+/// Gradations side by side; the record has all of their rows.
+pub(super) fn gradations(soils: &[TabledSoil], unit: SizeUnit, record: &str) -> Markup {
+    html! { div.gradations { @for soil in soils { (gradation(soil, unit, record)) } } }
+}
+
+/// Every file that was read, as rows of a table of facts.
+pub(super) fn input_files(files: &[InputFile]) -> Markup {
+    html! { @for file in files {
+        (fact("Input file", format!("{} (XXH3 {})", input_name(&file.name), file.xxh3)))
+    } }
+}
+
+fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
+    let TabledSoil { kind, name, rows } = of;
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
-    let mut table = Table::of(&shown);
+    let mut table = Table::of(shown);
     let with_sieves = unit == SizeUnit::MmAndInches;
     if with_sieves {
         table = table.name("US sieve", |row| us_sieve(row[0]).unwrap_or_default());
@@ -54,7 +80,7 @@ fn gradation(kind: &str, name: &str, rows: &[[f64; 2]], unit: SizeUnit) -> Marku
                     (percent(finest / 100.0)) " are finer than the finest size; how fine is not known."
                 }
             }
-            @if rows.len() > ROWS { p.small { "The rest is in outcome.json." } }
+            @if rows.len() > ROWS { p.small { "The rest is in " (record) "." } }
         }
     }
 }

@@ -12,7 +12,7 @@ use super::figures::{
     positive_range, shorten,
 };
 use super::files::json;
-use super::names::{is_named, note_words, soil_name, titled};
+use super::names::{is_named, note_words, soil_name, titled, told_apart};
 use super::numbers::{SizeUnit, interval_in_percent, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
@@ -66,6 +66,18 @@ fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     }
 }
 
+/// Which file each filter is that has a number; nothing where names tell them apart.
+fn key(batch: &WalkedBatch) -> Markup {
+    let of = |filter: &BatchFilter| {
+        let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(&filter.name));
+        let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+        let shown = filter_name(batch, &filter.name);
+        (alike.len() > 1).then(|| format!("{shown}: {}", name(&told_apart(&filter.name, &alike))))
+    };
+    let all: Vec<String> = batch.filters.iter().filter_map(of).collect();
+    html! { @if !all.is_empty() { p.small { "The filters: " (all.join("; ")) "." } } }
+}
+
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
         (titled("Samples", &batch.samples))
@@ -80,6 +92,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         }
     };
     let first = html! { div.first {
+        (key(batch))
         section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
         (leaves_out(&batch.model_leaves_out, &html! {
             p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
@@ -178,8 +191,9 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              threshold between the classes is "
             (threshold(batch.threshold))
             ". Probability of no erosion in a test (none outside the checked range or against practice): by \
-             the published range of tests alone, and by what the walk is worth for soils of this kind; \
-             beyond the boundary that tests saw, the lower of the two."
+             the published range of tests alone, in which boundaries are taken as log-uniform, and by what \
+             the walk is worth for soils of this kind; beyond the boundary that tests saw, the lower of the \
+             two. It is not for a risk analysis."
         }
     }
 }
@@ -261,4 +275,23 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
                    stability is not met. Below the dashed line the walk erodes less than the threshold. The \
                    class also takes the second run.";
     Some(Drawn::new("batch-eroded", figure, caption))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filters_of_one_name_have_a_key() {
+        let filter = |name: &str| BatchFilter { name: name.into(), curves: vec!["f".into()], d15f_mm: None };
+        let of = |names: &[&str]| {
+            let filters = names.iter().map(|name| filter(name)).collect();
+            key(&WalkedBatch::new("s.csv".into(), filters, Vec::new())).into_string()
+        };
+        assert_eq!(
+            of(&["/lab/5/filter.csv", "/lab/7/filter.csv", "c33.csv"]),
+            "<p class=\"small\">The filters: filter (1): 5/filter.csv; filter (2): 7/filter.csv.</p>"
+        );
+        assert_eq!(of(&["/lab/5/filter.csv", "c33.csv"]), "");
+    }
 }

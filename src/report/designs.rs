@@ -4,14 +4,16 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::appendix::input_files;
 use super::cover::program;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
-use super::names::{file_name, is_named, note_words, option_words, titled};
+use super::names::{file_name, note_words, option_words, titled_by_file};
 use super::numbers::{SizeUnit, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, fact, leaves_out};
+use super::sizes::{SizedSoil, of_many};
 use super::table::Table;
 use super::written::Written;
 use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks};
@@ -33,10 +35,10 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         return Err(ReportError::Value { path, field, value, allowed });
     }
     let names = html! {
-        (titled("Samples", &all.samples))
+        (titled_by_file("Samples", "Samples", &all.samples))
         @if all.dispersive { ", dispersive" }
         @if all.filter.is_empty() { ", by the rules of practice alone" }
-        @else if is_named("filter", &all.filter) { ", " (titled("filter of the shape", &all.filter)) }
+        @else { ", " (titled_by_file("filter", "filter of the shape", &all.filter)) }
     };
     let said = all.in_words();
     let has_walks = !all.model_leaves_out.is_empty();
@@ -53,7 +55,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         }
     } };
     let walks = all.walks.as_ref().map(walked).unwrap_or_default();
-    let made = html! { (walks) p {
+    let made = html! { table.facts { tbody { (walks) (input_files(&all.inputs)) } } p {
         "voidwalk " (clean(&all.version)) ". "
         @if !all.filter.is_empty() { "The design of each sample has a page of its own. " }
         code { "designs.json" } " holds this page’s numbers, " code { "designs.csv" }
@@ -78,6 +80,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
     .figures(limits(&all))
     .section("Samples", &table(folder, &all))
     .section("Notes on the files", &notes(&all))
+    .section("Appendix: the soils", &appendix(&all))
     .section("How this was made", &made)
     .write(folder, "designs.html", &footer)
 }
@@ -90,13 +93,36 @@ fn name(name: &str) -> String {
 fn walked(of: &DesignedWalks) -> Markup {
     let asked = of.settings.iter().map(|setting| option_words(&format!("--set {setting}")));
     let asked: Vec<String> = asked.collect();
-    html! { table.facts { tbody {
+    html! {
         (fact("Filter", file_name(&of.filter)))
         (fact("Density", of.densities.join(", ")))
         (fact("Thickness", of.thicknesses.join(", ")))
         (fact("Networks, seed", format!("{}, {}", whole(of.networks), of.seed)))
         @if !asked.is_empty() { (fact("Settings", asked.join(" "))) }
-    } } }
+    }
+}
+
+/// What every sample is, and the filter as it was given: their sizes, as sampled and as regraded.
+fn appendix(all: &DesignedSamples) -> Markup {
+    let mut soils: Vec<SizedSoil> = Vec::new();
+    for row in all.rows.iter().take(LISTED).filter(|row| !row.gradation.is_empty()) {
+        soils.push(SizedSoil::new(name(&row.sample), &row.gradation));
+        if !row.regraded.is_empty() {
+            soils.push(SizedSoil::new(format!("{}, regraded", name(&row.sample)), &row.regraded));
+        }
+    }
+    if soils.is_empty() {
+        return html! {};
+    }
+    let filter = all.walks.iter().filter(|of| !of.filter_gradation.is_empty());
+    soils.extend(filter.map(|of| SizedSoil::new("Filter, as given", &of.filter_gradation)));
+    html! {
+        p.small {
+            "By mass, as sampled and as regraded for the rules of practice. " code { "designs.json" }
+            " has every gradation."
+        }
+        (of_many(&soils))
+    }
 }
 
 fn notes(all: &DesignedSamples) -> Markup {

@@ -8,18 +8,19 @@ use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
 use super::numbers::{SizeUnit, size, whole};
-use super::rules::value_and_limit;
+use super::rules::{result, value_and_limit};
 use super::shell::{clean, model, unbroken};
+use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, NetworkKind, Outcome, SheetCover, Verdict,
 };
 use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::outcome::soil_sizes::sizes_of;
 use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{NOT_A_LIMIT, Standing, standing};
+use crate::verdict::practice::{Standing, standing};
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
 use crate::verdict::words::capital;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
@@ -143,27 +144,16 @@ pub(super) fn colour(verdict: Verdict, confidence: Confidence, fails: bool) -> &
 
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
 pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let inputs = &outcome.inputs;
-    let soil = |rows: &[[f64; 2]]| sizes_of(rows, unit);
-    let (filter, base) = (&inputs.filter, &inputs.base);
-    let mut soils = vec![("Filter", soil(&filter.gradation))];
+    let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
+    let mut soils = vec![SizedSoil::new("Filter", &filter.gradation)];
     match &base.as_sampled {
-        Some(sampled) => {
-            soils.extend([("Base, sampled", soil(&sampled.gradation)), ("regraded", soil(&base.gradation))]);
-        }
-        None => soils.push(("Base", soil(&base.gradation))),
+        Some(sampled) => soils.extend([
+            SizedSoil::new("Base, sampled", &sampled.gradation),
+            SizedSoil::new("regraded", &base.gradation),
+        ]),
+        None => soils.push(SizedSoil::new("Base", &base.gradation)),
     }
-    let rows: Vec<usize> = (0..soils[0].1.len()).collect();
-    let mut table = Table::of(&rows).name(unit.name(), |row| soils[0].1[*row].0);
-    for (name, sizes) in &soils {
-        table = table.number(*name, |row| sizes[*row].1.clone().unwrap_or_else(|| "–".into()));
-    }
-    html! {
-        div.sizes {
-            (table)
-            p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." }
-        }
-    }
+    of_few(&soils, unit)
 }
 
 /// The rules of practice, those that decide first, and the thickness that was modelled.
@@ -181,10 +171,12 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
             @if !shown.is_empty() { (table(&shown, unit)) }
             @if !others.is_empty() {
                 p.others {
-                    @for said in [NOT_A_LIMIT, "no limit", "no result", "does not apply"] {
-                        @let of_kind = others.iter().filter(|of| without_result(of) == said);
+                    @for kind in RuleResult::WITHOUT {
+                        @let of_kind = others.iter().filter(|of| result_of(of) == kind);
                         @let names: Vec<&str> = of_kind.map(|of| &*of.name).collect();
-                        @if !names.is_empty() { b { (capital(said)) } ": " (clean(&names.join("; "))) ". " }
+                        @if !names.is_empty() {
+                            b { (capital(kind.words())) } ": " (clean(&names.join("; "))) ". "
+                        }
                     }
                 }
             }
@@ -205,26 +197,11 @@ const WITHOUT_RESULT: usize = DECIDING.len() + 2;
 /// Where a rule stands: those that decide first, then those that are not met, and then the others.
 fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id);
-    match (deciding, result(rule)) {
+    match (deciding, result_of(rule)) {
         (Some(place), _) => place,
-        (None, Some(false)) => DECIDING.len(),
-        (None, Some(true)) => DECIDING.len() + 1,
-        (None, None) => WITHOUT_RESULT,
-    }
-}
-
-/// What a rule found, where it was made for these soils.
-fn result(rule: &AppliedRule) -> Option<bool> {
-    rule.met.filter(|_| rule.applies)
-}
-
-/// Why a rule found nothing.
-fn without_result(rule: &AppliedRule) -> &'static str {
-    match (rule.applies, rule.needs.is_empty()) {
-        (false, true) if rule.note.to_string().starts_with(NOT_A_LIMIT) => NOT_A_LIMIT,
-        (false, true) => "does not apply",
-        (true, true) if rule.value.is_some() && rule.limit.is_none() => "no limit",
-        _ => "no result",
+        (None, RuleResult::NotMet) => DECIDING.len(),
+        (None, of) if RuleResult::WITHOUT.contains(&of) => WITHOUT_RESULT,
+        (None, _) => DECIDING.len() + 1,
     }
 }
 
@@ -242,20 +219,16 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             let [_, limit] = value_and_limit(rule, unit);
             match limit.as_deref().map(clean) {
                 Some(limit) if rule.at_least && rule.limit_at_most => {
-                    html! { "not known; at most " span.q { (limit) } }
+                    html! { (limit_begins(rule)) " " span.q { (limit) } }
                 }
                 Some(limit) => html! {
-                    span.q { (if rule.at_least { "≥ " } else { "≤ " }) (limit) }
+                    span.q { (limit_begins(rule)) " " (limit) }
                     @if rule.limit_at_most { " or less" }
                 },
                 None => html! { "–" },
             }
         })
-        .text("result", |rule| match result(rule) {
-            Some(true) => html! { span.keeps { "✓ met" } },
-            Some(false) => html! { span.breaks { "✗ not met" } },
-            None => html! { (without_result(rule)) },
-        });
+        .text("result", |rule| result(rule));
     html! { (table) }
 }
 

@@ -24,6 +24,11 @@ pub(super) fn soil_name(name: &str) -> Cow<'_, str> {
     }
 }
 
+/// The name of a soil without the size on which it is walked regraded.
+pub(super) fn as_sampled(name: &str) -> &str {
+    name.rsplit_once(REGRADED).map_or(name, |(soil, _)| soil)
+}
+
 /// Whether a soil has a name that says more than what it is: a column of a table may be called `Base`.
 pub(super) fn is_named(kind: &str, name: &str) -> bool {
     let soil = soil_name(name);
@@ -53,6 +58,43 @@ pub(super) fn file_name(name: &str) -> Cow<'_, str> {
         Some(_) => Cow::Owned(format!("{}{rest}", last_part(file))),
         None => Cow::Borrowed(name),
     }
+}
+
+/// The same of any file that was read.
+pub(super) fn input_name(name: &str) -> Cow<'_, str> {
+    match file_name(name) {
+        Cow::Borrowed(_) => Cow::Borrowed(last_part(name)),
+        owned => owned,
+    }
+}
+
+/// What a soil is, in these words, and its name; the name of its file where it has none that says more than
+/// its kind: `Base base.csv`.
+pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
+    let file = name.split_once(REGRADED).map_or(name, |(file, _)| file);
+    let is_table = ends_as_table(file.split('#').next().unwrap_or_default()).is_some();
+    let shown = match is_named(kind, name) {
+        true => soil_name(name),
+        false => file_name(name),
+    };
+    html! {
+        @if is_named(kind, name) || is_table { (words) " " b { bdi { (clean(&shorten(&shown, LINE))) } } }
+        @else if words == kind { (titled(kind, name)) }
+        @else { (words) }
+    }
+}
+
+/// The end of a path that tells it apart from others, with no more folders than that takes.
+pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
+    let parts = |path: &str| path.split(['/', '\\']).map(str::to_owned).collect::<Vec<String>>();
+    let own = parts(path);
+    let end = |of: &[String], count: usize| of[of.len().saturating_sub(count)..].join("/");
+    let is_alone = |count: &usize| {
+        let like = others.iter().filter(|other| end(&parts(other), *count) == end(&own, *count));
+        like.count() <= 1
+    };
+    let count = (1..own.len()).find(is_alone).unwrap_or(own.len());
+    end(&own, count)
 }
 
 /// An option as a command line has it, of which the name of a file stands without its folders.
@@ -109,6 +151,23 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_says_no_more_than_its_kind_is_that_of_its_file_where_a_sheet_needs_one() {
+        let said = |name| titled_by_file("Base", "Base", name).into_string();
+        assert_eq!(said("/lab/base.csv"), "Base <b><bdi>base.csv</bdi></b>");
+        let regraded = "Base <b><bdi>base.csv, regraded on 4.75 mm</bdi></b>";
+        assert_eq!(said("/lab/base.csv, regraded on 4.75 mm"), regraded);
+        assert_eq!(said("lab/soils.xlsx#base"), "Base <b><bdi>soils.xlsx#base</bdi></b>");
+        assert_eq!(said("/lab/till.csv"), "Base <b><bdi>till</bdi></b>");
+        assert_eq!([said("base"), said("")], ["Base", "Base"]);
+        let filter = |name| titled_by_file("filter", "filter of the shape", name).into_string();
+        assert_eq!(filter("/lab/filter.csv"), "filter of the shape <b><bdi>filter.csv</bdi></b>");
+        assert_eq!(filter("C33.csv"), "filter of the shape <b><bdi>C33</bdi></b>");
+        assert_eq!(filter("filter"), "filter of the shape");
+        let read = ["/lab/soils.xlsx#Base/Sample 1", "/lab/packing.dump", "base.csv"].map(input_name);
+        assert_eq!(read, ["soils.xlsx#Base/Sample 1", "packing.dump", "base.csv"]);
+    }
+
+    #[test]
     fn no_folder_stands_beside_the_name_of_a_file() {
         for (name, file) in [
             ("/tmp/a b/base.csv", "base.csv"),
@@ -122,6 +181,16 @@ mod tests {
         assert_eq!(option_words("--set base.sieve=/a/b.csv"), "--set base.sieve=b.csv");
         assert_eq!([option_words("/a/b.csv"), option_words("--pack")], ["b.csv", "--pack"]);
         assert_eq!(note_words("/a/b.csv: 3/4 in: taken as 19 mm"), "b.csv: 3/4 in: taken as 19 mm");
+    }
+
+    #[test]
+    fn files_of_one_name_are_told_apart_by_their_nearest_folders_alone() {
+        let all = ["/lab/5/filter.csv", "/lab/7/filter.csv", "C:\\soils\\c33.csv"];
+        let said = |path| told_apart(path, &all);
+        assert_eq!(all.map(said), ["5/filter.csv", "7/filter.csv", "c33.csv"]);
+        let deep = ["/a/x/filter.csv", "/b/x/filter.csv", "x/filter.csv"];
+        assert_eq!(told_apart(deep[0], &deep), "a/x/filter.csv");
+        assert_eq!(told_apart(deep[2], &deep), "x/filter.csv");
     }
 
     #[test]

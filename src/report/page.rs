@@ -11,7 +11,7 @@ use super::files::json_of;
 use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
-use super::names::{file_name, is_named, last_part, soil_name};
+use super::names::{file_name, is_named, soil_name};
 use super::numbers::{known, percent, significant, size, whole};
 use super::results::{eroded, replicates, results, sensitivity, thickness};
 use super::rules::rules;
@@ -137,7 +137,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         (sensitivity(outcome))
         (thickness(outcome))
         (inputs(outcome, folder.packing.as_ref()))
-        (appendix::gradations(outcome, unit))
+        (appendix::of_run(outcome, unit))
         (provenance(folder))
     };
     let foot = first_page::foot_of(folder);
@@ -398,9 +398,7 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("voidwalk",
                 format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
-            @for input in &manifest.inputs {
-                (fact("Input file", format!("{} (XXH3 {})", last_part(&input.name), input.xxh3)))
-            }
+            (appendix::input_files(&manifest.inputs))
             @if !outcome.left_out.is_empty() {
                 (fact("Not needed here", outcome.left_out.join("; ")))
             }

@@ -124,10 +124,12 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
             }
             (table)
             p.small {
-                "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is all \
-                 retained "
-                "particles over voids; trapped particles are trapped in closed loops. Seeds, increments and \
-                 moves are not printed; outcome.json holds them."
+                span.counts {
+                    "Inserted, eroded, in constrictions, in voids and trapped count particles; per void is \
+                     all retained particles over voids; trapped particles are trapped in closed loops. "
+                }
+                "On paper seeds, counts of particles, increments and moves are left out; outcome.json holds \
+                 them."
             }
         }
     }

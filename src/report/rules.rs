@@ -8,7 +8,7 @@ use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 use crate::verdict::by_authority::listed;
-use crate::verdict::practice::NOT_A_LIMIT;
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
 const DIGITS: i32 = 3;
@@ -76,7 +76,17 @@ fn without_zeros(number: &str) -> &str {
 
 /// What stands in the place of a limit that is not there.
 fn no_limit(rule: &AppliedRule) -> &'static str {
-    if rule.note.to_string().starts_with(NOT_A_LIMIT) { NOT_A_LIMIT } else { "–" }
+    let is_none = result_of(rule) == RuleResult::NotALimit;
+    if is_none { RuleResult::NotALimit.words() } else { "–" }
+}
+
+/// What a rule found: a tick where it is kept alone.
+pub(super) fn result(rule: &AppliedRule) -> Markup {
+    match result_of(rule) {
+        of @ RuleResult::Met => html! { span.keeps { "✓ " (of.words()) } },
+        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (of.words()) } },
+        of => html! { (of.words()) },
+    }
 }
 
 /// Rules as a table.
@@ -102,9 +112,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
         })
         .number("Limit", |rule| {
-            let sign = if rule.at_least { "≥" } else { "≤" };
             let is_open = rule.at_least && rule.limit_at_most;
-            let sign = if is_open { "not known; at most" } else { sign };
+            let sign = limit_begins(rule);
             let [_, limit] = value_and_limit(rule, unit);
             let limit =
                 clean(&limit.map_or_else(|| no_limit(rule).to_owned(), |limit| format!("{sign} {limit}")));
@@ -113,13 +122,7 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         .text("", |rule| match (rule.role, rule.met) {
             (RuleRole::Walk, Some(true)) => html! { "within" },
             (RuleRole::Walk, Some(false)) => html! { "beyond" },
-            (_, Some(true)) => html! { span.keeps { "✓ met" } },
-            (_, Some(false)) => html! { span.breaks { "✗ not met" } },
-            (_, None) if !rule.applies && rule.needs.is_empty() => html! { "does not apply" },
-            (_, None) if rule.value.is_some() && rule.limit.is_none() && rule.needs.is_empty() => {
-                html! { "no limit" }
-            }
-            (_, None) => html! { "no result" },
+            _ => result(rule),
         });
     html! { (table) }
 }

@@ -1,26 +1,26 @@
-//! The page of a specification: the steps with their numbers, both sides of the band on the form of
-//! gradations, limits sieve by sieve, and standard products. The page of a design has the same.
+//! The page of a specification: what to watch, both sides of the band on the form of gradations, limits
+//! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
+//! the same.
 
 use std::path::Path;
 
 use maud::{Markup, Render, html};
 
+use super::appendix::input_files;
 use super::cover::program;
 use super::error::ReportError;
-use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::files::json;
-use super::names::titled;
+use super::given_soils::GivenSoils;
+use super::names::titled_by_file;
 use super::numbers::{SizeUnit, known, significant, trimmed};
 use super::section::Sections;
-use super::shell::{Drawn, clean};
+use super::shell::{clean, unbroken};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::specification::{ProductMargin, SizeBand};
-use crate::outcome::design::{Specification, SpecificationStep};
-
-/// Most curves of a base that the figure draws.
-const DRAWN_CURVES: usize = 12;
+use crate::outcome::design::specification::ProductMargin;
+use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
+use crate::verdict::fitting::{FITS, OUTSIDE};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -30,7 +30,8 @@ const DRAWN_CURVES: usize = 12;
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let of: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        (titled("Base", &of.base)) @if of.dispersive { ", dispersive" } ", by the rules of practice alone"
+        (titled_by_file("Base", "Base", &of.base)) @if of.dispersive { ", dispersive" }
+        ", by the rules of practice alone"
     };
     let footer = html! {
         p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
@@ -39,16 +40,27 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     };
     #[cfg(feature = "xlsx")]
     super::workbook::write_specification_workbook(folder, &of, None)?;
-    let stated = Stated::of(&of);
+    let (stated, soils) = (Stated::of(&of), GivenSoils::of_specification(&of));
+    let made = html! { table.facts { tbody { (input_files(&of.inputs)) } } };
     let title = "Specification of a filter";
     Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
-        .words(&answer(&of))
-        .figures(stated.figure)
+        .words(&html! { section.sheet { (answer(&of)) } })
+        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
+        .section("More warnings", &more_warnings(&of))
         .section("Limits sieve by sieve", &stated.limits)
         .section("Standard products", &products(&of, true))
         .section("Step by step", &stated.words)
+        .section(soils.heading(), &soils.appendix())
+        .section(
+            "How this was made",
+            &if of.inputs.is_empty() {
+                html! {}
+            } else {
+                made
+            },
+        )
         .write(folder, "specification.html", &footer)
 }
 
@@ -57,8 +69,6 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
 pub(super) struct Stated {
     /// Every step.
     pub words: Markup,
-    /// Both sides of the band, with the base.
-    pub figure: Option<Drawn>,
     /// What a delivery may have finer than each sieve.
     pub limits: Markup,
     /// Margins of standard products.
@@ -69,7 +79,6 @@ impl Stated {
     pub(super) fn of(specification: &Specification) -> Self {
         Self {
             words: steps(specification),
-            figure: specification.band.as_ref().map(|band| figure(specification, band)),
             limits: limits(specification),
             products: products(specification, false),
         }
@@ -82,12 +91,39 @@ fn answer(of: &Specification) -> Markup {
             @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
             (to_specify(of))
             @if let Some(said) = of.if_dispersive_in_words() {
-                p { (clean(&said)) ". The band and the limits at the sieves do not hold then." }
+                p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
+            (cautions(&of.findings))
+            @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
+            (still_to_set(of))
             p { (clean(&products_in_short(of))) }
         }
     }
+}
+
+/// Warnings that stand in the answer; those of further curves stand below it.
+const WARNINGS: usize = 4;
+
+fn more_warnings(of: &Specification) -> Markup {
+    let more = of.findings.iter().skip(WARNINGS);
+    html! {
+        @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } }
+    }
+}
+
+/// The first warnings of the base itself.
+pub(super) fn cautions(of: &[DesignFinding]) -> Markup {
+    html! {
+        @for found in of.iter().take(WARNINGS) {
+            p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
+        }
+    }
+}
+
+/// What the specification lacks; nothing without a band.
+pub(super) fn still_to_set(of: &Specification) -> Markup {
+    html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
@@ -111,13 +147,16 @@ pub(super) fn to_specify(of: &Specification) -> Markup {
 /// Which standard products fit, or which comes closest.
 fn products_in_short(of: &Specification) -> String {
     let named = |of: &ProductMargin| match of.worst_sieve_mm {
-        Some(_) => format!("{} (but lies outside this band)", of.product),
+        Some(_) => format!("{} ({OUTSIDE})", of.product),
         None => of.product.clone(),
     };
     let fitting: Vec<String> = of.products.iter().filter(|of| of.fits() == Some(true)).map(named).collect();
     let other = if of.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
     match (fitting.is_empty(), of.nearest_product()) {
-        (false, _) => format!("D15 of both sides drains and retains: {}.", fitting.join(", ")),
+        (false, _) => {
+            let no_band = if of.band.is_none() { "; there is no band" } else { "" };
+            format!("D15 of both sides drains and retains: {}{no_band}.", fitting.join(", "))
+        }
         (true, Some(nearest)) => {
             format!(
                 "Of no standard product does D15 of both sides drain and retain. {} comes closest.",
@@ -179,26 +218,26 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Percentage points, which are more than 0.
-fn points_beyond(points: f64) -> String {
-    match points {
-        1.0.. => format!("{points:.0}"),
-        0.05.. => format!("{points:.1}"),
-        _ => "less than 0.1".into(),
-    }
+/// Percentage points by which a product leaves the limit that stands at a sieve, which is rounded into the
+/// band: as a reader reckons them from what is printed.
+fn points_beyond(of: &Specification, product: &ProductMargin, points: f64, sieve_mm: f64) -> String {
+    let band = of.band.as_ref();
+    let printed = band.and_then(|band| band.printed_left_by(&product.product, sieve_mm));
+    trimmed((printed.unwrap_or(points) * 100.0).round() / 100.0)
 }
 
 /// Margins of standard products; who judges them elsewhere says there whether they fit.
 fn products(of: &Specification, says_fit: bool) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
-    let beyond = |of: &ProductMargin| match (of.leaves_band_by, of.worst_sieve_mm) {
+    let beyond = |product: &ProductMargin| match (product.leaves_band_by, product.worst_sieve_mm) {
         (Some(points), Some(sieve)) => {
-            format!("{} percentage points, at {} mm", points_beyond(points), significant(sieve))
+            let points = points_beyond(of, product, points, sieve);
+            format!("{points} percentage points, at {} mm", significant(sieve))
         }
         (Some(_), None) => "nowhere".into(),
         _ => "–".into(),
     };
-    let (drainage_open, unit) = (of.d15f_min_at_most, SizeUnit::of(false, of.inches));
+    let unit = SizeUnit::of(false, of.inches);
     let mut table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
@@ -210,13 +249,10 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
         .text("Leaves the band by most", beyond);
     if says_fit {
-        table = table.text("", |of| match of.fits() {
-            Some(true) => html! { span.keeps { "✓ D15 fits" } },
-            Some(false) => html! { span.breaks { "✗ does not fit" } },
-            None if of.drains_by.is_none() && drainage_open => {
-                html! { "may drain: needs a hydrometer test" }
-            }
-            None => html! { "no result" },
+        table = table.text("", |product| match (of.product_in_words(product), product.fits()) {
+            (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
+            (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
+            (said, _) => html! { (said) },
         });
     }
     let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));
@@ -232,55 +268,11 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
     }
 }
 
-/// Both sides of the band on the form of gradations, with the base.
-fn figure(of: &Specification, band: &SizeBand) -> Drawn {
-    let points = |rows: &[[f64; 2]]| rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>();
-    let drawn = &of.curves[..of.curves.len().min(DRAWN_CURVES)];
-    let fine_side = band.drawn_fine_side();
-    let bases = drawn.iter().flat_map(|curve| &curve.gradation);
-    let sizes = bases.chain(&fine_side).chain(&band.coarse_side).map(|row| row[0]);
-    let (low, high) = positive_range(sizes);
-    let what = "Percent finer against size for the base and for both sides of the band of the filter";
-    let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
-    let mut figure =
-        Figure::new("Band of the filter", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
-    let (fine, coarse) = (points(&fine_side), points(&band.coarse_side));
-    let outline = fine.iter().chain(coarse.iter().rev()).copied().collect();
-    figure.add(Area::new(outline, GREEN, 0.15).label("band"));
-    figure.add(Line::new(fine, GREEN).width(2.6).label("fine side"));
-    figure.add(Line::new(coarse, BLUE).width(2.6).label("coarse side"));
-    for curve in drawn {
-        let name = if of.curves.len() == 1 { "base".into() } else { shorten(&curve.curve, 24) };
-        match curve.regraded.is_empty() {
-            true => figure.add(Line::new(points(&curve.gradation), VERMILLION).label(&name)),
-            false => {
-                let sampled = Line::new(points(&curve.gradation), VERMILLION).width(1.4).dash(Dash::Dashed);
-                figure.add(sampled.label(&format!("{name},\nas sampled")));
-                figure
-                    .add(Line::new(points(&curve.regraded), VERMILLION).label(&format!("{name},\nregraded")));
-            }
-        }
-    }
-    let left_out = of.curves.len() - drawn.len();
-    let more = if left_out > 0 {
-        format!(" {left_out} more curves of the base are not drawn.")
-    } else {
-        String::new()
-    };
-    let d15 = of.band_in_words().map_or(String::new(), |said| format!(": {said}"));
-    let caption = format!(
-        "The band of the filter for this base, as its limits at the sieves have it{d15}. Its control points \
-         are joined by straight lines; above 60 % finer both sides go on straight, and below its D5 the fine \
-         side runs level: no more than 5 % may be finer.{more}"
-    );
-    Drawn::new("specification", figure, caption)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::specification::margins;
+    use crate::outcome::design::specification::{SizeBand, margins};
     use crate::verdict::SpecificationOptions;
 
     #[test]
@@ -304,7 +296,16 @@ mod tests {
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"
         );
-        let points = [12.4, 1.0, 0.96, 0.31, 0.01].map(points_beyond);
-        assert_eq!(points, ["12", "1", "1.0", "0.3", "less than 0.1"]);
+        // As a reader reckons from what is printed: 85 % at No. 16, and at most so much.
+        let sieve = core.limits.iter().find(|of| of.opening_mm == 1.18).unwrap();
+        let printed = 85.0 - sieve.max_percent_finer;
+        assert!(page.contains(&format!("{printed:.0} percentage points, at 1.18 mm")), "{page}");
+        // Of a band so narrow that its limit there has tenths.
+        let [fine_side, coarse_side] = [61.87, 61.31].map(|at| vec![[0.1, 0.0], [1.18, at], [10.0, 100.0]]);
+        let narrow = SizeBand { sizes: Vec::new(), fine_side, coarse_side };
+        let tenths = Specification { band: Some(narrow), ..core.clone() };
+        let [narrow, wide] =
+            [&tenths, &core].map(|of| points_beyond(of, &of.products[0], 85.0 - 61.87, 1.18));
+        assert_eq!((narrow, wide), ("23.2".into(), format!("{printed:.0}")));
     }
 }

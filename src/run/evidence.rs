@@ -50,8 +50,12 @@ pub fn walks_margin(case: &Case) -> bool {
 
 /// The evidence for a case, with its margin where that was walked; `None` where none was asked for.
 pub fn evidence(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
-    let studied = studied(case).filter(|_| case.scene.record.margin == Some(true));
-    Evidence::of(&studied?, case.filter.d(15.0)?, case.filter.cu(), margin)
+    of_kind(case, margin).filter(|_| case.scene.record.margin == Some(true))
+}
+
+/// What soils of its kind say of a case, whether anybody asked for it or not.
+pub fn of_kind(case: &Case, margin: Option<&Margin>) -> Option<Evidence> {
+    Evidence::of(&studied(case)?, case.filter.d(15.0)?, case.filter.cu(), margin)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub(crate) mod cost;
 mod curve_range;
 pub(crate) mod erosion;
 pub mod error;
-mod evidence;
+pub(crate) mod evidence;
 mod examples;
 pub mod folder;
 pub mod machine;

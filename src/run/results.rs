@@ -97,10 +97,10 @@ pub fn outcome(
     };
     found.extend(outcome.found());
     if case.scene.base.dispersive.is_none() {
-        let fines = inputs.base_soil.fines_percent;
-        let if_dispersive = rules::apply(&RuleInputs { dispersive: true, ..inputs });
-        found.extend(dispersion::finding(verdict, fines, &outcome.rules, &if_dispersive));
-        outcome.if_dispersive = IfDispersive::of(fines, &if_dispersive, case.filter.d(15.0).unwrap_or(1.0));
+        let d15f = case.filter.d(15.0);
+        outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
+        let of = |of| dispersion::finding(verdict, d15f, &outcome.rules, of);
+        found.extend(outcome.if_dispersive.and_then(of));
     }
     if let Some(evidence) = &outcome.evidence {
         found = evidence.weigh(verdict, &outcome.rules, found);
@@ -289,6 +289,17 @@ mod tests {
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
     }
 
+    /// Two probabilities stand where the page has two: one alone, or none, is said in words.
+    #[test]
+    fn probabilities_are_shown_as_the_page_shows_them() {
+        let of = |d15f, confidence| Outcome { confidence, ..walked(45.0, d15f, &[]) };
+        assert!(of(0.6, Confidence::Within).shows_probabilities());
+        let hidden = of(0.6, Confidence::Outside);
+        let said = hidden.beside_tests().unwrap();
+        assert!(!hidden.shows_probabilities() && said.starts_with("D15F is 0.86 of the lowest"), "{said}");
+        assert!(!of(1.2, Confidence::Within).shows_probabilities());
+    }
+
     /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
@@ -302,7 +313,7 @@ mod tests {
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = walked(25.0, 9.0, &[]).next_in_words();
-        let beside = "(if the base is dispersive, which is not stated, the limit is not known, and ";
+        let beside = "(if the base is dispersive, which is not stated, no source that was read gives a ";
         assert!(open.contains(beside), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);

@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::constrictions;
-use crate::outcome::design::Design;
+use crate::outcome::design::band::Band;
+use crate::outcome::design::{Design, DesignFinding};
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
 
@@ -171,8 +172,12 @@ fn listed(text: &str) -> Vec<String> {
 /// A number that is none.
 pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
     let mut boundaries = serde_json::to_value(&design.boundaries)?;
-    for row in boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut) {
+    let rows = boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut);
+    for (row, of) in rows.zip(&design.boundaries) {
         row.shift_remove("networks");
+        // A limit is rounded inward, which no script of the page does.
+        let practice = of.band.as_ref().and_then(Band::practice_in_words);
+        row.insert("practice".into(), practice.into());
     }
     Ok(json!({
         "inverse": design.inverse,
@@ -184,11 +189,9 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "replicates": design.replicates,
         "confidence": design.confidence.words(),
         "reasons": design.reasons,
-        "warnings": design.warnings,
-        "compared": design.products.len(),
-        "may_fit": design.may_fit(),
-        "fits_by_practice": design.fits_by_practice(),
-        "fit": design.products_that_fit(),
+        "cautions": design.cautions().iter().map(DesignFinding::words).collect::<Vec<_>>(),
+        "warnings": design.warnings_beside_cautions(),
+        "products": design.products_in_words(),
         "model_leaves_out": design.model_leaves_out,
     }))
 }
@@ -196,6 +199,52 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::design::Specification;
+    use crate::outcome::design::band::SetBy;
+    use crate::verdict::SpecificationOptions;
+
+    /// The limit of practice is 0.8069 mm, and its base is not stable itself.
+    #[test]
+    fn limits_are_rounded_inward_and_the_base_is_warned_of_once() {
+        let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
+        let gap = Gradation::from_points(&gap, None).unwrap();
+        let of = Specification::of("gap", &[("gap".into(), gap)], SpecificationOptions::default());
+        let unstable = of.findings.iter().find(|of| of.finding.id == "unstable_base").unwrap().clone();
+        let text = json!({
+            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
+            "unit": "mm",
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.2, "d95_over_d85": null},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
+            "confidence": "within checked range", "reasons": [], "rules": [], "rules_at": 1.75,
+            "products": [], "warnings": [unstable.words(), "another"], "findings": [unstable.clone()],
+            "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": of,
+            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+                "grains_per_void": 0.6, "no_erosion": null, "continuing": null, "not_monotone": 0,
+                "networks": [], "band": null}],
+        });
+        let mut design: Design = serde_json::from_value(text).unwrap();
+        let band = Band {
+            least: 0.7,
+            least_at_most: false,
+            greatest: 0.75,
+            set_by: Some(SetBy::Walk),
+            practice: Some(0.8069),
+            practice_rule: "r".into(),
+            practice_rule_id: None,
+            unit: "mm".into(),
+            is_empty: false,
+            said: "D15F from 0.700 to 0.750 mm".into(),
+        };
+        design.boundaries[0].band = Some(band);
+        let shown = of_design(&design).unwrap();
+        assert_eq!(shown["boundaries"][0]["practice"], "practice allows up to 0.806 mm");
+        assert_eq!(shown["cautions"][0], unstable.words());
+        assert_eq!(shown["warnings"], json!(["another"]));
+        // Without a specification the warning stays where it was.
+        let alone = Design { specification: None, ..design };
+        assert_eq!(of_design(&alone).unwrap()["warnings"].as_array().unwrap().len(), 2);
+    }
 
     fn asked(filter: &str, shape: &str) -> AskedDesign {
         let [filter, shape] = [filter, shape].map(str::to_owned);

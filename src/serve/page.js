@@ -336,12 +336,8 @@ const ROLES = [["retention", "The filter retains the base"],
   ["continuation", "Coarser filters: where erosion still ends"],
   ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "Internal stability of the filter"]];
 
-function result(rule) {
-  if (rule.met === true) return el("span", { class: "keeps" }, "met");
-  if (rule.met === false) return el("span", { class: rule.applies ? "breaks" : "none" }, rule.applies ? "NOT MET" : "not met");
-  if (!rule.applies) return el("span", { class: "none" }, (rule.note || "").startsWith("not a limit") ? "not a limit" : "not for it");
-  return el("span", { class: "none" }, !rule.needs && rule.limit === null ? "no limit" : "no result");
-}
+/** What a rule found, in the program's words; what is met stands in green. */
+const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
 
 function showRules(pair) {
   const broken = pair.rules.filter((rule) => rule.applies && rule.met === false);
@@ -354,9 +350,8 @@ function showRules(pair) {
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
   el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rows = (role) => pair.rules.map((rule, at) => [rule, pair.shown[at]]).filter(([rule]) => rule.role === role).map(([rule, [value, limit]]) => {
-    const sign = rule.at_least && rule.limit_at_most ? "not known; at most" : rule.at_least ? "≥" : "≤";
-    return el("tr", {}, el("td", {}, result(rule)), el("td", {}, rule.name),
+  const rows = (role) => pair.rules.map((rule, at) => [rule, pair.shown[at], pair.results[at], pair.limit_begins[at]]).filter(([rule]) => rule.role === role).map(([rule, [value, limit], found, sign]) => {
+    return el("tr", {}, el("td", {}, result(found)), el("td", {}, rule.name),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value || "–"),
       el("td", { class: "n" }, limit ? `${sign} ${limit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}` : "–"),
       el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
@@ -599,18 +594,15 @@ function boundariesOf(job) {
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
-    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.band && row.band.practice !== null && row.band.set_by === "walk"
-      ? [el("br"), el("span", { class: "small" }, `practice allows up to ${number(row.band.practice)} ${row.band.unit}`)] : null,
+    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
+    ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
-    done.compared ? el("p", {}, done.fit.length ? `Standard products with their D15 within the band (their own shapes were not walked): ${done.fit.join(", ")}.`
-      : done.may_fit ? "None of the standard products fits within the band."
-      : done.fits_by_practice ? "The limit of practice sets the answer: the page says which standard products fit by practice."
-        : "No standard product is said to fit, as the answer is in doubt.") : null,
+    done.products ? el("p", {}, `${done.products}.`) : null,
     done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null,
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);

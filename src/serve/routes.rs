@@ -31,6 +31,7 @@ use crate::study::batch::BatchPlan;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
+use crate::verdict::rule_words::{limit_begins, result_of};
 use crate::verdict::{PairOptions, PairRules};
 
 const PAGE: &str = include_str!("page.html");
@@ -337,8 +338,12 @@ impl Routes {
         // The page shows value and limit as every sheet does, and works nothing out.
         let shown: Vec<_> =
             pair.rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
+        let results: Vec<_> = pair.rules.iter().map(|rule| result_of(rule).words()).collect();
+        let begins: Vec<_> = pair.rules.iter().map(limit_begins).collect();
         let mut value = serde_json::to_value(pair).map_err(wrong)?;
         value["shown"] = json!(shown);
+        value["results"] = json!(results);
+        value["limit_begins"] = json!(begins);
         Ok(Answer::json(200, &value))
     }
 

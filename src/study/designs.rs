@@ -1,15 +1,17 @@
 //! Many samples: a design for each, in a folder of its own, and one table of all.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::days::{day_of, is_day, today};
 use super::design::{DesignOptions, identity, is_a_base, run};
 use super::file_names::numbered;
+use super::inputs::{files_of, input_files};
 use super::kept;
 use crate::campaign::plan::folder_name;
-use crate::gradation::{SoilSample, file_and_soil, notes_in_file, samples_in};
+use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::InputFile;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
@@ -54,6 +56,7 @@ struct Planned {
     filter: String,
     dispersive: bool,
     notes: Vec<String>,
+    inputs: Vec<InputFile>,
     /// Everything that the table follows from, as a hash.
     work: String,
 }
@@ -129,7 +132,9 @@ impl Planned {
         let samples_at = shown(&options.samples);
         let work =
             kept::hash_of(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));
-        Ok(Self { rows, folders, filter, dispersive, notes: notes(&samples)?, work })
+        let files = samples.iter().map(|sample| sample.path.as_path());
+        let (notes, inputs) = (notes(&files_of(files.clone()))?, input_files(files)?);
+        Ok(Self { rows, folders, filter, dispersive, notes, inputs, work })
     }
 
     /// The table that the folder holds already; `None` where [`each`] begins there or goes on.
@@ -162,6 +167,7 @@ impl Planned {
         callbacks: &Callbacks,
     ) -> Result<DesignedSamples, RunError> {
         let (mut rows, mut leaves_out, mut walks, mut day) = (Vec::new(), Vec::new(), None, None);
+        let mut inputs = self.inputs.clone();
         let settings = &options.design.settings;
         for (at, row) in self.rows.iter().enumerate() {
             let Some(name) = self.folders.get(at).filter(|_| row.not_walked.is_empty()) else {
@@ -181,6 +187,8 @@ impl Planned {
             day = day.max(design.cover.date.clone());
             leaves_out.clone_from(&design.model_leaves_out);
             walks = Some(DesignedWalks::of(&design, settings));
+            // Besides the samples' own files that of the filter.
+            add_new(&mut inputs, &design.inputs);
             rows.push(row.clone().designed(&design, place));
         }
         let all = DesignedSamples::new(shown(&options.samples), rows);
@@ -192,9 +200,21 @@ impl Planned {
             cover: options.design.cover().dated(day.or_else(today)),
             walks,
             notes: self.notes.clone(),
+            inputs,
             model_leaves_out: leaves_out,
             ..all
         })
+    }
+}
+
+/// Adds the files that are not there yet. Files of one name are told apart by their sum, and copies of one
+/// file by their names: a design names its files by another path than the table does.
+fn add_new(inputs: &mut Vec<InputFile>, files: &[InputFile]) {
+    let name = |file: &InputFile| Path::new(&file.name).file_name().map(ToOwned::to_owned);
+    for file in files {
+        if inputs.iter().all(|other| (name(other), &other.xxh3) != (name(file), &file.xxh3)) {
+            inputs.push(file.clone());
+        }
     }
 }
 
@@ -242,13 +262,30 @@ fn covered(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Run
 }
 
 /// What was assumed of the files, once each.
-fn notes(samples: &[SoilSample]) -> Result<Vec<String>, RunError> {
-    let mut files: Vec<PathBuf> = samples.iter().map(|sample| file_and_soil(&sample.path).0).collect();
-    files.dedup();
+fn notes(files: &[PathBuf]) -> Result<Vec<String>, RunError> {
     let mut all = Vec::new();
     for file in files {
-        let of_file = notes_in_file(&file).map_err(RunError::refused)?;
-        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(&file))));
+        let of_file = notes_in_file(file).map_err(RunError::refused)?;
+        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(file))));
     }
     Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A filter whose file holds the bytes of a sample's file is another input.
+    #[test]
+    fn an_input_is_known_by_name_and_sum() {
+        let file = |name: &str, bytes: &str| InputFile::of(name, bytes.as_bytes());
+        let mut inputs = vec![file("soils/sand.csv", "0.1,0")];
+        let of_design =
+            [file("inputs/sand.csv", "0.1,0"), file("filter.csv", "0.1,0"), file("sand.csv", "0.2,0")];
+        for _ in 0..2 {
+            add_new(&mut inputs, &of_design);
+            let names: Vec<&str> = inputs.iter().map(|of| of.name.as_str()).collect();
+            assert_eq!(names, ["soils/sand.csv", "filter.csv", "sand.csv"]);
+        }
+    }
 }

@@ -7,6 +7,7 @@ mod days;
 pub mod design;
 pub mod designs;
 mod file_names;
+mod inputs;
 mod kept;
 mod of_cases;
 pub mod percolation;

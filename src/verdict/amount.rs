@@ -3,7 +3,7 @@
 use super::entry::Finding;
 use super::finding as found;
 use super::practice::severity;
-use super::thickness::{times, walked_in_words};
+use super::thickness::{reach, times, walked_in_words};
 use crate::outcome::record::{Outcome, Sensitivity, Verdict};
 
 /// How the verdict moves with the amount of base; `None` without another amount.
@@ -33,7 +33,10 @@ fn of_rows(rows: &[Sensitivity], [verdict, of_curve]: [Verdict; 2], points: Opti
     let worst = graded.max_by(|a, b| a.0.cmp(&b.0).then(away(b.1).total_cmp(&away(a.1))));
     Some(match worst.filter(|(class, _)| *class > own) {
         Some((_, row)) => found::worse_with_amount(&times(row.factor), row.walked.verdict.words(), &each),
-        None if others.iter().all(|row| row.walked.verdict == of_curve) => found::stays_with_amount(&each),
+        None if others.iter().all(|row| row.walked.verdict == of_curve) => {
+            let reach = reach(others.iter().map(|row| row.factor));
+            found::stays_with_amount(&format!("{reach} times the base"))
+        }
         None => found::moves_with_amount(&each),
     })
 }
@@ -66,8 +69,9 @@ mod tests {
              0.25 times the base: some erosion, 9.00 % eroded in 1 replicate; 4 times the base: no erosion, \
              1.00 % eroded in 1 replicate."
         );
-        let stays = of(&[row(0.25, Verdict::None, 0.02)], Verdict::None);
+        let stays = of(&[row(0.25, Verdict::None, 0.02), row(4.0, Verdict::None, 0.02)], Verdict::None);
         assert!(stays.id() == "stays_with_amount" && !stays.is_against(Verdict::None));
+        assert!(stays.sentence().ends_with(" (0.25 to 4 times the base)."), "{}", stays.sentence());
         // A better class moves the verdict, and is no doubt of it.
         let moves = of(&rows, Verdict::Some);
         assert!(moves.id() == "moves_with_amount" && !moves.is_against(Verdict::Some));

@@ -2,7 +2,7 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::practice::cited;
+use super::rule_words::cited;
 use super::words::within;
 use crate::outcome::design::band::{Band, SetBy, limits, open_retention, retention};
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -50,6 +50,12 @@ impl Band {
             }
             _ => self.said.clone(),
         }
+    }
+
+    /// What practice allows beyond the walk that sets the greatest; `None` where it allows no more.
+    pub fn practice_in_words(&self) -> Option<String> {
+        let limit = self.practice.filter(|_| self.set_by == Some(SetBy::Walk) && !self.is_empty)?;
+        Some(format!("practice allows up to {} {}", rounded_down(limit), self.unit))
     }
 
     /// That nothing lies between the minimum D15F that drains a base and the greatest that holds it.

@@ -2,7 +2,9 @@
 //! govern.
 
 use super::pair::{Mistake, PairOptions, PairRules};
-use super::practice::{DRAINAGE_UNKNOWN, against, broken, tested_words};
+use super::practice::{DRAINAGE_UNKNOWN, broken};
+use super::rule_words::against;
+use super::tested::tested_in_brief;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{SizeUnit, rounded_up};
@@ -166,7 +168,7 @@ impl BatchRow {
             limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
             rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
             met,
-            tests: tested_words(rules).into(),
+            tests: tested_in_brief(rules).into(),
             drains,
             d15f_min_mm: drainage.and_then(|rule| rule.limit),
             d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),

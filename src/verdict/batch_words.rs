@@ -1,6 +1,7 @@
 //! What the walks of a batch say of a filter, in sentences that page and terminal share.
 
 use super::batch::BatchRow;
+use super::probability::stated;
 use super::walked_batch::{SampleWalk, WalkedBatch, WalkedRow};
 use crate::outcome::record::{Confidence, IfDispersive, Verdict};
 
@@ -48,7 +49,7 @@ impl WalkedRow {
             false => walk.headline.clone(),
         };
         if let Some(of) = walk.probability_in_words() {
-            said += &format!(". Probability of no erosion in a test: {of}");
+            said += &format!(". {}", stated(&of, None));
         }
         said
     }
@@ -166,8 +167,9 @@ mod tests {
         assert_eq!(rows[3].answer_in_words(), "not walked: no table");
         assert_eq!(
             rows[0].answer_in_words(),
-            "no erosion in the model, within checked range. Probability of no erosion in a test: 88 % by the \
-             published range, 93 % by the walk"
+            "no erosion in the model, within checked range. Probability of no erosion in a test, not for a \
+             risk analysis: 88 % by the published range, 93 % by the walk; boundaries are taken as \
+             log-uniform within the published range (Fell et al., Table 9.2)"
         );
         // Outside the checked range no number is to be relied on.
         assert_eq!(rows[1].answer_in_words(), "no erosion in the model, contradicted by practice");
@@ -175,7 +177,7 @@ mod tests {
         // Beyond the boundary that tests saw nothing more favourable than the range is said.
         let beyond = walked("E", false, Some((Verdict::None, Confidence::Within, false))).answer_in_words();
         assert!(
-            beyond.contains("no erosion in a test: 88 % by the published range (the lower of two; "),
+            beyond.contains("risk analysis: 88 % by the published range (the lower of two; "),
             "{beyond}"
         );
         let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
@@ -195,7 +197,7 @@ mod tests {
     fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
         let of = |name: &str, verdict, d15f_max_mm| {
             let mut row = walked(name, true, Some((verdict, Confidence::Within, true)));
-            let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false });
+            let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
             row.walk = row.walk.map(|walk| SampleWalk { if_dispersive, ..walk });
             row
         };

@@ -1,7 +1,8 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::pair::{PairRules, StatedByAuthority};
-use super::practice::{against, tested_words};
+use super::rule_words::against;
+use super::tested::tested_in_brief;
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
@@ -162,7 +163,7 @@ fn without_result(left: &[&AppliedRule]) -> Vec<String> {
 /// How many rules are left out, the class of tests where that is one of them, and what is said of them.
 fn left_out(rules: &[AppliedRule], left: &[&AppliedRule], said: &[String]) -> String {
     let classes = match left.iter().any(|rule| rule.id == TESTS_CONTINUING) {
-        true => format!(", with Foster and Fell's classes ({})", tested_words(rules)),
+        true => format!(", with Foster and Fell's classes ({})", tested_in_brief(rules)),
         false => String::new(),
     };
     let begin = format!("Left out: {} rules of others{classes}", left.len());

@@ -3,8 +3,9 @@
 
 use super::beside::is_evidence;
 use super::entry::COHESIVE_FINES;
-use super::practice::{Standing, broken, is_beyond_tests, standing};
-use super::probability::beside_range;
+use super::practice::{Standing, broken, standing};
+use super::probability::{beside_range, stated};
+use super::tested::is_beyond_tests;
 use crate::outcome::digits::percent;
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
@@ -65,15 +66,21 @@ impl Outcome {
         Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
     }
 
+    /// Whether both probabilities that a test would show no erosion stand beside the verdict: where one
+    /// alone does, or none, [`Outcome::beside_tests`] says which and why.
+    pub fn shows_probabilities(&self) -> bool {
+        !self.confidence.hides_probability() && !is_beyond_tests(&self.rules)
+    }
+
     /// The probability that a test would show no erosion. Outside the checked range, and against practice,
     /// nobody can answer for one: there stands where D15F lies beside the range of tests.
-    fn beside_tests(&self) -> Option<String> {
+    pub fn beside_tests(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
         if self.confidence.hides_probability() {
-            return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?));
+            return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?, ""));
         }
         let each = evidence.probabilities(is_beyond_tests(&self.rules))?;
-        Some(format!("Probability of no erosion in a test: {each}"))
+        Some(stated(&each, evidence.range_of_tests_mm))
     }
 
     /// The findings that matter most, at most [`FOREMOST`], and how many more there are.

@@ -4,7 +4,8 @@
 //! Dunnigan's limit of design, and Foster and Fell's boundary of no erosion where that is lower, as for 35 to
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
-use super::practice::cited_rule;
+use super::entry::EVIDENCE_UNSAFE;
+use super::rule_words::cited_rule;
 use super::words::capital;
 use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
 use crate::outcome::design::{Design, DesignAnswer, DesignRow, Specification};
@@ -101,6 +102,24 @@ impl Design {
         }
     }
 
+    /// Said of a size that the walk alone holds, where it errs on the unsafe side for soils of this kind.
+    fn unsafe_alone(&self) -> &'static str {
+        if self.walk_errs_unsafely() { ", and for such soils it errs on the unsafe side" } else { "" }
+    }
+
+    /// Whether the walk errs on the unsafe side for soils of this kind.
+    fn walk_errs_unsafely(&self) -> bool {
+        self.findings.iter().any(|of| of.finding.id == EVIDENCE_UNSAFE)
+    }
+
+    /// What the walk is worth beside a limit of practice that sets the answer, in a sentence.
+    pub fn walk_beside_practice(&self) -> &'static str {
+        match self.walk_errs_unsafely() {
+            true => "The walk is no check of it: for such soils it errs on the unsafe side.",
+            false => "The walk sets no tighter limit, and is no check of it.",
+        }
+    }
+
     fn strictest(&self, sizes: &Sizes) -> Option<(&AppliedRule, f64)> {
         retention(&self.rules, self.rules_at * sizes.d85)
     }
@@ -181,14 +200,14 @@ impl<'a> Case<'a> {
                 sizes.size(limit.ratio),
                 cited_rule(limit.rule),
                 if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() },
-                of_walk_alone(sizes, *held)
+                of_walk_alone(design, sizes, *held)
             ),
             Self::OpenBase(rule, held) => format!(
                 "The finest D85B is not known: only an upper bound of the limit of practice is known \
                  ({}{}){}",
                 cited_rule(rule),
                 if rule.needs.is_empty() { String::new() } else { format!("; {}", rule.needs) },
-                of_walk_alone(sizes, *held)
+                of_walk_alone(design, sizes, *held)
             ),
             Self::Unknown => "No ratio is known that nearly all networks hold".into(),
             Self::TailOpen(limit, tail) => format!(
@@ -213,7 +232,7 @@ impl<'a> Case<'a> {
                 cited_rule(limit.rule)
             ),
             Self::Practice(limit) => format!(
-                "{}, by practice ({}{}{}); the walk sets no tighter limit, and is no check of it",
+                "{}, by practice ({}{}{}){}",
                 sizes.words(limit.ratio),
                 cited_rule(limit.rule),
                 sizes.other(design, limit.rule),
@@ -221,6 +240,10 @@ impl<'a> Case<'a> {
                     format!(", whose limit for a finer base is not known: {}", limit.rule.needs)
                 } else {
                     String::new()
+                },
+                match design.walk_errs_unsafely() {
+                    true => ". The walk is no check of this limit: for such soils it errs on the unsafe side",
+                    false => "; the walk sets no tighter limit, and is no check of it",
                 }
             ),
             Self::Walk(row, held, limit) => format!(
@@ -231,9 +254,10 @@ impl<'a> Case<'a> {
                 cited_rule(limit.rule)
             ),
             Self::ModelAlone(row, held) => format!(
-                "{}{} in the model alone; {}",
+                "{}{} in the model alone{}; {}",
                 searched(row),
                 sizes.words(*held),
+                design.unsafe_alone(),
                 sizes.without_limit(design.strictest(sizes))
             ),
         }
@@ -241,9 +265,9 @@ impl<'a> Case<'a> {
 }
 
 /// What the walk holds where practice gives no answer.
-fn of_walk_alone(sizes: &Sizes, held: Option<f64>) -> String {
+fn of_walk_alone(design: &Design, sizes: &Sizes, held: Option<f64>) -> String {
     match held {
-        Some(held) => format!("; the walk alone holds {}", sizes.words(held)),
+        Some(held) => format!("; the walk alone holds {}{}", sizes.words(held), design.unsafe_alone()),
         None => "; the walk has no answer either".into(),
     }
 }
@@ -330,8 +354,10 @@ fn searched(row: &DesignRow) -> &'static str {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::Boundary;
     use crate::outcome::design::band::Band;
+    use crate::outcome::design::{Boundary, DesignFinding};
+    use crate::outcome::record::Evidence;
+    use crate::outcome::rules::BaseSoil;
     use crate::verdict::PairRules;
 
     /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
@@ -386,6 +412,44 @@ mod tests {
             answer.said
         );
         assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
+    }
+
+    /// The till again: `judge` says of this group that the walk errs on the unsafe side.
+    #[test]
+    fn a_walk_that_errs_on_the_unsafe_side_is_said_to_be_no_check() {
+        let mut found = design(&till(), Some(12.6));
+        assert!(found.walk_beside_practice().starts_with("The walk sets no tighter limit"));
+        let rules = found.rules.clone();
+        let evidence = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(5.3), None).unwrap();
+        let finding = evidence.against_holding(&rules).unwrap().record(true);
+        assert!(finding.sentence.contains(" real soils of this kind (35 to 55 % fines"), "{finding:?}");
+        found.findings.push(DesignFinding { row: None, finding });
+        let said = found.answer().said;
+        assert!(said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"), "{said}");
+        assert!(
+            said.ends_with("The walk is no check of this limit: for such soils it errs on the unsafe side")
+                && !said.contains("tighter"),
+            "{said}"
+        );
+        assert!(!found.walk_beside_practice().contains("tighter"));
+        // Nor is what it holds alone, of a limit of which only the most is known or of none.
+        let unsafe_alone = ", and for such soils it errs on the unsafe side";
+        let mut open = found.clone();
+        let retains = |rule: &&mut AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+        open.rules.iter_mut().find(retains).unwrap().limit_at_most = true;
+        let said = open.answer().said;
+        assert!(said.starts_with("The maximum D15F is not known") && said.ends_with(unsafe_alone), "{said}");
+        open.rules.clear();
+        let said = open.answer().said;
+        assert!(
+            said.contains(&format!(" in the model alone{unsafe_alone}; the limit of practice")),
+            "{said}"
+        );
+        open.findings.clear();
+        assert!(!open.answer().said.contains("unsafe"));
+        // Uniform filters have no such group.
+        let uniform = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(1.5), None).unwrap();
+        assert_eq!(uniform.against_holding(&rules), None);
     }
 
     #[test]

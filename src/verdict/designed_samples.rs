@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
-use super::practice::cited_rule;
+use super::rule_words::cited_rule;
 use super::words::capital;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{Confidence, IfDispersive, ModelLimit, SheetCover, commit};
+use crate::outcome::record::{
+    Confidence, FindingRecord, IfDispersive, InputFile, ModelLimit, SheetCover, commit,
+};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -55,6 +57,9 @@ pub struct DesignedSamples {
     /// What was walked for every sample; `None` where nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walks: Option<DesignedWalks>,
+    /// Every file that was read; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
     /// A row for each sample.
     pub rows: Vec<DesignedSample>,
     /// What was assumed of the files, a sentence each.
@@ -69,6 +74,10 @@ pub struct DesignedSamples {
 pub struct DesignedWalks {
     /// The filter's shape and its constrictions, in words.
     pub filter: String,
+    /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not
+    /// given, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub filter_gradation: Vec<[f64; 2]>,
     /// How densely the filter is packed, in the order in which it was asked for.
     pub densities: Vec<String>,
     /// The thicknesses that were asked for, in words.
@@ -94,7 +103,9 @@ impl DesignedWalks {
             }
         }
         let (filter, networks, seed) = (design.filter.clone(), design.replicates, design.seed);
-        Self { filter, densities, thicknesses, networks, seed, settings: settings.to_vec() }
+        let filter_gradation = design.filter_gradation.clone();
+        let settings = settings.to_vec();
+        Self { filter, filter_gradation, densities, thicknesses, networks, seed, settings }
     }
 }
 
@@ -106,6 +117,12 @@ pub struct DesignedSample {
     pub sample: String,
     /// What names the sample on a command line.
     pub path: PathBuf,
+    /// Size (mm) and percent finer by mass, as sampled; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradation: Vec<[f64; 2]>,
+    /// The same after regrading; empty where the rules do not regrade it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
     /// Group by ASTM D2487; `None` where the sieves do not tell.
     pub group: Option<String>,
     /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
@@ -131,6 +148,10 @@ pub struct DesignedSample {
     pub if_dispersive: Option<IfDispersive>,
     /// Maximum D15F that both practice and walk allow; `None` where none is known.
     pub d15f_max_mm: Option<f64>,
+    /// What a reader must know of the sample itself, as for a filter of its own; empty in files of earlier
+    /// versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<FindingRecord>,
     /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub no_band: String,
@@ -174,6 +195,8 @@ impl DesignedSample {
         Self {
             sample: sample.name.clone(),
             path: sample.path.clone(),
+            gradation: curve.gradation.clone(),
+            regraded: curve.regraded.clone(),
             group: sample.curve.group(),
             category: curve.category,
             fines_percent: curve.fines_percent,
@@ -185,6 +208,7 @@ impl DesignedSample {
             d15f_min_at_most: practice.d15f_min_at_most,
             if_dispersive: practice.if_dispersive,
             d15f_max_mm: practice.d15f_max_mm,
+            findings: practice.findings.iter().map(|of| of.finding.clone()).collect(),
             no_band: practice.no_band.clone().unwrap_or_default(),
             governs: None,
             design: None,
@@ -318,6 +342,7 @@ impl DesignedSamples {
             inches: false,
             cover: SheetCover::default(),
             walks: None,
+            inputs: Vec::new(),
             rows,
             notes: Vec::new(),
             model_leaves_out: Vec::new(),

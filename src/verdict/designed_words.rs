@@ -1,10 +1,19 @@
 //! How coarse a filter for many samples may be, in sentences.
 
 use super::designed_samples::{DesignedSample, DesignedSamples};
-use super::specification::no_band_between;
+use super::specification::{DESIGN_EACH_AGAIN, least_of_band, no_band_between};
 use super::words::capital;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{Confidence, IfDispersive};
+use crate::outcome::rules::WIDEST_BAND;
+
+/// What a specification warns of a base, and how it begins where it is said of several.
+const CAUTIONS: [(&str, &str); 4] = [
+    ("unstable_base", "Not internally stable by Kenney and Lau"),
+    ("broad_base", "Broadly graded, so that the finer part may move between the coarse grains"),
+    ("gap_of_base", "Gap-graded by this program's own check"),
+    ("flat_base", "A curve that is flat somewhere, to be looked at for a gap"),
+];
 
 /// So many samples.
 fn counted(samples: usize) -> String {
@@ -113,7 +122,18 @@ impl DesignedSamples {
                 "No one filter is specified for {of}{within}, with D15F from {from} to {mm} mm: {}",
                 within_line(&why)
             ),
-            None => format!("A filter for {of}{within}: D15F from {from} to {mm} mm"),
+            None => {
+                let begins = rounded_up(least_of_band(least, greatest));
+                let at_most = if at_most { "not known, and at most " } else { "" };
+                let raised = match begins == from {
+                    true => String::new(),
+                    false => format!(
+                        " (the minimum that drains is {at_most}{from} mm; it is raised so that the band is \
+                         no wider than {WIDEST_BAND} to 1)"
+                    ),
+                };
+                format!("A filter for {of}{within}: D15F from {begins} to {mm} mm{raised}")
+            }
         }
     }
 
@@ -134,6 +154,8 @@ impl DesignedSamples {
                 row.sample
             ));
         }
+        said.extend(self.still_to_set());
+        said.extend(self.cautions());
         said.extend(self.dispersion_in_words());
         let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
         if walked > 0 {
@@ -168,11 +190,37 @@ impl DesignedSamples {
             open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
         let (row, of) = strictest?;
         Some(format!(
-            "Not known whether dispersive: {} with 15 % fines or more; if {} is, practice allows it {}",
+            "Not known whether dispersive: {} with 15 % fines or more; if {} is: {}. {} then not valid: \
+             {DESIGN_EACH_AGAIN}",
             counted(open.len()),
             row.sample,
-            of.words()
+            of.words_of_base(),
+            match (open.len(), self.rows.len()) {
+                (_, 1) => "Its band is",
+                (1, _) => "Its band, and the filter for all, are",
+                _ => "Their bands, and the filter for all, are",
+            }
         ))
+    }
+
+    /// What no band has here, of one sample or of all; `None` where no sample has a band.
+    fn still_to_set(&self) -> Option<String> {
+        let has_band = self.rows.iter().any(|row| row.d15f_max_mm.is_some() && row.no_band.is_empty());
+        has_band.then(|| {
+            "Not a complete specification: the maximum D90F is still to be set, for each sample and for a \
+             filter for several"
+                .into()
+        })
+    }
+
+    /// What is to be known of the samples themselves, with their names.
+    fn cautions(&self) -> Vec<String> {
+        let named = |(id, what): &(&str, &str)| {
+            let is_so = |row: &&DesignedSample| row.findings.iter().any(|of| of.id == *id);
+            let names: Vec<&str> = self.rows.iter().filter(is_so).map(|row| row.sample.as_str()).collect();
+            (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
+        };
+        CAUTIONS.iter().filter_map(named).collect()
     }
 
     /// For how many samples each of practice and walk sets the maximum D15F.
@@ -266,8 +314,9 @@ mod tests {
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no maximum D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
-            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is, practice allows it \
-             D15F up to ",
+            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is: D15F up to ",
+            " mm. Their bands, and the filter for all, are then not valid: design again for dispersive soils",
+            "Not a complete specification: the maximum D90F is still to be set",
             "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",
             "Outside checked range: 2 of 2 samples",
             "May govern, as no maximum D15F is known: silt (limit of practice ",
@@ -282,6 +331,21 @@ mod tests {
             csv.contains("outside checked range,too small") && csv.contains("No ratio is known"),
             "{csv}"
         );
+    }
+
+    /// The table of many samples warns as the specification of each.
+    #[test]
+    fn samples_that_are_not_stable_themselves_are_named() {
+        let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
+        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
+        let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
+        let said = all.in_words().join("\n");
+        for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
+            assert!(said.contains(&format!("\n{words}: A, B\n")), "{words}: {said}");
+        }
+        assert!(said.contains("are then not valid: design again for dispersive soils"), "{said}");
+        let said = DesignedSamples::new("s".into(), vec![sand]).in_words().join("\n");
+        assert!(!said.contains("Kenney") && said.contains("the maximum D90F is still to be set"), "{said}");
     }
 
     #[test]
@@ -318,11 +382,13 @@ mod tests {
         let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.100 to 0.700 mm"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum \
+             that drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
-        assert_eq!(one.for_all_in_words(), "A filter for the sample: D15F from 0.100 to 0.700 mm");
+        let said = one.for_all_in_words();
+        assert!(said.starts_with("A filter for the sample: D15F from 0.140 to 0.700 mm (the"), "{said}");
         let open = DesignedSample {
             path: "other".into(),
             d15f_min_mm: Some(2.0),

@@ -5,32 +5,42 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::practice::{against, broken};
 use crate::gradation::FEW_FINES;
+use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::numbers::rounded_down;
-use crate::outcome::record::{AppliedRule, IfDispersive, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Verdict};
+use crate::outcome::rules::{RuleInputs, apply};
 
 impl IfDispersive {
-    /// Of a base with so many percent of fines: `if_dispersive` are the rules that it has if it is
-    /// dispersive, `d15f` is that of the filter that they judge. `None` where it has few fines, or they are
-    /// not known.
-    pub fn of(fines_percent: Option<f64>, if_dispersive: &[AppliedRule], d15f: f64) -> Option<Self> {
-        if fines_percent? < FEW_FINES {
+    /// Of a pair whose base is taken as dispersive. `None` where it has few fines, or they are not known.
+    pub fn of(if_dispersive: &RuleInputs) -> Option<Self> {
+        if if_dispersive.base_soil.fines_percent? < FEW_FINES {
             return None;
         }
-        let (_, d15f_max_mm) = retention(if_dispersive, d15f)?;
-        Some(Self { d15f_max_mm, at_most: open_retention(if_dispersive).is_some() })
+        let rules = apply(if_dispersive);
+        let (_, d15f_max_mm) = retention(&rules, if_dispersive.filter.d(15.0).unwrap_or(1.0))?;
+        // A rule that is broken in any case no longer says what it lacks.
+        let lack = match if_dispersive.size_of_base(85.0).is_known {
+            true => DispersiveLack::LimitOfDesign,
+            false => DispersiveLack::D85B,
+        };
+        let lacks = open_retention(&rules).map(|_| lack);
+        Some(Self { d15f_max_mm, at_most: lacks.is_some(), lacks })
+    }
+
+    /// The strictest of several curves of one base; `None` without one.
+    pub fn strictest(all: &[Self]) -> Option<Self> {
+        let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
+        let at_most = all.iter().any(|of| of.at_most);
+        Some(Self { at_most, lacks: least.lacks.or_else(|| all.iter().find_map(|of| of.lacks)), ..*least })
     }
 
     /// What stands behind a D15F (mm) that is recommended; `None` where it holds for a dispersive base too.
     pub fn beside(&self, d15f_mm: f64) -> Option<String> {
         let limit = rounded_down(self.d15f_max_mm);
         match self.at_most {
-            true => Some(format!(
-                "if the base is dispersive, which is not stated, the limit is not known, and {limit} mm or \
-                 less"
-            )),
+            true => Some(format!("if the base is dispersive, which is not stated, {}", self.open())),
             false if self.d15f_max_mm < d15f_mm => {
                 Some(format!("{limit} mm if the base is dispersive, which is not stated"))
             }
@@ -38,22 +48,50 @@ impl IfDispersive {
         }
     }
 
-    /// The limit in words.
+    /// What is known of a limit that is not known itself: why, its most, and what to do.
+    fn open(&self) -> String {
+        self.open_with("have the pair tested")
+    }
+
+    /// The same, with what to do where no text has the limit.
+    fn open_with(&self, test: &str) -> String {
+        let (why, tests) = match self.lacks {
+            Some(DispersiveLack::LimitOfDesign) => {
+                ("no source that was read gives a limit of design for such fines", test)
+            }
+            Some(DispersiveLack::D85B) => {
+                ("the limit is not known, as D85B is not", "have the base tested with a hydrometer")
+            }
+            None => ("the limit is not known", test),
+        };
+        format!("{why}; it is at most {} mm: {tests}", rounded_down(self.d15f_max_mm))
+    }
+
+    /// The limit in words, of a pair.
     pub fn words(&self) -> String {
-        let limit = rounded_down(self.d15f_max_mm);
+        self.words_with("have the pair tested")
+    }
+
+    /// The same of a base for which a filter is specified.
+    pub fn words_of_base(&self) -> String {
+        self.words_with("have the base tested with the filter")
+    }
+
+    fn words_with(&self, test: &str) -> String {
         match self.at_most {
-            true => format!("a limit of D15F that is not known, and {limit} mm or less"),
-            false => format!("D15F up to {limit} mm"),
+            true => self.open_with(test),
+            false => format!("D15F up to {} mm", rounded_down(self.d15f_max_mm)),
         }
     }
 
     /// What practice says then of a filter of this D15F (mm), where that is known.
-    pub fn of_filter(&self, d15f_mm: f64) -> String {
+    pub fn of_filter(&self, d15f_mm: Option<f64>) -> String {
         let limit = rounded_down(self.d15f_max_mm);
-        match (self.is_broken_by(d15f_mm), self.at_most) {
-            (true, _) => format!("practice allows a D15F of {limit} mm, which is not met"),
-            (false, false) => format!("practice allows a D15F of {limit} mm, which is met"),
-            (false, true) => format!("the limit is not known, and is a D15F of {limit} mm or less"),
+        match (d15f_mm.map(|d15f| self.is_broken_by(d15f)), self.at_most) {
+            (Some(true), _) => format!("practice allows a D15F of {limit} mm, which is not met"),
+            (_, true) => self.open(),
+            (Some(false), false) => format!("practice allows a D15F of {limit} mm, which is met"),
+            (None, false) => format!("practice allows a D15F of {limit} mm"),
         }
     }
 
@@ -63,42 +101,30 @@ impl IfDispersive {
     }
 }
 
-/// What is said of a base with so many percent of fines: `rules` are those of the pair, `if_dispersive` those
-/// that it has if its base is dispersive. `None` where it has few fines, or the walk erodes.
+/// What is said beside a verdict of a base of which nobody has said whether it is dispersive, and of its
+/// filter of this D15F (mm); `rules` are those of the pair. `None` where the walk erodes.
 pub fn finding(
     verdict: Verdict,
-    fines_percent: Option<f64>,
+    d15f_mm: Option<f64>,
     rules: &[AppliedRule],
-    if_dispersive: &[AppliedRule],
+    if_dispersive: IfDispersive,
 ) -> Option<Finding> {
-    let erodes = matches!(verdict, Verdict::Some | Verdict::Continuing);
-    if erodes || fines_percent? < FEW_FINES {
+    if matches!(verdict, Verdict::Some | Verdict::Continuing) {
         return None;
     }
-    let is_broken = |of: &AppliedRule| rules.iter().any(|rule| rule.id == of.id && rule.is_broken());
-    let more = broken(if_dispersive, RuleRole::Retention).into_iter().filter(|rule| !is_broken(rule));
-    if let Some(rule) = strictest(more) {
-        let [value, limit] = against(rule, 3);
-        return Some(finding::dispersive_would_not_hold(&limit, &value));
-    }
-    let limits = || {
-        let of_retention = |rule: &&AppliedRule| rule.applies && rule.role == RuleRole::Retention;
-        let all = if_dispersive.iter().filter(of_retention);
-        all.filter(|rule| rule.quantity == RuleQuantity::D15F && rule.limit.is_some())
-    };
-    let known = strictest(limits().filter(|rule| !rule.limit_at_most));
-    let limit = known.or_else(|| strictest(limits()))?;
-    let (before, after) = match known.map(|rule| rule.met) {
-        Some(Some(true)) => ("practice allows a D15F of", ", which is met"),
-        Some(_) => ("practice allows a D15F of", ""),
-        None => ("no source that was read gives the limit: it is a D15F of", " or less"),
-    };
-    Some(finding::dispersion_not_known(before, &against(limit, 3)[1], after))
-}
-
-/// The rule with the least limit.
-fn strictest<'a>(rules: impl Iterator<Item = &'a AppliedRule>) -> Option<&'a AppliedRule> {
-    rules.min_by(|a, b| a.limit.unwrap_or(f64::NAN).total_cmp(&b.limit.unwrap_or(f64::NAN)))
+    // What does not hold anyway would not hold the more.
+    let is_kept = |d15f: &f64| retention(rules, *d15f).is_none_or(|(_, limit)| *d15f <= limit);
+    let newly = d15f_mm.filter(|d15f| if_dispersive.is_broken_by(*d15f)).filter(is_kept);
+    Some(match newly {
+        Some(d15f) => {
+            let [value, limit] = value_and_limit(d15f, if_dispersive.d15f_max_mm, false, 3);
+            finding::dispersive_would_not_hold(&format!("{limit} mm"), &format!("{value} mm"))
+        }
+        None => {
+            let limit = format!("{} mm", rounded_down(if_dispersive.d15f_max_mm));
+            finding::dispersion_not_known(&if_dispersive.of_filter(d15f_mm), &limit)
+        }
+    })
 }
 
 #[cfg(test)]
@@ -106,20 +132,26 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::Confidence;
-    use crate::verdict::{PairOptions, PairRules, judge};
+    use crate::verdict::{PairRules, judge};
 
     /// Id, sentence and label of a verdict on a soil with so many percent of fines and a filter of this D15.
     fn said(verdict: Verdict, fines: f64, d15f: f64) -> (Option<(&'static str, String)>, Confidence) {
+        said_of(&[(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)], verdict, d15f)
+    }
+
+    /// The same of a base of these points.
+    fn said_of(
+        base: &[(f64, f64)],
+        verdict: Verdict,
+        d15f: f64,
+    ) -> (Option<(&'static str, String)>, Confidence) {
         let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
-        let base = soil(&[(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]);
+        let base = soil(base);
         let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-        let of = |dispersive| {
-            let options = PairOptions { dispersive, ..PairOptions::default() };
-            let one = |curve: &Gradation| vec![("s".to_owned(), curve.clone())];
-            PairRules::of_envelopes(&one(&base), &one(&filter), options)
-        };
-        let pair = of(false);
-        let found = finding(verdict, pair.base.fines_percent, &pair.rules, &of(true).rules);
+        let pair = PairRules::of(&base, &filter);
+        let inputs = RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) };
+        let if_dispersive = IfDispersive::of(&inputs);
+        let found = if_dispersive.and_then(|of| finding(verdict, Some(d15f), &pair.rules, of));
         let label = judge(verdict, &pair.rules, found.clone().into_iter().collect()).confidence;
         (found.map(|found| (found.id(), found.sentence())), label)
     }
@@ -135,8 +167,59 @@ mod tests {
             let (found, label) = said(Verdict::None, fines, 0.45);
             let (id, sentence) = found.unwrap();
             assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-            assert!(sentence.contains("allows a D15F of 0.500 mm, which is met"), "{sentence}");
+            // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
+            let then = match fines < 40.0 {
+                true => "limit of design for such fines; it is at most 0.500 mm: have the pair tested",
+                false => "allows a D15F of 0.500 mm, which is met",
+            };
+            assert!(sentence.contains(then), "{sentence}");
         }
+    }
+
+    /// What page 1 says next and what the finding says is one decision.
+    #[test]
+    fn the_finding_and_the_next_step_say_the_same() {
+        for (d15f_max_mm, at_most) in [(0.5, false), (0.5, true)] {
+            let of = IfDispersive { d15f_max_mm, at_most, lacks: None };
+            for d15f in [Some(0.4), Some(0.5), None] {
+                let found = finding(Verdict::None, d15f, &[], of).unwrap();
+                let said = found.sentence();
+                assert_eq!(found.record(false).numbers["limit"], "0.500 mm");
+                assert!(said.contains(&format!("If it is, {}. ", of.of_filter(d15f))), "{said}");
+            }
+            let found = finding(Verdict::None, Some(0.6), &[], of).unwrap();
+            assert_eq!(found.id(), "dispersive_would_not_hold");
+            assert!(of.of_filter(Some(0.6)).ends_with("0.500 mm, which is not met"));
+        }
+        let open = IfDispersive { d15f_max_mm: 0.5, at_most: true, lacks: None };
+        assert_eq!(
+            open.beside(0.4).unwrap(),
+            "if the base is dispersive, which is not stated, the limit is not known; it is at most 0.500 mm: \
+             have the pair tested"
+        );
+    }
+
+    /// A clay whose table ends at No. 200 lacks its D85 alone: for such fines practice has a limit. The same
+    /// whether the filter is finer than the most of it, 6.4 times 0.075 mm, or not.
+    #[test]
+    fn a_clay_that_no_hydrometer_tested_lacks_its_d85_and_no_source() {
+        let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
+        let (id, sentence) = said_of(&clay, Verdict::None, 0.4).0.unwrap();
+        assert_eq!(id, "dispersion_not_known");
+        let lacks = "If it is, the limit is not known, as D85B is not; it is at most 0.480 mm: have the base \
+                     tested with a hydrometer. ";
+        assert!(sentence.contains(lacks), "{sentence}");
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let (base, filter) = (soil(&clay), soil(&[(0.5, 0.0), (0.8, 15.0), (2.0, 100.0)]));
+        let beyond =
+            IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
+        assert_eq!(beyond.unwrap().lacks, Some(DispersiveLack::D85B));
+        // With a curve that lacks a limit of design and a finer one that lacks nothing.
+        let of =
+            |d15f_max_mm, lacks: Option<_>| IfDispersive { d15f_max_mm, at_most: lacks.is_some(), lacks };
+        let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
+        let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
+        assert_eq!(both, of(0.5, open.lacks));
     }
 
     #[test]
@@ -144,7 +227,9 @@ mod tests {
         let (found, label) = said(Verdict::None, 25.0, 0.6);
         let (id, sentence) = found.unwrap();
         assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-        assert!(sentence.contains("no source that was read gives the limit: it is a D15F of "), "{sentence}");
+        assert!(
+            sentence.contains("If it is, no source that was read gives a limit of design for such fines; it")
+        );
         assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
         for erodes in [Verdict::Some, Verdict::Continuing] {
             assert_eq!(said(erodes, 45.0, 0.6).0, None);

@@ -9,6 +9,9 @@ use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdic
 /// The name of the finding of fines that may be cohesive.
 pub const COHESIVE_FINES: &str = "cohesive_fines";
 
+/// The name of the finding that the walk errs on the unsafe side for soils of this kind.
+pub const EVIDENCE_UNSAFE: &str = "evidence_unsafe";
+
 /// What the table declares of a finding.
 #[derive(Debug)]
 pub struct Entry {
@@ -28,6 +31,8 @@ pub struct Entry {
     pub label: &'static str,
     /// The names of its numbers, in order.
     pub names: &'static [&'static str],
+    /// Those of them that no sentence shows, as a text beside them says them in words.
+    pub unshown: &'static [&'static str],
     /// Its sentences, with the names of its numbers in braces. The first may stand in a headline.
     pub sentence: &'static str,
     /// Which setting changes it; may be empty.
@@ -43,6 +48,9 @@ macro_rules! findings {
     };
     (@raw Text) => {
         &str
+    };
+    (@raw KnownMm) => {
+        Option<f64>
     };
     (@raw Reason) => {
         &crate::gradation::RegradeReason
@@ -65,7 +73,7 @@ macro_rules! findings {
     ($(
         $(#[$doc:meta])*
         $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
-            $(, sets $sets:ident)? $(, against $against:ident)?;
+            $(, sets $sets:ident)? $(, against $against:ident)? $(, unshown $($unshown:ident)+)?;
             $label:literal, $page:literal, $sentence:literal $(, to do $to_do:literal)?;
     )*) => {
         #[allow(non_upper_case_globals)]
@@ -80,6 +88,7 @@ macro_rules! findings {
                 against: findings!(@or None $(, Some($against))?),
                 label: $label,
                 names: &[$(stringify!($name)),*],
+                unshown: &[$($(stringify!($unshown)),+)?],
                 sentence: $sentence,
                 to_do: findings!(@or "" $(, $to_do)?),
                 page: $page,
@@ -91,6 +100,7 @@ macro_rules! findings {
 
         $(
             $(#[$doc])*
+            #[allow(clippy::too_many_arguments)]
             pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
                 let values = vec![$(findings!(@value $unit $name)),*];
                 Finding { entry: &entries::$id, values, is_settled: false }
@@ -103,6 +113,7 @@ macro_rules! findings {
             let of = |unit: &str| match unit {
                 "Percent" => FindingValue::Percent(size),
                 "Mm" => FindingValue::Mm(size),
+                "KnownMm" => FindingValue::KnownMm(Some(size)),
                 "Ratio" => FindingValue::Ratio(size),
                 "Points" => FindingValue::Points(size),
                 "Count" => FindingValue::Count(n),

@@ -19,9 +19,11 @@ use std::sync::LazyLock;
 use libm::log;
 
 use super::entry::{COHESIVE_FINES, Finding};
-use super::probability::probabilities;
+use super::finding;
+use super::probability::{SOURCE, beside_range, named_beside_range, probabilities};
 use super::quantity::FindingValue;
-use super::{finding, practice};
+use super::rule_words::met_of;
+use super::tested::is_beyond_unclear;
 use crate::outcome::record::{AppliedRule, Bound, Evidence, Margin, Verdict};
 use crate::outcome::rules::{BaseSoil, TESTS_CONTINUING, TESTS_NO_EROSION, range_of_tests};
 
@@ -197,8 +199,8 @@ impl Evidence {
                 Verdict::None => of_walk.min(of_tests) >= high && self.bound != Some(Bound::AtMost),
                 Verdict::Some => erodes,
                 Verdict::Continuing => {
-                    let is_beyond = practice::met_of(rules, TESTS_CONTINUING) == Some(false);
-                    erodes && is_beyond && !practice::is_beyond_unclear(rules)
+                    let is_beyond = met_of(rules, TESTS_CONTINUING) == Some(false);
+                    erodes && is_beyond && !is_beyond_unclear(rules)
                 }
                 Verdict::Undecided => false,
             }
@@ -213,35 +215,45 @@ impl Evidence {
         found.into_iter().map(settle).chain([self.finding(rules)]).collect()
     }
 
-    /// What it says. Where the filter is finer than the range of tests and the walk erodes, that speaks
-    /// against the walk.
+    /// What it says beside a verdict.
     fn finding(&self, rules: &[AppliedRule]) -> Finding {
-        let said = self.probabilities(practice::is_beyond_tests(rules));
-        let probability = match (self.probability_no_erosion, said) {
-            (Some(_), Some(said)) => format!("is {said}"),
-            (None, Some(said)) => {
-                let why = match (self.ratio_median > 1.0, self.narrow) {
-                    (true, _) => "it errs on the unsafe side",
-                    (_, true) => "its boundary was not found",
-                    _ => "its ratio to that range is not known well enough for such soils",
-                };
-                format!("is {said}; the walk gives no probability, as {why}")
-            }
-            (_, None) => "is not known".into(),
-        };
-        let finding = match self.ratio_median > 1.0 {
+        self.finding_with(rules, beside_range)
+    }
+
+    /// What it says, with the place of D15F beside the range of tests in these words. Where the filter is finer
+    /// than that range and the walk erodes, that speaks against the walk.
+    fn finding_with(&self, rules: &[AppliedRule], beside: fn(f64, [f64; 2], &str) -> String) -> Finding {
+        let finding = match self.errs_unsafely() {
             true => finding::evidence_unsafe,
             false if self.is_finer_than_tests(rules) => finding::evidence_safe,
             false => finding::evidence,
         };
         let [low, median, high] = [self.ratio_low, self.ratio_median, self.ratio_high];
-        finding(&probability, self.soils, &self.group, median, low, high, &self.more_in_words())
+        let d15f = d15f_of(rules);
+        let [from, to] = self.range_of_tests_mm.map_or([None; 2], |range| range.map(Some));
+        let beside = match d15f.zip(self.range_of_tests_mm) {
+            Some((d15f, range)) => beside(d15f, range, SOURCE),
+            None => {
+                "It is not known where D15F lies beside the range published for soils of these fines".into()
+            }
+        };
+        let more = self.more_in_words();
+        finding(&beside, self.soils, &self.group, median, low, high, &more, d15f, from, to)
+    }
+
+    /// Whether the walk errs on the unsafe side for soils and filters of this kind.
+    pub fn errs_unsafely(&self) -> bool {
+        self.ratio_median > 1.0
+    }
+
+    /// What is said of a filter that is to hold such soils, where the walk errs on the unsafe side.
+    pub fn against_holding(&self, rules: &[AppliedRule]) -> Option<Finding> {
+        self.errs_unsafely().then(|| self.finding_with(rules, named_beside_range))
     }
 
     /// Whether the filter is finer than any for which tests of soils with such fines had their boundary.
     fn is_finer_than_tests(&self, rules: &[AppliedRule]) -> bool {
-        let rule = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.met == Some(true));
-        let d15f = rule.and_then(|rule| rule.value);
+        let d15f = d15f_of(rules).filter(|_| met_of(rules, TESTS_NO_EROSION) == Some(true));
         d15f.zip(self.range_of_tests_mm).is_some_and(|(d15f, [low, _])| d15f <= low)
     }
 
@@ -272,6 +284,11 @@ impl Evidence {
         }
         said
     }
+}
+
+/// D15F (mm), as the rules read it.
+fn d15f_of(rules: &[AppliedRule]) -> Option<f64> {
+    rules.iter().find(|rule| rule.id == TESTS_NO_EROSION)?.value
 }
 
 impl Group {
@@ -360,27 +377,37 @@ mod tests {
     }
 
     #[test]
-    fn a_client_reads_what_the_ratio_is_of_and_where_the_range_begins() {
+    fn a_client_reads_what_the_ratio_is_of_where_the_range_lies_and_no_probability() {
         let broad = [(0.001, 10.0), (0.01, 30.0), (0.075, 60.0), (0.6, 85.0), (2.0, 100.0)];
         let of = Evidence::of(&soil(&broad), 0.5, Some(1.5), None).unwrap();
         assert_eq!((of.soils, of.soils_without_boundary, of.narrow), (106, 22, false));
         let said = of.finding(&rules(&broad, 0.5)).sentence();
         for words in [
-            "For 106 real soils of this kind (55 to 85 % fines",
             "at 0.117 times the centre of",
             "that range begins at 0.642 of its centre; 22 more eroded in every filter. One filter was \
              walked, of Cu 1.5, with a base of 5 % of its mass; with four times as much base, uniform \
              filters began to erode at 12.1 times the D15F (median).",
-            "by the published range; the walk gives no probability, as its ratio to that range is not known \
-             well enough for such soils",
+            "For 106 real soils of this kind (55 to 85 % fines",
+            "D15F is 0.71 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm; Fell \
+             et al., Geotechnical Engineering of Dams, Table 9.2). ",
+            "so that no probability for a risk analysis follows.",
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }
+        // Two ends are no distribution: nobody can sign for a number that is read between them.
+        assert!(!said.contains("by the published range") && !said.contains("robability that"), "{said}");
         let c33 = Evidence::of(&soil(&SILTY), 0.5, Some(5.3), None).unwrap();
         let said = c33.finding(&rules(&SILTY, 0.5)).sentence();
         assert!(said.starts_with("For filters like this the walk errs on the unsafe side."), "{said}");
+        // What programs read: the sizes that the words compare.
+        let numbers = c33.finding(&rules(&SILTY, 0.5)).record(true).numbers;
+        let sizes = ["d15f_mm", "range_low_mm", "range_high_mm"].map(|of| numbers[of].as_f64().unwrap());
+        assert!((sizes[0] - 0.5).abs() < 1e-9 && sizes[1..] == [0.7, 1.7], "{sizes:?}");
+        assert!(c33.finding(&[]).record(true).numbers["d15f_mm"].is_null());
+        // A design names the size of which it speaks.
+        let limit = c33.against_holding(&rules(&SILTY, 0.7 * (1.0 - 1e-9))).unwrap().sentence();
+        assert!(limit.contains(". A D15F of 0.700 mm is at the lower end of the range in which"), "{limit}");
         assert!(said.contains("One filter was walked, C33 sand with a Cu of 5.3, with"), "{said}");
-        assert!(said.contains("gives no probability, as it errs on the unsafe side"), "{said}");
         // Its 86 soils lie within a factor of 1.92, and 95 % reach beyond the range.
         let silty = [(0.03, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
         let c33 = Evidence::of(&soil(&silty), 0.5, Some(5.3), None).unwrap();
@@ -388,10 +415,7 @@ mod tests {
             !c33.narrow && c33.ratio_median <= 1.0 && c33.group.starts_with("15 to 35 % fines"),
             "{c33:?}"
         );
-        let said = c33.finding(&rules(&silty, 0.5)).sentence();
-        assert!(said.contains("as its ratio to that range is not known well enough"), "{said}");
-        let none = Evidence::of(&sand(), 2.0, Some(1.5), None).unwrap().finding(&rules(&SAND, 2.0));
-        assert!(none.sentence().contains("as its boundary was not found"), "{}", none.sentence());
+        assert!(!c33.finding(&rules(&silty, 0.5)).sentence().contains("unsafe side"), "{c33:?}");
     }
 
     /// 0.7 mm is where the range begins, and Foster and Fell's boundary.
@@ -403,6 +427,8 @@ mod tests {
             let finding = of.finding(&rules(&SILTY, d15f));
             (finding.id(), finding.is_against(Verdict::Some))
         };
+        let finer = Evidence::of(&soil(&SILTY), 0.5, Some(1.5), None).unwrap().finding(&rules(&SILTY, 0.5));
+        assert!(finer.sentence().starts_with("D15F is 0.71 of the lowest D15F with erosion"), "{finer:?}");
         assert_eq!([id(0.69), id(0.75)], [("evidence_safe", true), ("evidence", false)]);
     }
 
@@ -463,7 +489,7 @@ mod tests {
         let all = rules(&SAND, 2.0);
         assert_eq!(of.bound, Some(Bound::AtLeast));
         assert!(of.supports(Verdict::None, &all) && !of.supports(Verdict::Some, &all));
-        let said = of.finding(&all).sentence();
+        let said = of.probabilities(false).unwrap();
         assert!(said.contains("at least") || said.contains(" or more"), "{said}");
         let mut eroded = margin(0.5, 1.0);
         eroded.walks.remove(0);

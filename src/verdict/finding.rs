@@ -462,7 +462,25 @@ findings! {
         "internal stability of the base", "rules.md",
         "The base itself is not internally stable by Kenney and Lau: the minimum H/F is {index}, at F = \
          {finer}, and the limit is 1. That rule is for soils without cohesion. Water may move the finer part \
-         through the base, so that another soil meets the filter.";
+         through the base, so that the filter meets a soil other than the one sampled: decide whether the \
+         filter is to hold that part, or have the pair tested.";
+    /// A broadly graded base for which a filter is specified.
+    broad_base(cu: Text): Base, Unsafe, Note;
+        "grading of the base", "design.md",
+        "The base is broadly graded (Cu {cu}): its finer part may move between its coarse grains.";
+    /// A base with a gap for which a filter is specified.
+    gap_of_base(within: Percent, from: Mm, to: Mm): Base, Unsafe, Note;
+        "gap of the base", "design.md",
+        "The base is gap-graded by this program's own check: only {within} of its mass lies between {from} \
+         and {to}, where less than 5 % counts as a gap. Look at the curve: practice regrades such a base on \
+         the size that is missing.";
+    /// A base whose curve is flat somewhere, though it has no gap.
+    flat_base(from: Mm, to: Mm, within: Percent, also: Text): Base, Open, Note;
+        "gap of the base", "design.md",
+        "The curve of the base is flat from {from} to {to}, with {within} of its mass: no gap by this \
+         program's own check, in which less than 5 % within a factor of 4 in size counts as one. The \
+         manual of the Corps (RMC-CPD-2023-04) leaves it to visual examination and judgment: look at the \
+         curve{also}.";
     /// Which class the replicates leave open.
     replicates_leave_open(): Walk, Open, Decides, sets Within, against OPEN;
         "replicates", "uncertainty.md",
@@ -567,39 +585,38 @@ findings! {
         "A blocked constriction stays open beside the particle that blocks it. No filter test has checked \
          how wide.";
     /// What soils of this kind say of the walk's boundary.
-    evidence(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
-        more: Text):
-        Practice, Settled, Note;
+    evidence(beside: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
+        Practice, Settled, Note, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
-        "The probability that a test would show no erosion {probability}. For {soils} real soils of this \
-         kind ({group}) the walk began to erode at {median} times the centre of the range published for \
-         soils of these fines (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
-         segregation and no crack, and none of these soils was tested itself.";
+        "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} times \
+         the centre of that range (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
+         segregation and no crack, and none of these soils was tested itself. The source gives the two ends \
+         of the range alone, so that no probability for a risk analysis follows.";
     /// The same where the filter is finer than the range of tests.
-    evidence_safe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
-        more: Text):
-        Practice, Safe, Limits;
+    evidence_safe(beside: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
+        Practice, Safe, Limits, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
-        "This D15F is finer than the range in which tests on soils of such fines had their boundary. The \
-         probability that a test would show no erosion {probability}. For {soils} real soils of this kind \
-         ({group}) the walk began to erode at {median} times the centre of that range (nine in ten: {low} to \
-         {high}){more}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
-         tested itself.";
+        "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} times \
+         the centre of that range (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
+         segregation and no crack, and none of these soils was tested itself. The source gives the two ends \
+         of the range alone, so that no probability for a risk analysis follows.";
     /// The same where the walk errs on the unsafe side.
-    evidence_unsafe(probability: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
-        more: Text):
-        Practice, Unsafe, Limits;
+    evidence_unsafe(beside: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
+        more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
+        Practice, Unsafe, Limits, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
         "For filters like this the walk errs on the unsafe side. For {soils} real soils of this kind \
          ({group}) it began to erode at {median} times the centre of the range published for soils of these \
-         fines (nine in ten: {low} to {high}){more}. The probability that a test would show no erosion \
-         {probability}. The walk knows no cohesion, no segregation and no crack, and none of these soils was \
-         tested itself.";
+         fines (nine in ten: {low} to {high}){more}. {beside}. The walk knows no cohesion, no segregation \
+         and no crack, and none of these soils was tested itself. The source gives the two ends of the range \
+         alone, so that no probability for a risk analysis follows.";
     /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
-    dispersion_not_known(before: Text, limit: Text, after: Text): Practice, Open, Note;
+    dispersion_not_known(then: Text, limit: Text): Practice, Open, Note, unshown limit;
         "dispersion", "rules.md",
-        "It is not known whether the base is dispersive. If it is, {before} {limit}{after}. The walk knows \
-         nothing of dispersion.",
+        "It is not known whether the base is dispersive. If it is, {then}. The walk knows nothing of \
+         dispersion.",
         to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
     /// The thickness that was walked.
     modelled_thickness(thickness: Text): Thickness, Settled, Note;
@@ -673,7 +690,7 @@ mod tests {
     fn every_sentence_is_whole_and_every_number_is_used() {
         let mut ids = BTreeSet::new();
         for finding in all_with(12.5, 3, "some text") {
-            let Entry { id, sentence, to_do, label, page, names, .. } = *finding.entry;
+            let Entry { id, sentence, to_do, label, page, names, unshown, .. } = *finding.entry;
             assert!(ids.insert(id), "{id} is there twice");
             assert!(!label.is_empty() && Path::new("src/docs").join(page).exists(), "{id}: {page}");
             let first = sentence.chars().next().unwrap();
@@ -683,7 +700,8 @@ mod tests {
             for name in names {
                 let used = [format!("{{{name}}}"), format!("{{{name}:")];
                 let says = |text: &str| used.iter().any(|used| text.contains(used));
-                assert!(says(sentence) || says(to_do), "{id} does not say {name}");
+                let is_said = says(sentence) || says(to_do);
+                assert_eq!(is_said, !unshown.contains(name), "{id} does not say {name}, or says it unshown");
             }
             // No words of the program where a client reads.
             for word in ["Eq. (", "base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {

@@ -4,7 +4,8 @@
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
-//! - `practice` is what the rules of filter practice say of a pair.
+//! - `practice` is what the rules of filter practice say of a pair, `tested` its class by the boundaries that
+//!   Foster and Fell saw in tests, and `rule_words` what a single rule found, in words.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
 //! - `evidence` is what soils of the base's kind say of a walk, `probability` has its probabilities in words.
 //! - `dispersion` is what is said of a base of which nobody has said whether it is dispersive.
@@ -12,7 +13,8 @@
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
-//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification.
+//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
+//!   is which standard products are said to fit, and `base_cautions` what is said of the base itself.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
@@ -24,6 +26,7 @@
 mod amount;
 mod answer;
 mod band;
+mod base_cautions;
 pub(crate) mod batch;
 mod batch_table;
 mod batch_words;
@@ -37,6 +40,7 @@ pub(crate) mod dispersion;
 mod entry;
 pub(crate) mod evidence;
 pub(crate) mod finding;
+pub(crate) mod fitting;
 pub(crate) mod left_out;
 mod next;
 mod pair;
@@ -45,7 +49,9 @@ pub(crate) mod practice;
 mod probability;
 mod quantity;
 mod rule_notes;
+pub(crate) mod rule_words;
 mod specification;
+pub(crate) mod tested;
 mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
@@ -66,5 +72,5 @@ pub use entry::{Entry, Finding};
 pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;
 pub use quantity::FindingValue;
-pub use specification::SpecificationOptions;
+pub use specification::{DESIGN_AGAIN, DESIGN_EACH_AGAIN, SpecificationOptions};
 pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

@@ -1,7 +1,9 @@
 //! What to do next: which D15F a filter is to have, what to test, what to find out.
 
 use super::beside::is_evidence;
-use super::practice::{Standing, broken, listed, standing};
+use super::entry::EVIDENCE_UNSAFE;
+use super::practice::{Standing, broken, standing};
+use super::rule_words::listed;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -194,7 +196,7 @@ impl Outcome {
             }
         }
         why.truncate(REASONS);
-        let is_unsafe = against.iter().any(|finding| finding.id == "evidence_unsafe");
+        let is_unsafe = against.iter().any(|finding| finding.id == EVIDENCE_UNSAFE);
         let is_unsafe =
             is_unsafe.then(|| "the walk errs on the unsafe side for filters like this".to_owned());
         let limits = (!why.is_empty() && self.confidence == Confidence::Outside)
@@ -208,7 +210,7 @@ impl Outcome {
 
     /// What to find out of a base of which nobody has said whether it is dispersive.
     fn of_dispersion(&self) -> Option<String> {
-        let then = self.if_dispersive?.of_filter(self.inputs.filter.d15_mm);
+        let then = self.if_dispersive?.of_filter(Some(self.inputs.filter.d15_mm));
         Some(format!("find out whether the base is dispersive (if it is, {then})"))
     }
 }

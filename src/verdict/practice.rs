@@ -3,18 +3,15 @@
 
 use super::entry::Finding;
 use super::finding;
-use crate::outcome::apart::{digits_of, value_and_limit};
+use super::rule_words::{against, listed, met_of, size};
+use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::record::{
-    AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, RuleText, TestedClass,
-    Verdict,
+    AppliedRule, LimitOfDesign, Outcome, Practice, RuleQuantity, RuleRole, TestedClass, Verdict,
 };
 use crate::outcome::rules::{
     DESIGN, PAPER_NO_EROSION, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
 };
-
-/// How the note of a rule begins that is no limit for these soils.
-pub const NOT_A_LIMIT: &str = "not a limit";
 
 /// Said where the rule of drainage has no result.
 pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
@@ -123,36 +120,6 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
     })
 }
 
-/// The class by the boundaries of Foster and Fell.
-pub(super) fn tested(rules: &[AppliedRule]) -> TestedClass {
-    let met = |id| met_of(rules, id);
-    match (met(TESTS_NO_EROSION), met(TESTS_CONTINUING)) {
-        (_, Some(false)) => TestedClass::Continuing,
-        (Some(true), _) => TestedClass::None,
-        (Some(false), Some(true)) => TestedClass::Some,
-        _ => TestedClass::Unknown,
-    }
-}
-
-/// The class by the tests of Foster and Fell, in words: beyond their boundary of no erosion a base has
-/// erosion, also where they found no clear boundary of the classes beyond.
-pub(super) fn tested_words(rules: &[AppliedRule]) -> &'static str {
-    match tested(rules) {
-        TestedClass::Unknown if is_beyond_tests(rules) => "erosion, class not known",
-        class => class_words(class),
-    }
-}
-
-fn class_words(class: TestedClass) -> &'static str {
-    match class {
-        TestedClass::None => "no erosion",
-        TestedClass::Some => "some or excessive erosion",
-        TestedClass::Excessive => "excessive erosion",
-        TestedClass::Continuing => "continuing erosion",
-        TestedClass::Unknown => "class not known",
-    }
-}
-
 /// Where a filter stands by practice, the worst first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {
@@ -215,46 +182,56 @@ impl Outcome {
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
-        let said = tested_words(&self.rules);
-        let tests = match tested(&self.rules) {
-            TestedClass::None => Some((0, said)),
-            TestedClass::Some | TestedClass::Excessive => Some((1, said)),
-            TestedClass::Continuing => Some((2, said)),
-            // At least some erosion.
-            TestedClass::Unknown if is_beyond_tests(&self.rules) => Some((1, said)),
-            TestedClass::Unknown => None,
-        };
-        let walked = severity(self.verdict);
-        let mut text = format!("The walk says “{}”. ", self.verdict.words());
-        text += &match tests {
-            Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
-            None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
-        };
-        text += match met_of(&self.rules, DESIGN) {
-            Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
-            Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
-            None => "The limit of design (Sherard and Dunnigan) gives no result. ",
-        };
-        text += match walked.zip(tests.map(|(class, _)| class)) {
-            _ if tested(&self.rules) == TestedClass::Unknown && walked != Some(0) => "",
-            Some((walked, tests)) if walked > tests => {
-                "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
-            }
-            Some((walked, tests)) if walked < tests => {
-                "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
+        compared_with_tests(self.verdict, &self.rules)
+    }
+}
+
+fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule]) -> String {
+    let said = tested_words(rules);
+    let tests = match tested(rules) {
+        TestedClass::None => Some((0, said)),
+        TestedClass::Some | TestedClass::Excessive => Some((1, said)),
+        TestedClass::Continuing => Some((2, said)),
+        // At least some erosion.
+        TestedClass::Unknown if is_beyond_tests(rules) => Some((1, said)),
+        TestedClass::Unknown => None,
+    };
+    let walked = severity(verdict);
+    let mut text = format!("The walk says “{}”. ", verdict.words());
+    text += &match tests {
+        // What is beyond the boundary of no erosion is said in words of this program.
+        Some((1, class)) => format!("By the boundaries of Foster and Fell the pair has {class}. "),
+        Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
+        None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
+    };
+    text += match met_of(rules, DESIGN) {
+        Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
+        Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
+        None => "The limit of design (Sherard and Dunnigan) gives no result. ",
+    };
+    text += match walked.zip(tests.map(|(class, _)| class)) {
+        _ if tested(rules) == TestedClass::Unknown && walked != Some(0) => "",
+        Some((walked, tests)) if walked > tests => {
+            "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
+        }
+        Some((walked, tests)) if walked < tests => {
+            "The walk is more favourable than the tests here, which is on the unsafe side: rely on the \
                  tests. "
-            }
-            Some(_) => "Walk and tests agree here. ",
-            None => "",
-        };
-        text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
+        }
+        Some((1, _)) => {
+            "Whether they agree is not known: neither the walk nor the rules here tell some from \
+                 excessive erosion. "
+        }
+        Some(_) => "Walk and tests agree here. ",
+        None => "",
+    };
+    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
                  to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
                  For uniform sands the model is therefore stricter than tests. For broadly graded bases it \
                  errs on the unsafe side, because a few coarse grains block for all the rest. It ignores the \
                  cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., Geotechnical \
                  Engineering of Dams, Table 9.2.)";
-        text
-    }
+    text
 }
 
 /// What practice says of a pair, in a line: whether the limit of design is kept, the class that tests of
@@ -333,52 +310,7 @@ fn first_clause(needs: &str) -> String {
     needs.split([':', ';']).next().unwrap_or_default().to_owned()
 }
 
-/// Whether the filter lies beyond 9 D95B of a base for which tests found no clear boundary.
-pub fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
-    let note = RuleText::Of(vec![RuleNote::BeyondUnclearBoundary]);
-    rules.iter().any(|rule| rule.id == TESTS_CONTINUING && rule.note == note)
-}
-
-/// The class that tests give the pair, with the boundaries between which it lies.
-fn of_tests(rules: &[AppliedRule]) -> Option<String> {
-    let limit = |id: &str| {
-        let rule = rules.iter().find(|rule| rule.id == id && rule.applies)?;
-        rule.limit?;
-        Some(format!("{}{}", against(rule, 3)[1], if rule.limit_at_most { " at most" } else { "" }))
-    };
-    let up_to = limit(TESTS_NO_EROSION).map(|of| format!("no erosion up to {of}"));
-    let is_unclear = rules.iter().any(|rule| {
-        rule.id == TESTS_CONTINUING && rule.note == RuleText::Of(vec![RuleNote::NoClearBoundary])
-    });
-    let beside = if is_beyond_unclear(rules) { ", where tests found no clear boundary" } else { "" };
-    let beyond = limit(TESTS_CONTINUING).map(|of| format!("{of}{beside}"));
-    let from = beyond.as_ref().map(|of| format!("continuing erosion beyond {of}"));
-    let unclear = "for such bases tests found no clear boundary of continuing erosion";
-    let from = from.or_else(|| is_unclear.then(|| unclear.into()));
-    let between = match tested(rules) {
-        TestedClass::None => limit(TESTS_NO_EROSION).map(|of| format!("up to {of}")),
-        TestedClass::Continuing => beyond.map(|of| format!("beyond {of}")),
-        TestedClass::Excessive => from,
-        TestedClass::Some => up_to.zip(from).map(|(a, b)| format!("{a}, {b}")),
-        TestedClass::Unknown => match (up_to, from) {
-            (Some(up_to), Some(from)) if is_beyond_tests(rules) => Some(format!("{up_to}; {from}")),
-            (up_to, from) => up_to.or(from),
-        },
-    };
-    Some(format!("Foster and Fell: {} ({})", tested_words(rules), between?))
-}
-
-/// Whether a rule that was made for these soils is kept; `None` where it has no result.
-pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
-    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
-}
-
-/// Whether a filter is coarser than any for which tests of Foster and Fell found no erosion.
-pub(super) fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
-    met_of(rules, TESTS_NO_EROSION) == Some(false)
-}
-
-/// 0 no erosion, 1 some or excessive, 2 continuing; `None` where it is undecided.
+/// 0 no erosion, 1 some, 2 continuing; `None` where it is undecided.
 pub(super) fn severity(verdict: Verdict) -> Option<u8> {
     match verdict {
         Verdict::None => Some(0),
@@ -386,56 +318,6 @@ pub(super) fn severity(verdict: Verdict) -> Option<u8> {
         Verdict::Continuing => Some(2),
         Verdict::Undecided => None,
     }
-}
-
-/// `a`, `a and b`, `a, b and c`.
-pub(super) fn listed(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [all @ .., last] => format!("{} and {last}", all.join(", ")),
-    }
-}
-
-/// A rule of retention, as a sentence cites it: whose it is, and which of theirs.
-pub(super) fn cited(id: &str, authority: &str) -> String {
-    let which = match id {
-        DESIGN => "limit of design",
-        TESTS_NO_EROSION => "boundary of no erosion",
-        _ => "rule",
-    };
-    format!("{authority}'s {which}")
-}
-
-/// The same of a rule that was applied.
-pub(super) fn cited_rule(rule: &AppliedRule) -> String {
-    match authority(rule) {
-        name if *name == rule.name => name.into(),
-        authority => cited(&rule.id, authority),
-    }
-}
-
-/// A value and its limit, with as many digits as tell them apart, and this many at the least.
-pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
-    let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
-        return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
-    };
-    let shown = value_and_limit(value, limit, rule.at_least, digits);
-    shown.map(|number| with_unit(number, &rule.unit))
-}
-
-/// A value with its unit.
-fn size(value: Option<f64>, unit: &str) -> String {
-    value.map_or("unknown".into(), |value| with_unit(short(value), unit))
-}
-
-fn with_unit(number: String, unit: &str) -> String {
-    if unit.is_empty() { number } else { format!("{number} {unit}") }
-}
-
-/// Two digits that mean something, or three from 100 on.
-fn short(value: f64) -> String {
-    digits_of(value, 2)
 }
 
 #[cfg(test)]
@@ -460,13 +342,12 @@ mod tests {
 
     #[test]
     fn the_limit_of_design_and_the_class_of_tests_stand_in_one_line() {
-        // With 38 % fines and a D95B of 2.6 mm tests found no clear boundary of continuing erosion.
-        let whole = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
-                     (design); Foster and Fell: erosion, class not known (no erosion up to 0.700 mm; for \
-                     such bases tests found no clear boundary of continuing erosion)";
-        assert_eq!(said(&GRAVEL, &TILL), whole);
+        let till = said(&GRAVEL, &TILL);
+        let begin = "not met: D15F 6.50 mm is more than the 1.12 mm that Sherard and Dunnigan allow \
+                     (design); Foster and Fell: at least some erosion (no erosion up to 0.700 mm); ";
+        assert!(till.starts_with(begin), "{till}");
         let between = said(&[(3.7, 0.0), (8.0, 100.0)], &SAND);
-        assert!(between.contains("Fell: some or excessive erosion (no erosion up to 3.56 mm, continuing"));
+        assert!(between.contains("Fell: at least some erosion; excessive erosion is not excluded, as its "));
         assert_eq!(
             said(&[(1.0, 0.0), (3.0, 100.0)], &SAND),
             "met: D15F 1.18 mm is within the 2.03 mm that Sherard and Dunnigan allow (design); Foster and \
@@ -477,6 +358,29 @@ mod tests {
         // Between the limit of design and the boundary that tests saw.
         let between = said(&[(2.5, 0.0), (5.0, 100.0)], &SAND);
         assert!(between.starts_with("not met: ") && between.contains("Fell: no erosion (up to"), "{between}");
+    }
+
+    /// Between the boundaries of no and of continuing erosion neither side tells some from excessive erosion,
+    /// and no words of this program stand as a quotation.
+    #[test]
+    fn whether_walk_and_tests_agree_between_the_boundaries_is_not_known() {
+        let between = of(&[(3.7, 0.0), (8.0, 100.0)], &SAND, false);
+        let some = compared_with_tests(Verdict::Some, &between);
+        assert!(
+            some.contains(
+                "“some erosion”. By the boundaries of Foster and Fell the pair has at least some erosion; \
+                 excessive erosion is not excluded, as its boundary is not worked out here. The limit"
+            ),
+            "{some}"
+        );
+        assert!(some.contains("Whether they agree is not known: ") && !some.contains("agree here"), "{some}");
+        assert!(!some.contains("“at least"), "{some}");
+        let held = compared_with_tests(Verdict::None, &between);
+        assert!(held.contains("more favourable than the tests here"), "{held}");
+        assert!(compared_with_tests(Verdict::Continuing, &between).contains("stricter than the tests here"));
+        let good = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
+        let good = compared_with_tests(Verdict::None, &good);
+        assert!(good.contains("in tests say “no erosion”. ") && good.contains("agree here"), "{good}");
     }
 
     #[test]

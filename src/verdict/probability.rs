@@ -7,6 +7,24 @@ use crate::outcome::record::Bound;
 /// How near the walk's probability comes to 0 or 1: half a step of its 20 quantiles.
 const WALK_SURE: f64 = 0.025;
 
+/// How near an end of a range a D15F has no margin to it, of that end.
+const AT_END: f64 = 0.005;
+
+/// Where the range was read.
+pub const SOURCE: &str = "Fell et al., Geotechnical Engineering of Dams, Table 9.2";
+
+/// A probability of no erosion in words, with what it takes and what it is not for; the range of tests (mm),
+/// where that is known.
+pub fn stated(each: &str, range: Option<[f64; 2]>) -> String {
+    let ends = range.map_or_else(String::new, |[low, high]| {
+        format!(" of {} to {} mm", rounded_down(low), rounded_up(high))
+    });
+    format!(
+        "Probability of no erosion in a test, not for a risk analysis: {each}; boundaries are taken as \
+         log-uniform within the published range{ends} (Fell et al., Table 9.2)"
+    )
+}
+
 /// Said of the one number that stands alone.
 const LOWER: &str = "the lower of two; beyond the D15F for which tests saw no erosion";
 
@@ -47,26 +65,47 @@ pub fn probabilities(
 }
 
 /// Where a D15F (mm) lies beside the range of D15F in which tests on soils with such fines had their boundary
-/// of no erosion: what can be said without any probability.
-pub fn beside_range(d15f_mm: f64, [low, high]: [f64; 2]) -> String {
+/// of no erosion: what can be said without any probability; the source stands behind the range, where it is
+/// named.
+pub fn beside_range(d15f_mm: f64, range: [f64; 2], source: &str) -> String {
+    place_in_range("D15F", d15f_mm, range, source)
+}
+
+/// The same of a D15F that is named: of the filter at a limit, and not of one that is judged.
+pub fn named_beside_range(d15f_mm: f64, range: [f64; 2], source: &str) -> String {
+    // A hair below a limit reads as the limit.
+    let name = format!("A D15F of {} mm", rounded_down(d15f_mm * (1.0 + 1e-8)));
+    place_in_range(&name, d15f_mm, range, source)
+}
+
+fn place_in_range(name: &str, d15f_mm: f64, [low, high]: [f64; 2], source: &str) -> String {
+    let is_at = |end: f64| (d15f_mm / end - 1.0).abs() <= AT_END;
+    let [lower, upper] = [rounded_down(low), rounded_up(high)];
     let of = |end: f64| digits_of(d15f_mm / end, 2);
-    match d15f_mm {
-        d15f if d15f < low => format!(
-            "D15F is {} of the lowest D15F with erosion in tests on soils with such fines ({} mm)",
-            of(low),
-            rounded_down(low)
-        ),
-        d15f if d15f > high => format!(
-            "D15F is {} times the highest D15F without erosion in tests on soils with such fines ({} mm)",
-            of(high),
-            rounded_up(high)
-        ),
-        _ => format!(
-            "D15F lies in the range in which erosion began in tests on soils with such fines ({} to {} mm)",
-            rounded_down(low),
-            rounded_up(high)
-        ),
-    }
+    let source = if source.is_empty() { String::new() } else { format!("; {source}") };
+    let place = match d15f_mm {
+        _ if is_at(low) => "is at the lower end of",
+        _ if is_at(high) => "is at the upper end of",
+        d15f if d15f < low => {
+            return format!(
+                "{name} is {} of the lowest D15F with erosion in tests on soils with such fines ({lower} \
+                 mm{source})",
+                of(low)
+            );
+        }
+        d15f if d15f > high => {
+            return format!(
+                "{name} is {} times the highest D15F without erosion in tests on soils with such fines \
+                 ({upper} mm{source})",
+                of(high)
+            );
+        }
+        _ => "lies in",
+    };
+    format!(
+        "{name} {place} the range in which erosion began in tests on soils with such fines ({lower} to {upper} \
+         mm{source})"
+    )
 }
 
 #[cfg(test)]
@@ -76,16 +115,51 @@ mod tests {
     /// Tests of bases with 35 to 85 % fines had their boundary at 0.7 to 1.7 mm.
     #[test]
     fn a_d15f_stands_beside_the_range_of_tests_without_a_probability() {
-        let said = |d15f| beside_range(d15f, [0.7, 1.7]);
+        let said = |d15f| beside_range(d15f, [0.7, 1.7], "");
         assert_eq!(
             said(0.234),
             "D15F is 0.33 of the lowest D15F with erosion in tests on soils with such fines (0.700 mm)"
         );
-        assert!(said(0.7).starts_with("D15F lies in the range in which erosion began"), "{}", said(0.7));
-        assert!(said(1.7).ends_with("(0.700 to 1.70 mm)"), "{}", said(1.7));
+        assert!(said(0.8).starts_with("D15F lies in the range in which erosion began"), "{}", said(0.8));
+        assert!(said(0.8).ends_with("(0.700 to 1.70 mm)"), "{}", said(0.8));
         let coarse = said(2.21);
         assert!(coarse.starts_with("D15F is 1.3 times the highest D15F without erosion"), "{coarse}");
         assert!(coarse.ends_with("(1.70 mm)"), "{coarse}");
+        assert!(beside_range(2.21, [0.7, 1.7], "Table 9.2").ends_with(" (1.70 mm; Table 9.2)"));
+    }
+
+    /// At an end of the range there is no margin, and no quotient to print: a limit of design is a hair below.
+    #[test]
+    fn at_an_end_of_the_range_the_end_is_said() {
+        for (d15f, end) in [
+            (0.7, "lower"),
+            (0.7 * (1.0 - 1e-9), "lower"),
+            (0.6966, "lower"),
+            (0.703, "lower"),
+            (1.705, "upper"),
+        ] {
+            assert_eq!(
+                beside_range(d15f, [0.7, 1.7], ""),
+                format!(
+                    "D15F is at the {end} end of the range in which erosion began in tests on soils with such \
+                     fines (0.700 to 1.70 mm)"
+                )
+            );
+        }
+        assert!(beside_range(0.69, [0.7, 1.7], "").starts_with("D15F is 0.99 of the lowest"));
+        let named = named_beside_range(0.7 * (1.0 - 1e-9), [0.7, 1.7], SOURCE);
+        assert!(named.starts_with("A D15F of 0.700 mm is at the lower end of the range in which"), "{named}");
+    }
+
+    #[test]
+    fn a_probability_says_how_it_is_read_and_what_it_is_not_for() {
+        assert_eq!(
+            stated("88 % by the published range", Some([0.7, 1.7])),
+            "Probability of no erosion in a test, not for a risk analysis: 88 % by the published range; \
+             boundaries are taken as log-uniform within the published range of 0.700 to 1.70 mm (Fell et \
+             al., Table 9.2)"
+        );
+        assert!(stated("88 %", None).contains("within the published range (Fell et al."));
     }
 
     #[test]

@@ -42,13 +42,15 @@ impl RuleNote {
             Self::ResultOfModel => "a result of the model, for the base as it is walked",
             Self::BeyondAnyLimit => "beyond the most that the limit can be",
             Self::NoClearBoundary => {
-                "not a limit: for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear \
-                 boundary"
+                "not a limit: with 15 to 85 % fines and D95B above 2 mm tests identified no boundary of \
+                 continuing erosion (Fell et al., section 9.3.2); the manual of the Corps has one in a \
+                 figure alone"
             }
             Self::BeyondUnclearBoundary => {
-                "beyond 9 D95B, though for bases with 15 to 85 % fines and D95B above 2 mm tests found no \
-                 clear boundary"
+                "beyond 9 D95B, though with 15 to 85 % fines and D95B above 2 mm tests identified no \
+                 boundary of continuing erosion (Fell et al., section 9.3.2)"
             }
+            Self::ExcessiveNotJudged => "continuing erosion not reached; excessive erosion not judged",
             Self::FloorGoverns(times, size) => {
                 return format!("its floor: {} D85B would be {} mm", given(times), rounded_down(size));
             }
@@ -140,6 +142,32 @@ impl RegradeReason {
     }
 }
 
+impl RuleText {
+    /// Whether it says this note, also as a file has it that was read back.
+    pub fn says(&self, note: RuleNote) -> bool {
+        match self {
+            Self::Of(notes) => notes.contains(&note),
+            Self::Said(words) => {
+                let earlier = EARLIER.iter().any(|(of, said)| *of == note && words == said);
+                earlier || words.contains(&note.words())
+            }
+        }
+    }
+}
+
+/// Notes as files of earlier versions say them.
+const EARLIER: [(RuleNote, &str); 2] = [
+    (
+        RuleNote::NoClearBoundary,
+        "not a limit: for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear boundary",
+    ),
+    (
+        RuleNote::BeyondUnclearBoundary,
+        "beyond 9 D95B, though for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear \
+         boundary",
+    ),
+];
+
 impl fmt::Display for RuleText {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -223,5 +251,20 @@ mod tests {
         let read: RuleText = serde_json::from_str(&text).unwrap();
         assert!(matches!(&read, RuleText::Said(_)) && read == notes && !read.is_empty());
         assert_eq!(serde_json::from_str::<RuleText>("\"\"").unwrap(), RuleText::default());
+    }
+
+    #[test]
+    fn a_note_is_known_again_among_others_and_in_earlier_words() {
+        let excessive = RuleNote::ExcessiveNotJudged;
+        let notes = RuleText::Of(vec![RuleNote::RegradedOn(4.75), excessive]);
+        let read: RuleText = serde_json::from_str(&serde_json::to_string(&notes).unwrap()).unwrap();
+        for text in [&notes, &read] {
+            assert!(text.says(excessive) && !text.says(RuleNote::NoClearBoundary), "{text:?}");
+        }
+        for (note, words) in EARLIER {
+            let earlier = RuleText::Said(words.into());
+            assert!(earlier.says(note) && note.words() != words, "{words}");
+            assert!(EARLIER.iter().all(|(other, _)| *other == note || !earlier.says(*other)), "{words}");
+        }
     }
 }

@@ -30,7 +30,10 @@ fn own(rows: &[OfThickness]) -> Option<&OfThickness> {
     rows.iter().find(|row| row.factor == 1.0)
 }
 
-/// What the rows say beside a verdict: whether it stays, and how much erodes; `None` without
+/// Of a thickness that was not walked with as many times the base.
+const OTHER_BASE: &str = ", not as many times the base";
+
+/// What the rows say beside a verdict: whether it stays, and how much erodes where it does not; `None` without
 /// another thickness. What is undecided neither stays nor moves.
 fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<Finding> {
     let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
@@ -40,7 +43,7 @@ fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opti
     let own = own(rows)?;
     let stays = others.iter().all(|row| row.walked.verdict == verdict);
     let of_row = |row: &&OfThickness| {
-        let held = if row.has_its_base(own) { "" } else { ", not as many times the base" };
+        let held = if row.has_its_base(own) { "" } else { OTHER_BASE };
         format!("{} times as thick{held}: {}", times(row.factor), walked_in_words(&row.walked))
     };
     let each: Vec<String> = others.iter().map(of_row).collect();
@@ -50,9 +53,20 @@ fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Opti
             let points = points.map_or(String::new(), |points| format!(", {points}"));
             found::open_with_thickness(&points, &each)
         }
-        (_, true) => found::stays_with_thickness(&each),
+        (_, true) => {
+            let held = if others.iter().all(|row| row.has_its_base(own)) { "" } else { OTHER_BASE };
+            let reach = reach(others.iter().map(|row| row.factor));
+            found::stays_with_thickness(&format!("{reach} times as thick{held}"))
+        }
         (_, false) => found::moves_with_thickness(&each),
     })
+}
+
+/// From the least to the greatest of some multiples.
+pub(super) fn reach(factors: impl Iterator<Item = f64> + Clone) -> String {
+    let (least, greatest) =
+        (factors.clone().fold(f64::INFINITY, f64::min), factors.fold(f64::NEG_INFINITY, f64::max));
+    if least == greatest { times(least) } else { format!("{} to {}", times(least), times(greatest)) }
 }
 
 /// A multiple, without digits that say nothing.
@@ -102,11 +116,7 @@ mod tests {
         let own = row(1.0, Verdict::Some, 0.12);
         assert_eq!(sentence(std::slice::from_ref(&own), Verdict::Some, None), None);
         let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)], Verdict::Some, None).unwrap();
-        assert_eq!(
-            stays,
-            "The verdict does not change with thickness (2 times as thick: some erosion, 10.00 % eroded in 1 \
-             replicate)."
-        );
+        assert_eq!(stays, "The verdict does not change with thickness (2 times as thick).");
         let rows = [row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)];
         let moves = sentence(&rows, Verdict::Some, None).unwrap();
         assert!(
@@ -116,7 +126,7 @@ mod tests {
         assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
         let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };
         let held = sentence(&[row(1.0, Verdict::Some, 0.12), held], Verdict::Some, None).unwrap();
-        assert!(held.contains("(2 times as thick, not as many times the base: some erosion"), "{held}");
+        assert!(held.ends_with("(2 times as thick, not as many times the base)."), "{held}");
         // Twice the copies of a packing have not quite twice its layers.
         let copies = |factor, n_base, mm| OfThickness {
             n_base,
@@ -128,7 +138,8 @@ mod tests {
         let mut clear = row(2.0, Verdict::Continuing, 0.59);
         clear.walked.stopped_when_clear = true;
         clear.walked.runs = vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }];
-        let said = sentence(&[row(1.0, Verdict::Continuing, 0.6), clear], Verdict::Continuing, None).unwrap();
+        let rows = [row(1.0, Verdict::Some, 0.6), row(0.5, Verdict::Some, 0.7), clear];
+        let said = sentence(&rows, Verdict::Some, None).unwrap();
         assert!(said.contains("continuing erosion, 39 to 80 % eroded in 1 replicate"), "{said}");
     }
 

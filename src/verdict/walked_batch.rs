@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
-use super::practice::is_beyond_tests;
 use super::probability::probabilities;
+use super::tested::is_beyond_tests;
 use crate::outcome::BaseSize;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{

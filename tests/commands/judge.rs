@@ -81,8 +81,11 @@ fn evidence_of_soils_of_its_kind_stands_beside_the_verdict() {
         "{text}"
     );
     let said = "<b>Evidence</b>: This D15F is finer than the range in which tests on soils of such fines had \
-                their boundary. The probability that a test would show no erosion is";
-    assert!(fs::read_to_string(at.join("a/report.html")).unwrap().contains(said));
+                their boundary. D15F is 0.";
+    let page = fs::read_to_string(at.join("a/report.html")).unwrap();
+    // Two ends of a range are no distribution: page 1 has no probability to lift into a risk analysis.
+    assert!(page.contains(said) && page.contains("no probability for a risk analysis follows"));
+    assert!(!page.contains("robability that a test") && !page.contains("by the published range"));
     let walks = outcome["margin"]["walks"].as_array().unwrap();
     assert!(walks.len() > 3 && walks.iter().any(|walk| walk["factor"] == 1.0), "{walks:?}");
     // Tests of dispersive soils had other boundaries, and another thickness or base was not studied.
@@ -224,7 +227,8 @@ fn a_broken_rule_of_retention_stands_in_the_first_lines_of_every_verdict() {
         let next = match dispersive {
             false => {
                 "Next: take a filter with a D15F of at most 4.18 mm (if the base is dispersive, which is \
-                 not stated, the limit is not known, and 4.18 mm or less); "
+                 not stated, no source that was read gives a limit of design for such fines; it is at \
+                 most 4.18 mm: have the pair tested); "
             }
             true => "Next: take a finer filter; the limit lies below a D15F of 4.18 mm, and is not known; ",
         };

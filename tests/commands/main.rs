@@ -43,6 +43,7 @@ mod sheet;
 mod slurm_scripts;
 mod small_run;
 mod soils;
+mod soils_of_a_sheet;
 mod specification;
 mod studies;
 mod thickness;

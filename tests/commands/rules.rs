@@ -203,6 +203,34 @@ fn tables_that_cannot_be_are_refused_by_what_is_wrong_with_them() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("are the two files exchanged?"));
 }
 
+/// 7 D85B and 9 D95B of this sand are 3.14 and 4.33 mm: excessive erosion damages a dam, and is not judged.
+#[test]
+fn a_boundary_of_continuing_erosion_that_is_not_reached_is_no_good_news() {
+    let root = tempfile::tempdir().unwrap();
+    let base = table(root.path(), "base.csv", "0.18,0\n0.3,30\n0.5,100\n");
+    let of = |filter: &str| {
+        let filter = table(root.path(), "filter.csv", filter);
+        let output = voidwalk(&["rules", &base, &filter]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let row = "Foster and Fell: boundary of continuing erosion: D15F = ";
+    let line = |said: &str| {
+        let at = said.lines().position(|line| line.contains(row)).unwrap();
+        said.lines().skip(at).take(2).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let between = line(&of("3,0\n4,15\n8,100\n"));
+    assert!(between[0].starts_with("  not reached Foster and Fell: ") && !between[0].contains("<="));
+    assert!(between[0].ends_with(" mm, continuing beyond 4.33 mm"), "{between:?}");
+    assert!(
+        between[1].trim() == "continuing erosion not reached; excessive erosion not judged",
+        "{between:?}"
+    );
+    let fine = line(&of("1,0\n1.5,15\n3,100\n"));
+    assert!(fine[0].starts_with("  not reached ") && !fine[1].contains("excessive"), "{fine:?}");
+    assert!(line(&of("5,0\n6,15\n12,100\n"))[0].starts_with("  NOT MET "));
+}
+
 #[test]
 fn one_authority_has_its_rules_and_its_limit_and_says_what_it_leaves_out() {
     let root = tempfile::tempdir().unwrap();
@@ -215,8 +243,8 @@ fn one_authority_has_its_rules_and_its_limit_and_says_what_it_leaves_out() {
     };
     assert_eq!(words(&[]), words(&["--authority", "all"]));
     let nrcs = words(&["--authority", "nrcs"]);
-    assert!(nrcs.contains("  NOT MET    Sherard and Dunnigan") && nrcs.contains("Permeability: "), "{nrcs}");
-    assert!(!nrcs.contains("  NOT MET    Terzaghi") && !nrcs.contains("Foster and Fell: "), "{nrcs}");
+    assert!(nrcs.contains("  NOT MET     Sherard and Dunnigan") && nrcs.contains("Permeability: "), "{nrcs}");
+    assert!(!nrcs.contains("  NOT MET     Terzaghi") && !nrcs.contains("Foster and Fell: "), "{nrcs}");
     let last = nrcs.lines().last().unwrap();
     assert!(
         last.starts_with("NRCS: not met: D15F 2.69 mm is more than 1.79 mm")

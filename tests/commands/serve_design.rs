@@ -147,6 +147,20 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
         );
     }
     assert!(reached > 0, "{pair}");
+    // The page works out no result itself, and a boundary that is not reached is not met.
+    let all = pair["rules"].as_array().unwrap();
+    let found = pair["results"].as_array().unwrap();
+    let begins = pair["limit_begins"].as_array().unwrap();
+    assert_eq!([found.len(), begins.len()], [all.len(); 2]);
+    for ((rule, found), begin) in all.iter().zip(found).zip(begins) {
+        let is_boundary = rule["role"] == "continuation";
+        match rule["met"].as_bool() {
+            Some(true) if is_boundary => assert_eq!(found, "not reached", "{rule}"),
+            Some(met) => assert_eq!(found, if met { "met" } else { "not met" }, "{rule}"),
+            None => assert!(!found.as_str().unwrap().contains("met"), "{rule} {found}"),
+        }
+        assert_eq!(begin == "continuing beyond", is_boundary, "{rule}");
+    }
     // A path is no shape, a soil that is none no base, and nothing is left of either.
     for shape in ["narrow.csv", "./narrow.csv", "/etc/passwd", "../x", "sheets/1/narrow.csv"] {
         let (status, said) = served.design(&[], json!({ "shape": shape }));

@@ -164,6 +164,12 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
             assert_eq!(found, eroded[key].as_f64(), "{run} {what}");
         }
     }
+    // Outside the checked range nobody can answer for a probability: the row says where D15F lies.
+    assert_eq!(outcome["confidence"], "outside checked range");
+    assert!(outcome["evidence"]["probability_by_tests"].is_number());
+    let beside = item(verdict, "Beside tests on such soils (not for a risk analysis)");
+    assert!(beside.words().starts_with("D15F "), "{beside:?}");
+    assert!(rows(verdict).iter().all(|row| !row["Item"].words().starts_with("Probability")));
     assert_eq!(item(verdict, "D15F/D85B").number(), outcome["ratios"]["d15f_over_d85b"].as_f64());
     assert_eq!(item(&all["Inputs"], "D15F").number(), outcome["inputs"]["filter"]["d15_mm"].as_f64());
     assert_eq!(item(&all["Inputs"], "Base particles in each run").number(), outcome["n_base"].as_f64());
@@ -179,9 +185,19 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
         for (heading, key) in [("Formula", "formula"), ("Source", "source"), ("Id", "id"), ("Rule", "name")] {
             assert_eq!(book[heading].words(), json[key].as_str().unwrap(), "{id}");
         }
-        let met = json["met"].as_bool().map_or(Cell::Empty, Cell::Truth);
-        assert_eq!(book["Met"], met, "{id}");
+        // A boundary that is not reached is no limit that is met.
+        let met = json["met"].as_bool().filter(|met| json["role"] != "continuation" || !met);
+        assert_eq!(book["Met"], met.map_or(Cell::Empty, Cell::Truth), "{id}");
+        let words = [(Some(true), "met"), (Some(false), "not met")];
+        let said = words.iter().find(|(of, _)| *of == met);
+        assert!(said.is_none_or(|(_, words)| book["Result"].words() == *words), "{id}");
+        assert!(!book["Result"].words().is_empty(), "{id}");
+        // Nor is it the most that is allowed.
+        let is_boundary = json["role"] == "continuation" && json["limit"].is_number();
+        let beyond = book["The limit is"] == Cell::Words("a boundary: continuing erosion beyond it".into());
+        assert_eq!(beyond, is_boundary, "{id}");
     }
+    assert!(of_json.iter().any(|of| of["role"] == "continuation" && of["limit"].is_number()));
     // Run by run.
     let runs: Vec<&Value> = outcome["replicates"]
         .as_array()

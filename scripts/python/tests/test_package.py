@@ -85,7 +85,11 @@ def test_the_settings_of_a_scene_are_those_of_the_program() -> None:
 
 def test_the_examples_are_typed_strictly(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
-    for example in sorted((ROOT / "scripts" / "examples").glob("*.py")):
+    page = (ROOT / "src" / "docs" / "python.md").read_text(encoding="utf-8")
+    guide = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    assert len(guide) > 2
+    (tmp_path / "guide.py").write_text("".join(guide), encoding="utf-8")
+    for example in [tmp_path / "guide.py", *sorted((ROOT / "scripts" / "examples").glob("*.py"))]:
         command = [sys.executable, "-m", "mypy", "--strict", str(example)]
         said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
         assert said.returncode == 0, said.stdout + said.stderr

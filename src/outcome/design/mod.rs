@@ -5,6 +5,7 @@
 //! the filter is scaled, which repacks nothing.
 
 pub mod band;
+mod finding;
 pub(crate) mod products;
 mod record;
 mod sieves;
@@ -12,9 +13,9 @@ mod size_band;
 pub mod specification;
 mod spread;
 
+pub use finding::DesignFinding;
 pub use record::{
-    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignFinding, DesignRow, NetworkBoundaries,
-    Range, WalkRow,
+    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, Range, WalkRow,
 };
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};

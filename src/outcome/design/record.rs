@@ -3,11 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::band::{Band, SetBy};
+use super::finding::DesignFinding;
 use super::products::Fit;
 use super::specification::Specification;
 use super::spread::{Beyond, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, FindingRecord, ModelLimit, SheetCover};
+use crate::outcome::record::{AppliedRule, Confidence, InputFile, ModelLimit, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -38,6 +39,13 @@ pub struct Design {
     pub filter_cu: Option<f64>,
     /// The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
     pub filter_d15_mm: Option<f64>,
+    /// Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
+    /// where its sizes are not given, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub filter_gradation: Vec<[f64; 2]>,
+    /// Every file that was read; empty in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
     /// Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
     /// own.
     pub unit: String,
@@ -93,26 +101,6 @@ pub struct Design {
     pub seconds: f64,
 }
 
-/// A finding about the rows of a design.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct DesignFinding {
-    /// The row that it is of, in words; `None` where it is of all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub row: Option<String>,
-    /// The finding.
-    #[serde(flatten)]
-    pub finding: FindingRecord,
-}
-
-impl DesignFinding {
-    /// Its sentence, with the row's name and with the setting that changes it.
-    pub fn words(&self) -> String {
-        let said = self.finding.with_to_do();
-        self.row.as_ref().map_or(said.clone(), |row| format!("{row}: {said}"))
-    }
-}
-
 /// How coarse the filter may be; for the inverse, how fine the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -156,6 +144,13 @@ pub struct BaseStated {
     /// D85 (mm) before regrading, where it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d85_as_sampled_mm: Option<f64>,
+    /// Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
+    /// earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradation: Vec<[f64; 2]>,
+    /// The same as it was walked after regrading; empty where it was walked as sampled.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
 }
 
 /// The boundaries of one density and thickness.
@@ -351,12 +346,6 @@ impl Design {
         let of = self.products.iter().find(|of| of.name == product)?;
         let fit = of.fits();
         (!of.may_fit() && (!fit || self.may_fit())).then_some(fit)
-    }
-
-    /// Names of the standard products that are said to fit: none where that is in doubt.
-    pub fn products_that_fit(&self) -> Vec<&str> {
-        let fit = self.products.iter().filter(|of| self.may_fit() && of.fits());
-        fit.map(|of| of.name.as_str()).collect()
     }
 }
 

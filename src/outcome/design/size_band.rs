@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::products::{Product, size_at};
+use super::products::{PRODUCTS, Product, size_at};
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
@@ -122,6 +122,15 @@ impl SizeBand {
         };
         let worst = product.limits.iter().map(beyond).max_by(|a, b| a.1.total_cmp(&b.1))?;
         (worst.1 > 0.0).then_some(worst)
+    }
+
+    /// By how many percentage points a standard product leaves the limits at an opening (mm) as they are
+    /// printed there, rounded into the band; `None` of a product that is none, or has no limits there.
+    pub fn printed_left_by(&self, product: &str, opening_mm: f64) -> Option<f64> {
+        let product = PRODUCTS.iter().find(|of| of.name == product)?;
+        let (_, least, greatest) = product.limits.iter().find(|of| of.0 == opening_mm)?;
+        let [min, max] = whole(self.percent_finer(opening_mm));
+        Some((min - least).max(greatest - max))
     }
 }
 

@@ -5,11 +5,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::finding::DesignFinding;
 use super::products::{PRODUCTS, Product};
 use super::sieves::SieveSeries;
 pub use super::size_band::{BandSize, SieveLimit, SizeBand};
 use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, significant};
-use crate::outcome::record::{IfDispersive, SheetCover};
+use crate::outcome::record::{IfDispersive, InputFile, SheetCover};
 
 /// The whole of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -32,8 +33,16 @@ pub struct Specification {
     /// Whether inches stand beside mm on its page.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
+    /// Every file that was read; empty as a part of a design, which has them itself, and in files of earlier
+    /// versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
+    /// What a reader must know of the base itself, each of its curve where there are several; empty in files
+    /// of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<DesignFinding>,
     /// Every step, with its numbers.
     pub steps: Vec<SpecificationStep>,
     /// Minimum D15F (mm) that drains the base; `None` where it is not known.

@@ -42,3 +42,10 @@ pub struct InputFile {
     /// XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
     pub xxh3: String,
 }
+
+impl InputFile {
+    /// A file with these bytes.
+    pub fn of(name: impl Into<String>, bytes: &[u8]) -> Self {
+        Self { name: name.into(), xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes)) }
+    }
+}

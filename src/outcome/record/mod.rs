@@ -35,7 +35,7 @@ pub use inputs::{
     NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest, commit};
-pub use practice::{IfDispersive, LimitOfDesign, Practice, TestedClass};
+pub use practice::{DispersiveLack, IfDispersive, LimitOfDesign, Practice, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};

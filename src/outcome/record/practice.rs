@@ -22,6 +22,21 @@ pub struct IfDispersive {
     /// Whether the true limit is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_most: bool,
+    /// Why it is not known; `None` where it is, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lacks: Option<DispersiveLack>,
+}
+
+/// Why the limit of a dispersive base is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub enum DispersiveLack {
+    /// No source that was read gives a limit of design for such fines.
+    #[serde(rename = "limit of design")]
+    LimitOfDesign,
+    /// No sieve tells the base's D85.
+    #[serde(rename = "D85B")]
+    D85B,
 }
 
 /// What filter tests showed, by the boundaries of Foster and Fell.

@@ -90,7 +90,7 @@ pub const RULES: &[FilterRule] = &[
         id: TESTS_CONTINUING,
         authority: "Foster and Fell",
         stated_by: &[FosterFell, Usace],
-        says: "some erosion rather than continuing",
+        says: "boundary of continuing erosion",
         role: RuleRole::Continuation,
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading; not \
                      bases with 15 to 85 % fines and a D95B above 2 mm",

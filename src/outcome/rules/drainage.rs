@@ -13,7 +13,7 @@ const TIMES: f64 = 5.0;
 const LEAST_TIMES: f64 = 3.0;
 
 /// The minimum D15F whatever the base (mm).
-const LEAST_MM: f64 = 0.1;
+pub const LEAST_D15F_MM: f64 = 0.1;
 
 /// Most fines of a filter (%).
 pub const MOST_FINES_PERCENT: f64 = 5.0;
@@ -38,7 +38,7 @@ pub fn least_permeability(inputs: &RuleInputs) -> Judged {
 }
 
 fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
-    let least = if inputs.scale_free { 0.0 } else { LEAST_MM };
+    let least = if inputs.scale_free { 0.0 } else { LEAST_D15F_MM };
     let (d15f, d15b) = (inputs.d15f(), inputs.base.d(15.0));
     let of_base = times * d15b.unwrap_or(inputs.base.smallest_mm());
     let limit = of_base.max(least);

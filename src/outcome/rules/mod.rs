@@ -22,7 +22,7 @@ pub use all::{
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
 pub use authority::Authority;
 pub use base::BaseSoil;
-pub use drainage::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
+pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests};
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 

@@ -171,5 +171,12 @@ pub fn continuing(inputs: &RuleInputs) -> Judged {
         let judged = judged.at_most().noted(base_as_read(inputs));
         return if is_beyond { judged } else { judged.lacking(RuleNote::NeedsD95B) };
     }
-    judged.noted(base_as_read(inputs))
+    let is_between = d15f.is_some() && !is_beyond && !is_without_erosion(inputs);
+    judged.noted(base_as_read(inputs)).noted(is_between.then_some(RuleNote::ExcessiveNotJudged))
+}
+
+/// Whether tests of such a base are known to have shown no erosion with this filter.
+fn is_without_erosion(inputs: &RuleInputs) -> bool {
+    let of = no_erosion(inputs);
+    !of.limit_at_most && of.value.zip(of.limit).is_some_and(|(d15f, limit)| d15f <= limit)
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::applied::{AppliedRule, RuleRole};
+use crate::outcome::record::RuleNote;
 
 fn sieve(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_points(points, None).unwrap()
@@ -79,11 +80,25 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     assert!((4.75f64.powf((76.0 - 60.0) / 20.0) - 3.478).abs() < 1e-3);
     let rule = of("foster-fell-continuing", &filter(1.0), &gravelly);
     assert!(!rule.applies && rule.met.is_none() && rule.limit.is_none() && !rule.is_broken(), "{rule:?}");
-    assert!(rule.note.to_string().starts_with("not a limit: ") && close(rule.value, 1.0), "{rule:?}");
+    assert!(rule.note.says(RuleNote::NoClearBoundary) && close(rule.value, 1.0), "{rule:?}");
     // Beyond 9 D95B, 31.3 mm, it is broken all the same.
     let rule = of("foster-fell-continuing", &filter(100.0), &gravelly);
     assert!(rule.is_broken() && close(rule.limit, 9.0 * 4.75f64.powf(0.8)), "{rule:?}");
-    assert!(rule.note.to_string().contains("no clear boundary"), "{rule:?}");
+    assert!(rule.note.says(RuleNote::BeyondUnclearBoundary), "{rule:?}");
+}
+
+/// 7 D85B are 7 mm and 9 D95B 22.68 mm: what lies between them may be excessive, and nobody judges it.
+#[test]
+fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_judged() {
+    let soil = base(5.0, 1.0);
+    for (d15f, is_open) in [(6.9, false), (7.1, true), (22.0, true), (23.0, false)] {
+        let rule = of("foster-fell-continuing", &filter(d15f), &soil);
+        assert_eq!(rule.note.says(RuleNote::ExcessiveNotJudged), is_open, "{d15f}: {rule:?}");
+    }
+    // Fines that nobody sieved may put the boundary of no erosion below this filter.
+    let hidden = sieve(&[(0.3, 25.0), (1.0, 100.0)]);
+    let rule = of("foster-fell-continuing", &filter(0.6), &hidden);
+    assert!(rule.met == Some(true) && rule.note.says(RuleNote::ExcessiveNotJudged), "{rule:?}");
 }
 
 /// 15 to 85 % fines and a D95B above 2 mm: beside that range, and where the fines are not known.

@@ -2,6 +2,8 @@
 
 mod figure;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod words;
 
 use std::path::Path;
@@ -12,11 +14,12 @@ use super::cover::program;
 use super::error::ReportError;
 use super::files::{json, rows};
 use super::first_page::NOT_COUNTED;
-use super::names::{is_named, soil_name, titled};
-use super::numbers::{threshold, whole};
+use super::given_soils::GivenSoils;
+use super::names::titled_by_file;
+use super::numbers::{significant, threshold, whole};
 use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
-use super::specification::{Stated, to_specify};
+use super::specification::{Stated, cautions, still_to_set, to_specify};
 use super::written::Written;
 use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow};
 use crate::outcome::record::Confidence;
@@ -39,7 +42,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         true => "How fine may the base be?",
     };
     let names = html! {
-        (titled("Base", &design.base.name)) ", " (filter_words(&design.filter))
+        (titled_by_file("Base", "Base", &design.base.name)) ", " (filter_words(&design))
     };
     let findings = told(&design);
     let (foremost, rest) = findings.split_at(findings.len().min(FOREMOST));
@@ -58,6 +61,9 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         super::workbook::write_specification_workbook(folder, specification, Some(&design))?;
     }
     let stated = design.specification.as_ref().map(Stated::of).unwrap_or_default();
+    let soils = GivenSoils::of_design(&design);
+    let band = design.specification.as_ref().and_then(|of| Some((of.band.as_ref()?, of.band_in_words()?)));
+    let drawn = soils.figure(band.as_ref().map(|(band, _)| *band), band.as_ref().map(|(_, said)| &**said));
     Sections::new(title, title, &names)
         .model()
         .cover(&design.cover, &program(&design.version, design.commit.as_deref()), Some(design.seed))
@@ -70,24 +76,33 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         .section("D15F between drainage and retention", &tables::bands(&design))
         .section("Standard products", &tables::products(&design))
         .section("The specification, step by step", &stated.words)
-        .figures(stated.figure)
+        .figures(drawn)
         .section("Limits sieve by sieve", &html! { (in_doubt(&design)) (stated.limits) })
         .section("Margins of standard products", &stated.products)
         .section("Rules of practice", &tables::practice(&design))
         .section("Network by network", &tables::networks(&design))
+        .section(soils.heading(), &soils.appendix())
         .section("How this was made", &tables::made(&design, &walks))
         .write(folder, "design.html", &footer)
 }
 
-/// The soil and the curve of the filter, without the name of a file.
-fn filter_words(filter: &str) -> Markup {
-    let (soil, curve) = filter.split_once(CURVE).unwrap_or((filter, ""));
+/// The soil of the filter with its sizes as they were given, and its curve.
+fn filter_words(design: &Design) -> Markup {
+    let (soil, curve) = design.filter.split_once(CURVE).unwrap_or((&design.filter, ""));
     html! {
-        @if is_named("filter", soil) {
-            "filter of the shape " b { bdi { (clean(&soil_name(soil))) } }
-            @if !curve.is_empty() { (CURVE) (clean(curve)) }
-        } @else if curve.is_empty() { "filter" } @else { "filter’s constrictions " (clean(curve)) }
+        (titled_by_file("filter", "filter of the shape", soil))
+        @if let Some(said) = as_given(design) { " (" (said) ")" }
+        @if !curve.is_empty() { (CURVE) (clean(curve)) }
     }
+}
+
+/// D15F and Cu of the filter as it was given; nothing where neither is known.
+fn as_given(design: &Design) -> Option<String> {
+    let d15 = design.filter_d15_mm.map(|mm| format!("D15F {}", shown_in(design, "mm").size(mm)));
+    let cu = design.filter_cu.map(|cu| format!("Cu {}", significant(cu)));
+    let given = design.filter_d15_mm.map(|_| "as given".to_owned());
+    let said: Vec<String> = d15.into_iter().chain(cu).chain(given).collect();
+    (!said.is_empty()).then(|| said.join(", "))
 }
 
 /// What stands between the names of a filter and of its curve.
@@ -100,7 +115,7 @@ fn told(design: &Design) -> Vec<String> {
     let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
     let is_said = |of: &&DesignFinding| {
         let is_noted = notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
-        is_noted || of.finding.id == NOT_COUNTED
+        is_noted || of.finding.id == NOT_COUNTED || design.is_cautioned(of)
     };
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
@@ -128,6 +143,15 @@ fn others(rest: &[String]) -> Markup {
     } }
 }
 
+/// The first sentence of a text, and what follows it.
+fn first_sentence(text: &str) -> (&str, Option<&str>) {
+    let begins = |at: &usize| text[at + 2..].starts_with(char::is_uppercase);
+    match text.match_indices(". ").map(|(at, _)| at).find(begins) {
+        Some(at) => (&text[..at], Some(&text[at + 2..])),
+        None => (text, None),
+    }
+}
+
 fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     let (found, said) = (design.least_held(), design.answer());
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
@@ -144,11 +168,11 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
         // only the most is known, or a row has no answer.
         (_, Some(_)) => "doubted",
     };
+    let (limit, beside) = first_sentence(&said.said);
     html! {
         section class=(format!("verdict {class}")) {
-            p.word.long {
-                (clean(&said.said))
-            }
+            p.word.long { (clean(limit)) }
+            @if let Some(beside) = beside { p { b { (clean(beside)) } } }
             @if design.confidence != Confidence::Within {
                 p { b { (capital(design.confidence.words())) } "." }
             }
@@ -202,6 +226,8 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     },
                 }
                 (to_specify(of))
+                (cautions(design.cautions()))
+                (still_to_set(of))
             }
             @for row in &design.boundaries {
                 @if let Some(note) = &row.band_note {
@@ -233,263 +259,10 @@ fn in_doubt(design: &Design) -> Markup {
     let by_practice = is_shown && design.fits_by_practice();
     html! {
         @if by_practice {
-            p { "The limit of practice sets them; the walk sets no tighter one, and is no check of them." }
+            p { "The limit of practice sets them. " (design.walk_beside_practice()) }
         }
         @if is_shown {
             p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gradation::Gradation;
-    use crate::outcome::design::Boundary;
-    use crate::outcome::design::band::{Band, SetBy};
-    use crate::outcome::design::products::Fit;
-    use crate::outcome::design::{BaseStated, DesignAnswer};
-    use crate::outcome::record::{AppliedRule, ModelLimit, SheetCover};
-    use crate::outcome::rules::DESIGN;
-    use crate::report::numbers::rounded_down;
-    use crate::verdict::PairRules;
-
-    fn written(design: &Design, csv: &str) -> String {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("design.json"), serde_json::to_vec(design).unwrap()).unwrap();
-        std::fs::write(folder.path().join("design.csv"), csv).unwrap();
-        let written = write_design(folder.path()).unwrap();
-        assert!(written.page.ends_with("design.html"));
-        std::fs::read_to_string(written.page).unwrap()
-    }
-
-    #[test]
-    fn a_product_is_said_to_fit_only_where_nothing_is_in_doubt() {
-        let fit = |drains| Fit {
-            name: if drains { "sand" } else { "clay" }.into(),
-            d15_mm: [0.2, 0.4],
-            drains,
-            may_drain: false,
-            holds: true,
-            practice: None,
-            source: String::new(),
-        };
-        let doubted = Design { products: vec![fit(true), fit(false)], ..design(None, Confidence::Outside) };
-        let said = |of: &Design| ["sand", "clay", "other"].map(|name| of.says_fit(name));
-        assert_eq!(said(&doubted), [None, Some(false), None]);
-        let sure = Design { products_confidence: Some(Confidence::Within), ..doubted };
-        assert_eq!(said(&sure), [Some(true), Some(false), None]);
-    }
-
-    fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
-        Design {
-            specification: None,
-            version: "1".into(),
-            commit: None,
-            answer: None,
-            boundaries: vec![DesignRow {
-                density: "<loose>".into(),
-                thickness: "60 layers".into(),
-                layers: 60,
-                thickness_mm: None,
-                grains_per_void: Some(0.61),
-                no_erosion_note: no_erosion.is_none().then(|| "nothing erodes".into()),
-                no_erosion,
-                holds_to: None,
-                continuing: None,
-                continuing_note: None,
-                unsteady: None,
-                not_monotone: 0,
-                networks: Vec::new(),
-                band: None,
-                band_note: None,
-                as_end: None,
-                end_of: None,
-            }],
-            inverse: false,
-            base: BaseStated {
-                name: "b".into(),
-                cu: None,
-                d15_mm: None,
-                d85_mm: None,
-                d95_over_d85: None,
-                regraded_at_mm: None,
-                tail_mass_fraction: 0.0,
-                d85_as_sampled_mm: None,
-            },
-            filter: "f".into(),
-            filter_cu: None,
-            filter_d15_mm: None,
-            unit: "mm".into(),
-            threshold: 0.075,
-            replicates: 3,
-            seed: 1,
-            engine: "expected".into(),
-            bracket: [0.5, 100.0],
-            step: 0.005,
-            confidence,
-            findings: Vec::new(),
-            reasons: vec!["a doubt".into()],
-            rules: Vec::new(),
-            rules_at: 4.0,
-            products: Vec::new(),
-            products_confidence: None,
-            warnings: Vec::new(),
-            model_leaves_out: vec![ModelLimit::Said("water".into())],
-            settings: Vec::new(),
-            cover: SheetCover::default(),
-            inches: false,
-            seconds: 1.0,
-        }
-    }
-
-    const CSV: &str = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second\n\
-                       <loose>,60 layers,1,4.0,0.01,\n<loose>,60 layers,1,5.0,0.5,0.4\n";
-
-    #[test]
-    fn only_what_was_checked_is_green_and_names_are_inert() {
-        let boundary = || {
-            let networks = [Ok(4.3), Ok(4.5)];
-            Boundary::of(&networks, Some(0.2))
-        };
-        let design = |boundary, confidence| {
-            let mut design = design(boundary, confidence);
-            design.base.d85_mm = Some(0.2);
-            design
-        };
-        let page = written(&design(boundary(), Confidence::Within), CSV);
-        assert!(page.contains("verdict none") && page.contains("D15F up to 0.862 mm"), "{page}");
-        assert!(page.contains("&lt;loose&gt;") && !page.contains("<loose>"));
-        assert!(page.contains("default-src 'none'") && page.contains("The model leaves out: water."));
-        for confidence in [Confidence::Outside, Confidence::Contradicted] {
-            let page = written(&design(boundary(), confidence), CSV);
-            assert!(page.contains("verdict doubted") && !page.contains("verdict none"));
-            assert!(page.contains("a doubt"));
-        }
-        let none = written(&design(None, Confidence::Outside), CSV);
-        assert!(none.contains("verdict undecided") && none.contains("Nothing erodes."));
-    }
-
-    #[test]
-    fn a_filter_that_holds_all_that_was_searched_says_so_and_is_not_green() {
-        let mut design = design(None, Confidence::Outside);
-        design.boundaries[0].holds_to = Some(1.08);
-        let page = written(&design, CSV);
-        assert!(page.contains("Holds as far as was searched: D15F up to 1.08 D85B"), "{page}");
-        assert!(page.contains("verdict doubted") && !page.contains("No ratio is known"));
-        design.base.d85_mm = Some(0.5);
-        assert!(written(&design, CSV).contains("Holds as far as was searched: D15F up to 0.540 mm"));
-    }
-
-    #[test]
-    fn the_figure_is_of_the_row_that_counts_and_its_limits_are_those_of_the_rules() {
-        let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
-        let base = Gradation::from_points(&gap, None).unwrap();
-        let (d85, part) = (base.d(85.0).unwrap(), base.regraded().gradation.d(85.0).unwrap());
-        let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85));
-        let mut design = design(of(5.0), Confidence::Outside);
-        let loose =
-            DesignRow { density: "loosest".into(), no_erosion: of(3.0), ..design.boundaries[0].clone() };
-        design.boundaries.push(loose);
-        design.base.d85_mm = Some(d85);
-        let filter = Gradation::linear_from_dx(15.0, design.rules_at * d85, 1.5).unwrap();
-        design.rules = PairRules::of(&base, &filter).rules;
-        let page = written(&design, &format!("{CSV}loosest,60 layers,1,3.0,0.01,\n"));
-        assert!(page.contains("Base eroded against D15F: loosest, 60 layers"), "{page}");
-        assert!(page.contains("this one holds least"));
-        let terzaghi =
-            |d85b: f64| format!("Terzaghi: the filter retains the base {}", rounded_down(4.0 * d85b));
-        assert!(page.contains(&terzaghi(part)) && !page.contains(&terzaghi(d85)), "{page}");
-    }
-
-    /// 30 % pass the finest sieve: of the limit of practice only the most is known.
-    #[test]
-    fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
-        let points = [(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)];
-        let base = Gradation::from_points(&points, None).unwrap();
-        let d85 = base.d(85.0).unwrap();
-        let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85));
-        let mut open = design(of(3.0), Confidence::Within);
-        open.base.d85_mm = Some(d85);
-        let filter = Gradation::linear_from_dx(15.0, 3.0 * d85, 1.5).unwrap();
-        (open.rules, open.rules_at) = (PairRules::of(&base, &filter).rules, 3.0);
-        assert!(open.answer().said.starts_with("The maximum D15F is not known"));
-        let csv = CSV.replace("4.0,", "2.0,");
-        let page = written(&open, &csv);
-        assert!(page.contains("verdict doubted") && !page.contains("verdict none"), "{page}");
-        assert!(page.contains(">practice not known<") && page.contains("Nothing is green"), "{page}");
-        assert!(!page.contains(">no erosion<") && page.contains("design, at most"), "{page}");
-        assert!(page.contains("at most 7.") && !page.contains("the filter retains the base 7."), "{page}");
-        // Whose fines are known is green as far as practice allows.
-        let mut known = open.clone();
-        for rule in &mut known.rules {
-            (rule.limit_at_most, rule.met) = (false, Some(true));
-        }
-        let page = written(&known, &csv);
-        assert!(page.contains("verdict none") && page.contains(">no erosion<"), "{page}");
-        // For the inverse practice allows what its answer says, and no more.
-        let answer = |ratio: Option<f64>, rule: Option<&str>| DesignAnswer {
-            d15f_max_mm: None,
-            d85b_min_mm: None,
-            d15f_over_d85b: ratio,
-            set_by: SetBy::Practice,
-            rule: rule.map(str::to_owned),
-            said: "s".into(),
-        };
-        let inverse = |answer| Design { inverse: true, answer: Some(answer), ..known.clone() };
-        let page = written(&inverse(answer(Some(2.5), Some(DESIGN))), &csv);
-        assert!(page.contains(">no erosion<") && page.contains(">beyond practice<"), "{page}");
-        let page = written(&inverse(answer(None, Some(DESIGN))), &csv);
-        assert!(!page.contains(">no erosion<") && page.contains(">beyond practice<"), "{page}");
-        let page = written(&inverse(answer(None, None)), &csv);
-        assert!(!page.contains(">no erosion<") && page.contains(">practice not known<"), "{page}");
-    }
-
-    /// The limit of practice is 0.8069 mm, the walk holds to 0.8068 mm, and 0.7051 mm drain.
-    #[test]
-    fn limits_are_rounded_inward_wherever_the_page_has_them() {
-        let sand = |size| Gradation::linear_from_dx(15.0, size, 1.5).unwrap();
-        let rules = PairRules::of(&sand(0.15), &sand(0.8)).rules.into_iter();
-        let rules = rules.filter(|rule| rule.id == DESIGN);
-        let mut design = design(Boundary::of(&[Ok(4.034), Ok(4.034)], Some(0.2)), Confidence::Within);
-        design.rules = rules.map(|rule| AppliedRule { limit: Some(0.8069), ..rule }).collect();
-        design.base.d85_mm = Some(0.2);
-        let band = Band {
-            least: 0.7051,
-            least_at_most: false,
-            greatest: 0.8068,
-            set_by: Some(SetBy::Walk),
-            practice: Some(0.8069),
-            practice_rule: "r".into(),
-            practice_rule_id: None,
-            unit: "mm".into(),
-            is_empty: false,
-            said: "D15F from 0.706 to 0.806 mm".into(),
-        };
-        design.boundaries[0].band = Some(band);
-        let csv = CSV.replace("4.0,", "3.9,");
-        let page = written(&design, &csv);
-        assert!(page.contains("D15F up to 0.806 mm") && page.contains("Practice allows up to 0.806 mm"));
-        assert!(page.contains(" 0.806 mm.</figcaption>") && page.contains(">0.706 mm<"), "{page}");
-        assert!(!page.contains("0.807") && !page.contains("0.705"), "{page}");
-        design.inches = true;
-        let page = written(&design, &csv).replace("\u{202f}mm", " mm");
-        // 0.806 mm are 0.03173 in, and 0.706 mm 0.02780 in.
-        let inches = |mm: &str| page.match_indices(&format!("{mm} mm (")).count();
-        assert!(inches("0.806") > 3 && inches("0.706") > 0);
-        assert_eq!(inches("0.806"), page.matches("0.0317\u{202f}in").count(), "{page}");
-        assert!(page.contains("0.706 mm (0.0278\u{202f}in)"), "{page}");
-    }
-
-    #[test]
-    fn a_folder_that_was_changed_is_refused_with_file_and_line() {
-        let folder = tempfile::tempdir().unwrap();
-        let text = serde_json::to_vec(&design(None, Confidence::Outside)).unwrap();
-        std::fs::write(folder.path().join("design.json"), text).unwrap();
-        std::fs::write(folder.path().join("design.csv"), CSV.replace("0.01", "much")).unwrap();
-        let error = write_design(folder.path()).unwrap_err().to_string();
-        assert!(error.contains("design.csv") && error.contains('2'), "{error}");
-        std::fs::remove_file(folder.path().join("design.json")).unwrap();
-        assert!(write_design(folder.path()).unwrap_err().to_string().contains("design.json"));
     }
 }

@@ -7,11 +7,13 @@ use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, trimmed, whole};
 use crate::report::rules;
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
+use crate::verdict::fitting::FITS;
 use crate::verdict::words::capital;
 
 /// The boundaries of the walk alone, a row a density and thickness.
@@ -140,8 +142,8 @@ pub(super) fn products(design: &Design) -> Markup {
                     " Judged at the maximum D15F that both walk and practice allow, as none that fits is \
                      coarser."
                 } @else if design.fits_by_practice() {
-                    " The limit of practice sets the answer: a product fits by practice. The walk sets no \
-                     tighter limit, and is outside its checked range."
+                    " The limit of practice sets the answer: a product fits by practice. "
+                    (design.walk_beside_practice())
                 } @else {
                     " No product is said to fit here, because the answer is in doubt."
                 }
@@ -158,12 +160,9 @@ pub(super) fn products(design: &Design) -> Markup {
                 })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("Result", |fit| match (fit.fits(), design.may_fit()) {
-                    (true, true) => html! { b { "fits" } },
-                    (true, false) if design.fits_by_practice() => html! { "fits by practice" },
-                    (true, false) => html! { "in doubt" },
-                    (false, _) if fit.may_fit() => html! { "not known" },
-                    (false, _) => html! { "does not fit" },
+                .number("Result", |fit| match design.product_in_words(fit) {
+                    said @ FITS => html! { b { (said) } },
+                    said => html! { (said) },
                 })
                 .render())
             @if let Some(said) = to_check { p.small { (clean(&said)) } }
@@ -226,6 +225,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
             (fact("Filter", file_name(&design.filter)))
+            @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
             (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), trimmed)))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
@@ -236,6 +236,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 trimmed(100.0 * design.step),
                 whole(walks.len() as u64)
             )))
+            (input_files(&design.inputs))
             (fact("Asked for", if asked.is_empty() { "nothing in particular" } else { &asked }))
         } }
     }

@@ -23,12 +23,14 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     sheet.item("Dispersive", of.dispersive, "");
     sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
     sheet.item("Maximum D15F, which retains the base", of.d15f_max_mm, "mm");
-    let dispersive = of.if_dispersive.map(|of| of.words());
+    let dispersive = of.if_dispersive.map(|of| of.words_of_base());
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
+    of.findings.iter().for_each(|found| sheet.item("Warning", found.words(), ""));
+    sheet.item("Still to be set", of.still_to_set(), "");
     sheet.item("Confidence", design.map(Design::confidence_said), "");
     let basis = match design {
         Some(_) => "By the rules of practice and a walk.",

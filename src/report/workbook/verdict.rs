@@ -4,6 +4,7 @@ use super::sheet::{Entry, Sheet};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Run, Statistic};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
+use crate::verdict::rule_words::result_of;
 
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
@@ -41,11 +42,19 @@ fn verdict(outcome: &Outcome) -> Sheet {
         let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
     }
-    if let Some(evidence) = &outcome.evidence {
-        let what = "Probability that a test shows no erosion";
-        let by_range = format!("{what}, by the published range");
-        sheet.item(&by_range, evidence.probability_by_tests, "-");
-        sheet.item("The same by the walk", evidence.probability_no_erosion, "-");
+    match &outcome.evidence {
+        Some(evidence) if outcome.shows_probabilities() => {
+            let of = |by: &str| format!("Probability that a test shows no erosion, by {by}");
+            let by_range = of("the published range (log-uniform between its ends; not for a risk analysis)");
+            sheet.item(&by_range, evidence.probability_by_tests, "-");
+            let by_walk = of("the walk (not for a risk analysis)");
+            sheet.item(&by_walk, evidence.probability_no_erosion, "-");
+        }
+        _ => {
+            if let Some(said) = outcome.beside_tests() {
+                sheet.item("Beside tests on such soils (not for a risk analysis)", said, "");
+            }
+        }
     }
     for (index, finding) in outcome.findings.iter().enumerate() {
         sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");
@@ -115,6 +124,7 @@ fn rules(outcome: &Outcome) -> Sheet {
         "Unit of value and limit",
         "The limit is",
         "Applies",
+        "Result",
         "Met",
         "Formula",
         "Applies to",
@@ -129,11 +139,12 @@ fn rules(outcome: &Outcome) -> Sheet {
     sheet
 }
 
-fn of_rule(rule: &AppliedRule) -> [Entry; 14] {
+fn of_rule(rule: &AppliedRule) -> [Entry; 15] {
     let notes: Vec<String> = [&rule.note, &rule.needs].iter().map(ToString::to_string).collect();
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
     let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
         (None, ..) => "",
+        _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
         (_, true, _) => "the least",
         (_, false, false) => "the most",
         (_, false, true) => "the most that it can be",
@@ -147,7 +158,9 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 14] {
         (&rule.unit).into(),
         limit_is.into(),
         rule.applies.into(),
-        rule.met.into(),
+        result_of(rule).words().into(),
+        // A boundary of continuing erosion that is not reached is no limit that is met.
+        rule.met.filter(|met| rule.role != RuleRole::Continuation || !met).into(),
         (&rule.formula).into(),
         (&rule.applies_to).into(),
         notes.into(),

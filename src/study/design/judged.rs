@@ -5,6 +5,7 @@ use crate::case::{Case, StatedBase};
 use crate::outcome::record::{AppliedRule, Verdict};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
+use crate::run::evidence;
 use crate::scene::{Amount, BaseGradation, D85};
 use crate::verdict::{Finding, Judgement, finding, judge};
 
@@ -116,6 +117,9 @@ impl Judged {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let of_case = self.case.to_be_walked().into_iter().chain(self.case.findings());
+        // Without rules no filter is said to hold.
+        let of_kind = evidence::of_kind(&self.case, None).filter(|_| !rules.is_empty());
+        let errs_unsafely = of_kind.and_then(|of| of.against_holding(rules));
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
         let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, self.unit()));
         let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
@@ -124,6 +128,7 @@ impl Judged {
             .chain(coarse)
             .chain(not_compared)
             .chain(of_search(row))
+            .chain(errs_unsafely)
             .chain(others);
         judge(Verdict::None, rules, found.collect())
     }

@@ -12,6 +12,7 @@ use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::store::{Folder, StoreError};
 use crate::study::days::today;
+use crate::study::inputs::input_files;
 use crate::study::kept;
 use crate::verdict::SpecificationOptions;
 
@@ -52,7 +53,8 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let specified = SpecificationOptions { dispersive: said, sieves, ..SpecificationOptions::default() };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let cover = options.cover.clone().dated(today());
-    let specification = Specification { inches: options.inches, cover, ..specification };
+    let inputs = input_files([options.base.as_path()])?;
+    let specification = Specification { inches: options.inches, cover, inputs, ..specification };
     let kind = FolderKind::Specification;
     let folder = claim(&options.out, kind, options.overwrite)?;
     let (inches, cover) = (options.inches, &options.cover);

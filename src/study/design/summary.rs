@@ -8,6 +8,8 @@ use super::practice::{allowed, finest_base};
 use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
+use crate::case::Input;
+use crate::gradation::Gradation;
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
@@ -15,7 +17,7 @@ use crate::outcome::design::{
     NetworkBoundaries, Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{Confidence, FindingRecord, commit};
+use crate::outcome::record::{Confidence, FindingRecord, InputFile, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
@@ -106,6 +108,8 @@ pub(super) fn design(
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
         filter_cu: first.case.filter.cu(),
         filter_d15_mm: first.filter_has_size.then(|| first.d15f()),
+        filter_gradation: if first.filter_has_size { pairs(&first.case.filter) } else { Vec::new() },
+        inputs: inputs(first),
         unit: judged.unit().into(),
         threshold: THRESHOLD,
         replicates: first.case.scene.walk.replicates,
@@ -347,11 +351,29 @@ fn settings(options: &DesignOptions) -> Vec<String> {
     base.chain(filter).chain(densities).chain(thicknesses).chain(ticks).chain(settings).collect()
 }
 
+/// Every file that was read for a row, the base's first.
+fn inputs(row: &Row) -> Vec<InputFile> {
+    let mut files: Vec<InputFile> = Vec::new();
+    for file in row.stated.inputs.iter().chain(&row.case.inputs).map(Input::file) {
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    files
+}
+
+fn pairs(soil: &Gradation) -> Vec<[f64; 2]> {
+    soil.points().into_iter().map(|(size, percent)| [size, percent]).collect()
+}
+
 fn base(row: &Row, name: &str) -> BaseStated {
     let walked = &row.stated.gradation;
     let given = row.stated.regraded_from.as_ref().map_or(walked, |(given, _)| given);
     let sized = row.d85_mm.filter(|_| !row.inverse);
+    let is_regraded = row.d85_mm.is_some() && row.stated.regraded_from.is_some();
     BaseStated {
+        gradation: if row.d85_mm.is_some() { pairs(given) } else { Vec::new() },
+        regraded: if is_regraded { pairs(walked) } else { Vec::new() },
         name: name.into(),
         cu: walked.cu(),
         d15_mm: sized.and(given.d(15.0)),

@@ -1,18 +1,32 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
-use crate::gradation::{FINES_MM, GRAVEL_MM, Gap, Gradation};
+use crate::gradation::{FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
+use crate::outcome::design::DesignFinding;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
+use crate::outcome::numbers::{rounded_down, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive};
 use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply};
-use crate::verdict::practice::cited_rule;
+use crate::verdict::entry::Finding;
+use crate::verdict::finding;
+use crate::verdict::rule_words::cited_rule;
 
 /// D15F (mm) of the filter at which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
 
+/// A curve is flat, and worth a look, where less of the mass than this (%) lies between D and 4 D: twice what
+/// counts as a gap.
+const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
+
+/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
+const BROAD_CU: f64 = 6.0;
+
 /// A curve of the base as the rules read it.
 pub(super) struct ReadCurve {
     pub of: SpecifiedCurve,
+    /// As sampled.
+    base: Gradation,
+    dispersive: bool,
     pub soil: BaseSoil,
     pub percent_no_4: f64,
     /// Where it is flattest, which may be a gap.
@@ -36,6 +50,8 @@ impl ReadCurve {
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
         Self {
+            base: base.clone(),
+            dispersive,
             of: SpecifiedCurve {
                 curve: name.clone(),
                 gradation: rows(base),
@@ -59,6 +75,47 @@ impl ReadCurve {
         }
     }
 
+    /// What a reader must know of the base itself.
+    fn findings(&self) -> Vec<Finding> {
+        let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
+        let unstable = unstable.map(|of| finding::unstable_base(of.value, of.percent));
+        unstable.into_iter().chain(self.broad()).chain(self.flat()).collect()
+    }
+
+    /// A base so broad that practice looks at its finer part alone.
+    fn broad(&self) -> Option<Finding> {
+        self.of.regraded_at_mm?;
+        let least =
+            || Some(format!("more than {}", rounded_down(self.base.d(60.0)? / self.base.smallest_mm())));
+        let cu = match self.base.cu() {
+            Some(cu) => (cu >= BROAD_CU).then(|| significant(cu))?,
+            None => (self.base.d(60.0)? >= BROAD_CU * self.base.smallest_mm()).then(least)??,
+        };
+        Some(finding::broad_base(&cu))
+    }
+
+    /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
+    fn flat(&self) -> Option<Finding> {
+        let cut = self.of.regraded_at_mm.unwrap_or(f64::INFINITY);
+        let of = self.flattest.filter(|of| of.within < FLAT_PERCENT && of.from_mm <= cut)?;
+        let to = 4.0 * of.from_mm;
+        if of.within < GAP_PERCENT {
+            return Some(finding::gap_of_base(of.within, of.from_mm, to));
+        }
+        let also = self.greatest_regraded_on(of.from_mm).map(|limit| {
+            let [size, limit] = [significant(of.from_mm), rounded_down(limit)];
+            format!("; regraded on {size} mm instead, the maximum D15F by practice would be {limit} mm")
+        });
+        Some(finding::flat_base(of.from_mm, to, of.within, &also.unwrap_or_default()))
+    }
+
+    /// The maximum D15F (mm) by practice of the part that passes an opening (mm); `None` where nothing of
+    /// known size does, or its limit is not known.
+    fn greatest_regraded_on(&self, opening_mm: f64) -> Option<f64> {
+        let part = (self.of.curve.clone(), self.base.passing(opening_mm)?);
+        Self::of(&part, self.dispersive).of.d15f_max_mm
+    }
+
     pub fn greatest(&self) -> f64 {
         self.of.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
@@ -77,15 +134,23 @@ fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
     curve.points().into_iter().map(|(size, percent)| [size, percent]).collect()
 }
 
+/// What a reader must know of a base of these curves, with the name of the curve where there are several.
+pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
+    let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
+    let of = |curve: &ReadCurve| {
+        let found = curve.findings().into_iter();
+        found.map(|of| DesignFinding { row: row(curve), finding: of.record(false) }).collect::<Vec<_>>()
+    };
+    read.iter().flat_map(of).collect()
+}
+
 /// What practice allows if a base of these curves is dispersive: the strictest of them; `None` where all have
 /// few fines.
 pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
     let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
     let of = |(_, base): &NamedCurve| {
-        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) });
-        IfDispersive::of(BaseSoil::of(base, false).fines_percent, &rules, ANY_D15F)
+        IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) })
     };
     let all: Vec<IfDispersive> = bases.iter().filter_map(of).collect();
-    let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
-    Some(IfDispersive { at_most: all.iter().any(|of| of.at_most), ..*least })
+    IfDispersive::strictest(&all)
 }

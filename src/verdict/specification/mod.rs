@@ -10,9 +10,17 @@ use crate::outcome::design::SieveSeries;
 use crate::outcome::design::specification::{SizeBand, Specification, margins};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{SheetCover, commit};
-use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND};
+use crate::outcome::rules::{
+    GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND,
+};
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
+
+/// What to do where a base is found to be dispersive.
+pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
+
+/// The same of many samples.
+pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 
 /// What a specification is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -70,8 +78,10 @@ impl Specification {
             sieves: options.sieves,
             cover: SheetCover::default(),
             inches: false,
+            inputs: Vec::new(),
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
+            findings: curve::findings(&read),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
@@ -89,6 +99,12 @@ fn control(min: f64, max: f64) -> Option<Control> {
     let d60_max = MOST_CU * max / D15_OVER_D10;
     let of = Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] };
     (min <= max).then_some(of)
+}
+
+/// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
+/// maximum: raised where the band would be too wide.
+pub(super) fn least_of_band(min: f64, max: f64) -> f64 {
+    control(min, max).map_or(min, |of| of.d15[0])
 }
 
 /// Why no filter between a least and a maximum D15F (mm) has a band; `None` where one has.
@@ -135,6 +151,18 @@ impl Specification {
         ))
     }
 
+    /// What a specification lacks that no text with its numbers could be read for, in a sentence: the maximum
+    /// D90F, which keeps a filter from segregating. `None` without a band.
+    pub fn still_to_set(&self) -> Option<String> {
+        let least = steps::least_d10(self.band.as_ref()?);
+        Some(format!(
+            "Not a complete specification: the maximum D90F is still to be set from the table of FEMA (2011) \
+             or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of {} mm.",
+            // Where a table is entered: a finer D10F allows no coarser D90F.
+            rounded_down(least)
+        ))
+    }
+
     /// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band
     /// or have a gap. `None` without a band.
     pub fn beside_limits(&self) -> Option<String> {
@@ -150,12 +178,16 @@ impl Specification {
 }
 
 impl Specification {
-    /// What the maximum D15F is if the base is dispersive, in a sentence without its end; `None` where that
-    /// is the same, or somebody has said whether it is.
+    /// What the maximum D15F is if the base is dispersive, and what of the specification does not hold then,
+    /// in a sentence without its end; `None` where it all holds, or somebody has said whether it is.
     pub fn if_dispersive_in_words(&self) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
-        Some(format!("If the base is dispersive (not stated): {}", of.words()))
+        let band = match self.band {
+            Some(_) => "the band and its limits are then not valid: ",
+            None => "",
+        };
+        Some(format!("If the base is dispersive (not stated): {}; {band}{DESIGN_AGAIN}", of.words_of_base()))
     }
 }
 
@@ -176,9 +208,15 @@ fn no_band(
         )),
         (Some(min), Some(max)) if min > max => Some(format!(
             "No filter both drains and retains this base: D15F must be at least {} mm to drain it and at \
-             most {} mm to retain it. A filter in two stages, or a base that is less broad, is needed.",
+             most {} mm to retain it. {}",
             rounded_up(min),
-            rounded_down(max)
+            rounded_down(max),
+            // So fine a base is not broad: the least D15F of any filter is beyond its limit.
+            match min <= LEAST_D15F_MM {
+                true =>
+                    "Have the base tested in the laboratory with the filter, or take a filter in two stages.",
+                false => "A filter in two stages, or a base that is less broad, is needed.",
+            }
         )),
         (Some(_), Some(max)) if MOST_CU * max / D15_OVER_D10 < GREATEST_SIZE_MM => Some(format!(
             "The coarse side would have more than {MOST_FINES_PERCENT} % finer than {FINES_MM} mm."

@@ -90,7 +90,7 @@ impl Found<'_> {
         SpecificationStep {
             values: self.each("finer than No. 4 (4.75 mm)", "%", |curve| Some(curve.percent_no_4)),
             note: said.join(" "),
-            source: REGRADING.into(),
+            source: format!("{REGRADING}. The check for a gap is this program's own"),
             ..step("Find out whether the base has gravel or a gap")
         }
     }
@@ -249,15 +249,16 @@ impl Found<'_> {
     }
 
     fn segregation(&self, band: Option<&SizeBand>) -> SpecificationStep {
-        let d10 = band.map(|band| (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0)));
+        let d10 = band.map(least_d10);
         SpecificationStep {
             formula: format!(
                 "minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side"
             ),
             values: vec![named("minimum D10F", d10, "mm"), named("maximum D90F", None, "mm")],
-            note: "Not covered here. The maximum D90F follows from this minimum D10F by a table of FEMA and \
-                   NRCS. Take it from there."
-                .into(),
+            note:
+                "Still to be set: no text with its numbers could be read. The maximum D90F follows from this \
+                   minimum D10F by a table of FEMA and NRCS. Take it from there."
+                    .into(),
             source: with_own_factor(SEGREGATION),
             ..step("Keep the filter from segregating")
         }
@@ -279,6 +280,11 @@ impl Found<'_> {
             ..step("Draw both sides of the band")
         }
     }
+}
+
+/// The minimum D10F (mm) of a band, by which its maximum D90F is set.
+pub(super) fn least_d10(band: &SizeBand) -> f64 {
+    (band.d15_mm()[0] / D15_OVER_D10).min(band.least_size(10.0))
 }
 
 /// Where the manual of the Corps sends for segregation.
@@ -304,18 +310,18 @@ fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
     StepValue { name: name.into(), value, unit: unit.into() }
 }
 
-/// Whether a base is gap-graded, with the sizes between which it has least.
+/// Whether a base is gap-graded, with the sizes between which it has least: by a number of this program, as
+/// the manual leaves it to the eye.
 fn gap_in_words(flattest: Option<Gap>) -> String {
-    let Some(of) = flattest else { return "Gap-graded: no.".into() };
+    const EYE: &str = "The manual gives no number and asks for the eye and judgment: look at the curve.";
+    let Some(of) = flattest else { return format!("No gap by this program's own check. {EYE}") };
     let [from, to] = [of.from_mm, 4.0 * of.from_mm].map(significant);
-    let within = significant(of.within);
-    match of.within < GAP_PERCENT {
-        true => format!("Gap-graded: yes, with {within} % of the mass between {from} and {to} mm."),
-        false => format!(
-            "Gap-graded: no. Between {from} and {to} mm, where it has least, lies {within} % of the mass; \
-             less than {GAP_PERCENT} % would be a gap."
-        ),
-    }
+    let found = if of.within < GAP_PERCENT { "A gap" } else { "No gap" };
+    format!(
+        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from \
+         {from} to {to} mm, and below {GAP_PERCENT} % counts as a gap. {EYE}",
+        significant(of.within)
+    )
 }
 
 /// A part of a sentence as one of its own.

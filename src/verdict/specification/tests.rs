@@ -115,13 +115,48 @@ fn the_band_that_is_said_is_the_one_of_the_last_step() {
 fn the_step_of_gravel_and_gap_answers_both() {
     let note = |points: &[(f64, f64)]| of(points).steps[1].note.clone();
     let gap = note(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]);
-    assert!(gap.contains("Gap-graded: yes, with ") && gap.contains("between 0.300 and 1.20 mm."), "{gap}");
+    assert!(gap.contains("A gap by this program's own check: ") && gap.contains("from 0.300 to 1.20 mm"));
     // 12 % over a factor of 8.33.
     let flat = note(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
     let within = crate::outcome::numbers::significant(12.0 * 4f64.ln() / (5.0f64 / 0.6).ln());
-    assert!(flat.contains(&format!(
-        "Gap-graded: no. Between 0.600 and 2.40 mm, where it has least, lies {within} %"
-    )));
+    assert!(
+        flat.contains(&format!(
+            "No gap by this program's own check: the least mass within a factor of 4 in size is {within} %, \
+             from 0.600 to 2.40 mm, and below 5 % counts as a gap. The manual gives no number and asks for \
+             the eye and judgment: look at the curve."
+        )),
+        "{flat}"
+    );
+    // 5 % stands under nobody's name but ours.
+    let source = of(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
+    assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
+}
+
+/// The base of a sheet that is signed: unstable, broad, and flat between 0.6 and 5 mm.
+#[test]
+fn what_is_wrong_with_the_base_itself_is_among_the_findings() {
+    let ids = |of: &Specification| of.findings.iter().map(|of| of.finding.id.clone()).collect::<Vec<_>>();
+    let points = [(0.002, 5.0), (0.075, 29.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)];
+    let broad = of(&points);
+    assert_eq!(ids(&broad), ["unstable_base", "broad_base", "flat_base"]);
+    let said: Vec<&str> = broad.findings.iter().map(|of| of.finding.sentence.as_str()).collect();
+    assert!(said[0].contains("not internally stable by Kenney and Lau: the minimum H/F is 0."), "{said:?}");
+    assert!(said[0].ends_with("decide whether the filter is to hold that part, or have the pair tested."));
+    // Regraded on 0.6 mm: 49.2 % of fines, and so 0.7 mm.
+    assert!(
+        said[2].ends_with(
+            "look at the curve; regraded on 0.600 mm instead, the maximum D15F by practice would be 0.700 mm."
+        ),
+        "{said:?}"
+    );
+    let gap = of(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]);
+    assert!(ids(&gap).contains(&"gap_of_base".to_owned()), "{:?}", gap.findings);
+    assert_eq!(ids(&of(&[(0.1, 0.0), (0.5, 100.0)])), Vec::<String>::new());
+    // Of several curves each finding names its own.
+    let sand = soil(&[(0.1, 0.0), (0.5, 100.0)]);
+    let both = [("sand".to_owned(), sand), ("till".to_owned(), soil(&points))];
+    let both = Specification::of("site", &both, SpecificationOptions::default());
+    assert!(both.findings.iter().all(|of| of.row.as_deref() == Some("till")) && both.findings.len() == 3);
 }
 
 #[test]
@@ -219,14 +254,44 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     };
     let nobody = SpecificationOptions::default();
     let silty = said(&silt, nobody).unwrap();
-    assert_eq!(silty, "If the base is dispersive (not stated): D15F up to 0.500 mm");
+    assert_eq!(
+        silty,
+        "If the base is dispersive (not stated): D15F up to 0.500 mm; the band and its limits are then not \
+         valid: design again for a dispersive base"
+    );
     let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
     assert!(
-        open.contains("(not stated): a limit of D15F that is not known, and ") && open.ends_with("or less")
+        open.contains("(not stated): no source that was read gives a limit of design for such fines; it is ")
+            && open.contains(" mm: have the base tested with the filter; the band and its "),
+        "{open}"
     );
     // What is finer anyway, few fines, and what was said.
     assert_eq!(said(&silt, SpecificationOptions { walked_mm: Some(0.4), ..nobody }), None);
     assert_eq!(said(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], nobody), None);
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(true), ..nobody }), None);
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(false), ..nobody }), None);
+}
+
+/// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+#[test]
+fn a_base_that_is_too_fine_is_not_called_broad() {
+    let clay = soil(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)]);
+    let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
+    let of = Specification::of("clay", &[("clay".into(), clay)], options);
+    let why = of.no_band.unwrap();
+    assert!(why.contains("at least 0.100 mm to drain it and at most 0.0640 mm to retain it"), "{why}");
+    assert!(why.ends_with(
+        "Have the base tested in the laboratory with the filter, or take a filter in two stages."
+    ));
+}
+
+/// The maximum D90F has no number here, and that is said for the minimum D10F of the step.
+#[test]
+fn what_is_still_to_be_set_is_said_with_its_size() {
+    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let said = core.still_to_set().unwrap();
+    assert!(said.starts_with("Not a complete specification: the maximum D90F is still to be set"), "{said}");
+    assert!(said.ends_with("for a minimum D10F of 0.116 mm."), "{said}");
+    let none = of(&[(1.0, 0.0), (2.0, 10.0), (4.75, 40.0), (9.5, 60.0), (19.0, 80.0), (37.5, 100.0)]);
+    assert_eq!((none.band.is_none(), none.still_to_set()), (true, None), "{none:?}");
 }

@@ -174,7 +174,9 @@ def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
         if value and limit:
             ratios.append(limit / value if rule["at_least"] else value / limit)
             names.append(rule["name"])
-            colours.append({True: "tab:green", False: "tab:red", None: "tab:gray"}[rule["met"]])
+            # A boundary of continuing erosion that is not reached is no limit that is kept.
+            met = None if rule["met"] and rule["role"] == "continuation" else rule["met"]
+            colours.append({True: "tab:green", False: "tab:red", None: "tab:gray"}[met])
     drawn = axes(ax, 8.0)
     places = list(range(len(names)))
     drawn.scatter(ratios, places, c=colours)

@@ -1600,10 +1600,32 @@ class BaseStated(_BaseStated, total=False):
         The part of its mass that is finer than its finest sieve, as it was walked.
     d85_as_sampled_mm
         D85 (mm) before regrading, where it was regraded.
+    gradation
+        Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
+        earlier versions.
+    regraded
+        The same as it was walked after regrading; empty where it was walked as sampled.
     """
 
     regraded_at_mm: Optional[float]
     d85_as_sampled_mm: Optional[float]
+    gradation: List[List[float]]
+    regraded: List[List[float]]
+
+
+class InputFile(TypedDict):
+    """A file that was read.
+
+    Keys
+    ----
+    name
+        Its name as given.
+    xxh3
+        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    """
+
+    name: str
+    xxh3: str
 
 
 class _DesignFinding(TypedDict):
@@ -1617,12 +1639,12 @@ class _DesignFinding(TypedDict):
 
 
 class DesignFinding(_DesignFinding, total=False):
-    """A finding about the rows of a design.
+    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
 
     Keys
     ----
     row
-        The row that it is of, in words; `None` where it is of all.
+        The row or the curve that it is of, in words; `None` where it is of all.
     id
         Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
     about
@@ -1930,8 +1952,14 @@ class Specification(_Specification, total=False):
         What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
+    inputs
+        Every file that was read; empty as a part of a design, which has them itself, and in files of earlier
+        versions.
     curves
         The curves of the base, in the order of the file.
+    findings
+        What a reader must know of the base itself, each of its curve where there are several; empty in files of
+        earlier versions.
     steps
         Every step, with its numbers.
     d15f_min_mm
@@ -1956,6 +1984,8 @@ class Specification(_Specification, total=False):
     commit: Optional[str]
     cover: SheetCover
     inches: bool
+    inputs: List[InputFile]
+    findings: List[DesignFinding]
     d15f_min_at_most: bool
     if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
@@ -2017,6 +2047,11 @@ class Design(_Design, total=False):
         Cu of the filter.
     filter_d15_mm
         The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
+    filter_gradation
+        Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
+        where its sizes are not given, and in files of earlier versions.
+    inputs
+        Every file that was read; empty in files of earlier versions.
     unit
         Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
         own.
@@ -2068,6 +2103,8 @@ class Design(_Design, total=False):
 
     commit: Optional[str]
     answer: Optional[DesignAnswer]
+    filter_gradation: List[List[float]]
+    inputs: List[InputFile]
     findings: List[DesignFinding]
     products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
@@ -2576,6 +2613,7 @@ class Soils(TypedDict):
     voidwalk
         Version of the program that wrote it.
     soils
+        Each soil, in the order of the file.
     """
 
     format: Literal["voidwalk-soils/1"]
@@ -2821,21 +2859,6 @@ class PackingRecord(_PackingRecord, total=False):
     part: Optional[PackedPart]
     same_shape: Optional[SameShape]
     height_mm: Optional[float]
-
-
-class InputFile(TypedDict):
-    """A file that was read.
-
-    Keys
-    ----
-    name
-        Its name as given.
-    xxh3
-        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
-    """
-
-    name: str
-    xxh3: str
 
 
 class Manifest(TypedDict):

@@ -1,0 +1,163 @@
+//! Single rules of practice in words: what one found, its value beside its limit, and how a sentence cites
+//! it.
+
+use crate::outcome::apart::{digits_of, value_and_limit};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
+use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION, authority};
+
+/// What a rule of practice found. Every face shows this, and none works it out by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RuleResult {
+    /// Its limit is kept.
+    Met,
+    /// It is not kept.
+    NotMet,
+    /// A boundary of continuing erosion is not reached: no good news by itself.
+    NotReached,
+    /// The same, and erosion may be excessive.
+    ExcessiveNotJudged,
+    /// What it states is no limit for these soils.
+    NotALimit,
+    /// It states no limit.
+    NoLimit,
+    /// Something that it needs is not known.
+    NoResult,
+    /// It was not made for these soils.
+    DoesNotApply,
+}
+
+impl RuleResult {
+    /// Those of rules that neither are kept nor broken, in the order of a reader.
+    pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::NotMet => "not met",
+            Self::NotReached => "not reached",
+            Self::ExcessiveNotJudged => "not reached; excessive erosion not judged",
+            Self::NotALimit => "not a limit",
+            Self::NoLimit => "no limit",
+            Self::NoResult => "no result",
+            Self::DoesNotApply => "does not apply",
+        }
+    }
+}
+
+/// What a rule found.
+pub fn result_of(rule: &AppliedRule) -> RuleResult {
+    match rule.met.filter(|_| rule.applies) {
+        Some(true) if rule.role == RuleRole::Continuation => {
+            match rule.note.says(RuleNote::ExcessiveNotJudged) {
+                true => RuleResult::ExcessiveNotJudged,
+                false => RuleResult::NotReached,
+            }
+        }
+        Some(true) => RuleResult::Met,
+        Some(false) => RuleResult::NotMet,
+        None if !rule.applies && rule.note.says(RuleNote::NoClearBoundary) => RuleResult::NotALimit,
+        None if !rule.applies && rule.needs.is_empty() => RuleResult::DoesNotApply,
+        None if rule.limit.is_none() && rule.needs.is_empty() => RuleResult::NoLimit,
+        None => RuleResult::NoResult,
+    }
+}
+
+/// What stands before its limit: a least, a most, or a boundary beyond which erosion continues.
+pub fn limit_begins(rule: &AppliedRule) -> &'static str {
+    match (rule.role, rule.at_least, rule.limit_at_most) {
+        (RuleRole::Continuation, ..) => "continuing beyond",
+        (_, true, true) => "not known; at most",
+        (_, true, false) => "≥",
+        (_, false, _) => "≤",
+    }
+}
+
+/// Whether a rule that was made for these soils is kept; `None` where it has no result.
+pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(super) fn listed(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+/// A rule of retention, as a sentence cites it: whose it is, and which of theirs.
+pub(super) fn cited(id: &str, authority: &str) -> String {
+    let which = match id {
+        DESIGN => "limit of design",
+        TESTS_NO_EROSION => "boundary of no erosion",
+        _ => "rule",
+    };
+    format!("{authority}'s {which}")
+}
+
+/// The same of a rule that was applied.
+pub(super) fn cited_rule(rule: &AppliedRule) -> String {
+    match authority(rule) {
+        name if *name == rule.name => name.into(),
+        authority => cited(&rule.id, authority),
+    }
+}
+
+/// A value and its limit, with as many digits as tell them apart, and this many at the least.
+pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
+    let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
+        return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
+    };
+    let shown = value_and_limit(value, limit, rule.at_least, digits);
+    shown.map(|number| with_unit(number, &rule.unit))
+}
+
+/// A value with its unit.
+pub(super) fn size(value: Option<f64>, unit: &str) -> String {
+    value.map_or("unknown".into(), |value| with_unit(short(value), unit))
+}
+
+fn with_unit(number: String, unit: &str) -> String {
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// Two digits that mean something, or three from 100 on.
+fn short(value: f64) -> String {
+    digits_of(value, 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::rules::{PERMEABILITY, TESTS_CONTINUING};
+    use crate::verdict::PairRules;
+
+    fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
+        let base = Gradation::from_points(base, None).unwrap();
+        PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
+    }
+
+    /// A folder of a run that is read back has the same results.
+    #[test]
+    fn a_boundary_that_is_not_reached_is_never_met() {
+        let sand = [(0.2, 0.0), (0.6, 100.0)];
+        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        for (base, d15f, result) in [
+            (&sand[..], 3.0, RuleResult::NotReached),
+            (&sand, 4.0, RuleResult::ExcessiveNotJudged),
+            (&sand, 6.0, RuleResult::NotMet),
+            (&till, 6.5, RuleResult::NotALimit),
+        ] {
+            let rule = rules(base, d15f).into_iter().find(|rule| rule.id == TESTS_CONTINUING).unwrap();
+            let read: AppliedRule = serde_json::from_str(&serde_json::to_string(&rule).unwrap()).unwrap();
+            assert_eq!([result_of(&rule), result_of(&read)], [result; 2], "{rule:?}");
+            let words = result.words();
+            assert!(words == "not met" || !words.contains("met"), "{words}");
+        }
+        let drains = rules(&sand, 3.0).into_iter().find(|rule| rule.id == PERMEABILITY).unwrap();
+        assert_eq!(result_of(&drains), RuleResult::Met);
+    }
+}
