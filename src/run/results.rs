@@ -289,17 +289,6 @@ mod tests {
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
     }
 
-    /// Two probabilities stand where the page has two: one alone, or none, is said in words.
-    #[test]
-    fn probabilities_are_shown_as_the_page_shows_them() {
-        let of = |d15f, confidence| Outcome { confidence, ..walked(45.0, d15f, &[]) };
-        assert!(of(0.6, Confidence::Within).shows_probabilities());
-        let hidden = of(0.6, Confidence::Outside);
-        let said = hidden.beside_tests().unwrap();
-        assert!(!hidden.shows_probabilities() && said.starts_with("D15F is 0.86 of the lowest"), "{said}");
-        assert!(!of(1.2, Confidence::Within).shows_probabilities());
-    }
-
     /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {

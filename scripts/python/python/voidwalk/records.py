@@ -181,9 +181,12 @@ class IfDispersive(_IfDispersive, total=False):
         The most that D15F (mm) may be then.
     at_most
         Whether the true limit is not known, and is at most that.
+    lacks
+        Why it is not known; `None` where it is, and in files of earlier versions.
     """
 
     at_most: bool
+    lacks: Optional[Literal["limit of design", "D85B"]]
 
 
 class ConstrictionsRecord(TypedDict):
@@ -792,7 +795,8 @@ class AppliedRule(_AppliedRule, total=False):
     limit_at_most
         Whether the true limit is not known, and is at most `limit`.
     met
-        Whether the value keeps the limit; `None` where the rule has no result.
+        Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing erosion
+        `true` says only that continuing erosion is not reached: some or excessive erosion is not excluded.
     needs
         What is missing for a result; may be empty.
     note
