@@ -40,8 +40,8 @@ pub struct AppliedRule {
     /// Whether the true limit is not known, and is at most `limit`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub limit_at_most: bool,
-    /// Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing erosion
-    /// `true` says only that continuing erosion is not reached: some or excessive erosion is not excluded.
+    /// Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing
+    /// erosion `true` says only that this is not reached: some or excessive erosion is not excluded.
     #[serde(alias = "meets")]
     pub met: Option<bool>,
     /// What is missing for a result; may be empty.

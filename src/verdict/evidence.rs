@@ -220,8 +220,8 @@ impl Evidence {
         self.finding_with(rules, beside_range)
     }
 
-    /// What it says, with the place of D15F beside the range of tests in these words. Where the filter is finer
-    /// than that range and the walk erodes, that speaks against the walk.
+    /// What it says, with the place of D15F beside the range of tests in these words. Where the filter is
+    /// finer than that range and the walk erodes, that speaks against the walk.
     fn finding_with(&self, rules: &[AppliedRule], beside: fn(f64, [f64; 2], &str) -> String) -> Finding {
         let finding = match self.errs_unsafely() {
             true => finding::evidence_unsafe,

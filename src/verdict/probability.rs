@@ -103,8 +103,8 @@ fn place_in_range(name: &str, d15f_mm: f64, [low, high]: [f64; 2], source: &str)
         _ => "lies in",
     };
     format!(
-        "{name} {place} the range in which erosion began in tests on soils with such fines ({lower} to {upper} \
-         mm{source})"
+        "{name} {place} the range in which erosion began in tests on soils with such fines ({lower} to \
+         {upper} mm{source})"
     )
 }
 
@@ -128,7 +128,7 @@ mod tests {
         assert!(beside_range(2.21, [0.7, 1.7], "Table 9.2").ends_with(" (1.70 mm; Table 9.2)"));
     }
 
-    /// At an end of the range there is no margin, and no quotient to print: a limit of design is a hair below.
+    /// At an end of the range there is no margin, and no quotient to print: a limit is a hair below.
     #[test]
     fn at_an_end_of_the_range_the_end_is_said() {
         for (d15f, end) in [
@@ -141,8 +141,8 @@ mod tests {
             assert_eq!(
                 beside_range(d15f, [0.7, 1.7], ""),
                 format!(
-                    "D15F is at the {end} end of the range in which erosion began in tests on soils with such \
-                     fines (0.700 to 1.70 mm)"
+                    "D15F is at the {end} end of the range in which erosion began in tests on soils with \
+                     such fines (0.700 to 1.70 mm)"
                 )
             );
         }

@@ -239,8 +239,8 @@ fn the_workbook_of_a_verdict_has_the_numbers_of_its_outcome() {
     assert!(!book.exists() && !at.join("r/export").exists());
 }
 
-/// Of an outcome with evidence, which a walk of 60 layers has: outside the checked range nobody can answer for a
-/// probability, and beyond the boundary of tests the lower of two stands alone.
+/// Of an outcome with evidence, which a walk of 60 layers has: outside the checked range nobody can answer
+/// for a probability, and beyond the boundary of tests the lower of two stands alone.
 fn probabilities_are_those_of_the_page(at: &Path, mut outcome: Value) {
     outcome["evidence"] = serde_json::json!({
         "group": "less than 15 % fines", "soils": 40, "soils_without_boundary": 0, "ratio_median": 0.6,
