@@ -313,7 +313,8 @@ fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
 /// Whether a base is gap-graded, with the sizes between which it has least: by a number of this program, as
 /// the manual leaves it to the eye.
 fn gap_in_words(flattest: Option<Gap>) -> String {
-    const EYE: &str = "The manual gives no number and asks for the eye and judgment: look at the curve.";
+    const EYE: &str = "The manual gives no number and leaves it to visual examination and judgment: look at \
+                       the curve.";
     let Some(of) = flattest else { return format!("No gap by this program's own check. {EYE}") };
     let [from, to] = [of.from_mm, 4.0 * of.from_mm].map(significant);
     let found = if of.within < GAP_PERCENT { "A gap" } else { "No gap" };

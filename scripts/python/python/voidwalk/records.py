@@ -796,7 +796,7 @@ class AppliedRule(_AppliedRule, total=False):
         Whether the true limit is not known, and is at most `limit`.
     met
         Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing erosion
-        `true` says only that continuing erosion is not reached: some or excessive erosion is not excluded.
+        `true` says only that this is not reached: some or excessive erosion is not excluded.
     needs
         What is missing for a result; may be empty.
     note
