@@ -37,13 +37,18 @@ impl NetworkOutcome {
 }
 
 impl NetworkWalk {
+    /// Cu of the base with all that is finer than its finest sieve as coarse as that sieve.
+    fn cu_at_least(&self) -> Option<f64> {
+        Some(self.base.d(60.0)? / self.base.smallest_mm())
+    }
+
     /// What was not checked, or is not known, whatever comes of the walk.
     fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
         let filter = self.filter.as_ref();
         let planned = PlannedWalk {
             base: &self.base,
             regraded_from: None,
-            base_cu: self.base.cu().map(|cu| [cu, cu]),
+            base_cu: self.base.cu().or_else(|| self.cu_at_least()).map(|cu| [cu, cu]),
             pan_is_passive: true,
             filter: filter.map(|filter| &filter.gradation),
             filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
