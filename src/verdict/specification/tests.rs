@@ -122,8 +122,8 @@ fn the_step_of_gravel_and_gap_answers_both() {
     assert!(
         flat.contains(&format!(
             "No gap by this program's own check: the least mass within a factor of 4 in size is {within} %, \
-             from 0.600 to 2.40 mm, and below 5 % counts as a gap. The manual gives no number and asks for \
-             the eye and judgment: look at the curve."
+             from 0.600 to 2.40 mm, and below 5 % counts as a gap. The manual gives no number and leaves \
+             it to visual examination and judgment: look at the curve."
         )),
         "{flat}"
     );
