@@ -59,7 +59,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
                 some and continuing erosion and the limits of practice";
     let mut figure =
         Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
-            .sizes((760.0, 380.0), (358.0, 420.0));
+            .sizes((760.0, 340.0), (358.0, 420.0));
     let practice = Allowed::of(design, d85);
     zones(&mut figure, row, d85, &practice, ends);
     for (rule, at) in &limits {
