@@ -33,8 +33,8 @@ fn own(rows: &[OfThickness]) -> Option<&OfThickness> {
 /// Of a thickness that was not walked with as many times the base.
 const OTHER_BASE: &str = ", not as many times the base";
 
-/// What the rows say beside a verdict: whether it stays, and how much erodes where it does not; `None` without
-/// another thickness. What is undecided neither stays nor moves.
+/// What the rows say beside a verdict: whether it stays, and how much erodes where it does not; `None`
+/// without another thickness. What is undecided neither stays nor moves.
 fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<Finding> {
     let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
     if others.is_empty() {

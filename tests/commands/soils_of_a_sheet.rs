@@ -129,7 +129,8 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
     }
     assert!(said.contains("Not a complete specification: the maximum D90F"), "{said}");
     // Nor is it silent where the same soil is walked, and it says each once.
-    let words = call_of("design gap.csv --filter filter.csv --density loose --bracket 0.5,12 --out d", &SMALL);
+    let words =
+        call_of("design gap.csv --filter filter.csv --density loose --bracket 0.5,12 --out d", &SMALL);
     let output = call(root.path(), &[&words[..], &["--set", "replicates=1"]].concat());
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     done(&output);

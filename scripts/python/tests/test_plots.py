@@ -66,7 +66,7 @@ def test_a_result_is_drawn_in_four_ways() -> None:
     assert len(rules.get_yticks()) > 3 and "kept up to 1" in rules.get_xlabel()
     # A boundary of continuing erosion that is not reached is no good news.
     at = [label.get_text() for label in rules.get_yticklabels()].index("Foster and Fell: boundary of continuing erosion")
-    assert tuple(rules.collections[0].get_facecolors()[at][:3]) == matplotlib.colors.to_rgb("tab:gray")
+    assert tuple(rules.collections[0].get_facecolors()[at][:3]) == (127 / 255, 127 / 255, 127 / 255)
     with pytest.raises(ValueError, match="what = 'all' is not allowed; one of progress, layers, curves, rules"):
         result.plot("all")
     walked = vw.walk(vw.Network.cubic([6, 6, 9]), 0.2, n_base=1000, replicates=2)
