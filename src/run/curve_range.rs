@@ -2,7 +2,7 @@
 
 use super::callbacks::Event;
 use super::error::RunError;
-use super::planned::{first_replicates, replicates_of_end};
+use super::planned::replicates_of_end;
 use super::replicates::{
     ReplicateContext, ReplicateResult, classed, concluded, each, some_replicates, values_by_run,
 };
@@ -21,25 +21,24 @@ pub struct BegunEnd<'a> {
     walked: Vec<ReplicateResult>,
 }
 
-/// Begins the ends of the range of the curve, on the random numbers of the case's first replicates: the one
-/// replicate that is walked whatever comes of the case, where that is known before and walks fit into the
-/// memory side by side.
+/// Begins the ends of the range of the curve, on the random numbers of the case's first replicate: the one
+/// that is walked whatever comes of the case, where walks fit into the memory side by side.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
 pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
     // The parts before these are the sensitivity study's and the other readings'.
     let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
-    let known = if fit(case) { replicates_of_end(first_replicates(case)).min(1) } else { 0 };
+    let fit = fit(case);
     let one = |(part, end): (u64, &'a OtherCurve)| {
         let other = case.with_curve(end.curve.clone());
         // What a user or a cap says of the amount of base holds for every curve.
         let by_grains = case.n_base_eq2 == Some(case.n_base);
         let n_base = case.times_base(if by_grains { end.times_grains } else { 1.0 });
-        let walked = some_replicates(&other, part, 1..=known, n_base, context)?;
+        let walked = some_replicates(&other, part, 1..=u64::from(fit), n_base, context)?;
         Ok(BegunEnd { end, case: other, part, n_base, walked })
     };
-    each((before..).zip(&case.curve_ends).collect(), fit(case), one)
+    each((before..).zip(&case.curve_ends).collect(), fit, one)
 }
 
 /// Whether walks of the case fit into the memory side by side.
