@@ -14,8 +14,11 @@ use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::disk::{self, Call, PART, PartFile, ask};
+use super::disk::{self, Call, PART, ask};
+use super::error::StoreError;
+use super::inside::{is_empty, make_folder, make_folders, remove_folder, sync};
 use super::platform;
+use super::whole::write_whole;
 
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
@@ -25,64 +28,6 @@ const ASK_FOR: Duration = Duration::from_millis(500);
 
 /// How soon after locking a folder a process says who it is.
 const SIGNS_WITHIN: Duration = Duration::from_millis(200);
-
-/// Why a folder cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum StoreError {
-    /// The folder holds other things.
-    #[error("{path}: this folder is not empty and was not made by voidwalk; name an empty or new one")]
-    NotOurs {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The path is there, but is no folder of its own.
-    #[error("{path}: is {what}; name a folder that is empty or new")]
-    NotAFolder {
-        /// The path.
-        path: PathBuf,
-        /// What it is instead.
-        what: &'static str,
-    },
-    /// Under the name of the lock file there is something else.
-    #[error(
-        "{path}: is no lock file of voidwalk: another name of some other file, or no file at all; remove it, \
-         or name another folder"
-    )]
-    NotALock {
-        /// The path.
-        path: PathBuf,
-    },
-    /// Somebody else is writing.
-    #[error("{path}: another run writes to this folder ({holder})")]
-    Held {
-        /// The folder.
-        path: PathBuf,
-        /// What the lock file says.
-        holder: String,
-    },
-    /// The system refuses.
-    #[error("{path}: cannot {action}: {source}")]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What was tried.
-        action: &'static str,
-        /// What the system says.
-        source: io::Error,
-    },
-}
-
-impl StoreError {
-    /// Whether the user can fix it by naming another folder, before any work is done.
-    pub fn is_refusal(&self) -> bool {
-        use io::ErrorKind::{InvalidFilename, InvalidInput, NotADirectory, NotFound};
-        use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
-        // Windows calls the name of a device, as NUL, an input that is invalid.
-        let by_name =
-            [InvalidFilename, InvalidInput, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
-        !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
-    }
-}
 
 /// A folder that this process alone writes to, until it is dropped.
 #[derive(Debug)]
@@ -302,19 +247,6 @@ fn share(path: &Path) -> Result<File, StoreError> {
     }
 }
 
-/// Sends the names in a folder to the disk.
-fn sync(folder: &Path) -> Result<(), StoreError> {
-    disk::sync_folder(folder).map_err(|source| StoreError::Io {
-        path: folder.to_owned(),
-        action: "sync the folder",
-        source,
-    })
-}
-
-fn is_empty(folder: &Path) -> io::Result<bool> {
-    ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
-}
-
 /// Removes what killed processes left half written in a folder and in those inside that have no lock of their
 /// own.
 fn clear_parts(folder: &Path) -> io::Result<()> {
@@ -338,105 +270,6 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
 fn is_left(name: &str) -> bool {
     let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
     process == std::process::id().to_string() || !platform::is_running(process)
-}
-
-/// Makes a folder and those above it that are missing, each synced into the one that it is in.
-fn make_folders(path: &Path) -> io::Result<()> {
-    let missing: Vec<&Path> =
-        path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
-    for folder in missing.into_iter().rev() {
-        match ask(Call::MakeFolder(folder), || fs::create_dir(folder)) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
-            other => other?,
-        }
-        disk::sync_folder(folder.parent().unwrap_or(Path::new("")))?;
-    }
-    Ok(())
-}
-
-/// Makes a folder inside one of ours, if it is not there; one reached through a link is refused.
-///
-/// # Errors
-/// It is a link or a file, or what the system says.
-pub fn make_folder(path: &Path) -> Result<(), StoreError> {
-    let not = |what| Err(StoreError::NotAFolder { path: path.to_owned(), what });
-    match path.symlink_metadata() {
-        Ok(meta) if meta.is_symlink() => not("a symbolic link"),
-        Ok(meta) if !meta.is_dir() => not("a file"),
-        Ok(_) => Ok(()),
-        Err(_) => make_folders(path).map_err(|source| StoreError::Io {
-            path: path.to_owned(),
-            action: "make the folder",
-            source,
-        }),
-    }
-}
-
-/// Removes a folder with all that is in it, if it is there.
-///
-/// # Errors
-/// It is a link, which somebody has laid there; or what the system says.
-pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
-    if path.symlink_metadata().is_ok_and(|meta| meta.is_symlink()) {
-        return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
-    }
-    match ask(Call::RemoveFolder(path), || fs::remove_dir_all(path)) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => {
-            Err(StoreError::Io { path: path.to_owned(), action: "remove", source })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The files of a folder; none where there is no such folder.
-///
-/// # Errors
-/// What the system says.
-pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
-    let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
-    match ask(Call::List(folder), list) {
-        Err(source) if source.kind() != io::ErrorKind::NotFound => {
-            Err(StoreError::Io { path: folder.to_owned(), action: "read the folder", source })
-        }
-        found => {
-            let mut files = found.unwrap_or_default();
-            files.sort();
-            Ok(files)
-        }
-    }
-}
-
-/// A whole file that the program wrote itself.
-///
-/// # Errors
-/// What the system says.
-pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
-    disk::read(path)
-}
-
-/// Writes a whole file beside its final name, syncs it, renames it and syncs the folder.
-///
-/// # Errors
-/// What the system says, with the file's path.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-    write_whole_with(path, |file| file.write_all(bytes))
-}
-
-/// [`write_whole`] for what does not lie in one piece.
-///
-/// # Errors
-/// What the system says, with the file's path.
-pub fn write_whole_with(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), StoreError> {
-    let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut part = PartFile::beside(folder).map_err(io("write beside the file"))?;
-    fill(&mut part).map_err(io("write"))?;
-    part.sync().map_err(io("sync"))?;
-    part.rename(path).map_err(io("rename"))?;
-    disk::sync_folder(folder).map_err(io("sync the folder"))
 }
 
 #[cfg(test)]

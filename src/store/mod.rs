@@ -3,16 +3,18 @@
 pub mod checkpoint;
 mod column;
 pub mod disk;
+mod error;
 mod folder;
 pub mod format;
+mod inside;
 mod npz;
 pub(crate) mod platform;
-mod together;
+mod whole;
 
 pub use column::{Column, Placement};
 pub use disk::{open_regular, read_regular};
-pub use folder::{
-    Folder, LOCK_FILE, StoreError, files_in, make_folder, read_whole, remove_folder, write_whole,
-};
+pub use error::StoreError;
+pub use folder::{Folder, LOCK_FILE};
+pub use inside::{files_in, make_folder, remove_folder};
 pub use npz::{Array, Npz, Numbers, npz};
-pub use together::Together;
+pub use whole::{Together, read_whole, write_whole};

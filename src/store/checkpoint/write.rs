@@ -7,7 +7,7 @@ use super::header;
 use super::label::Label;
 use super::section::Section;
 use crate::store::StoreError;
-use crate::store::folder::write_whole_with;
+use crate::store::whole::write_whole_with;
 
 /// Where the checkpoint of a generation lives.
 pub(super) fn slot(folder: &Path, name: &str, generation: u64) -> PathBuf {
