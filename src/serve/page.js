@@ -639,9 +639,7 @@ function verdictOf(job) {
       ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one), ...findings([...one.reasons, ...one.beside])]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  return [...answer(done), ...plot(done.runs),
-    done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
-    ...findings(done.findings)];
+  return [...answer(done), ...plot(done.runs), ...findings(done.findings)];
 }
 
 function card(job) {

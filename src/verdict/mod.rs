@@ -11,6 +11,7 @@
 //! - `dispersion` is what is said of a base of which nobody has said whether it is dispersive.
 //! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
+//! - `amount` and `thickness` are how a verdict moves with them, `study_points` the classes of such walks.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
@@ -51,8 +52,9 @@ mod quantity;
 mod rule_notes;
 pub(crate) mod rule_words;
 mod specification;
+mod study_points;
 pub(crate) mod tested;
-mod thickness;
+pub(crate) mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
 pub(crate) mod words;

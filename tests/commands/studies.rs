@@ -50,7 +50,7 @@ fn a_point_that_is_clear_stops_and_the_page_says_so() {
     }
     let page = fs::read_to_string(root.path().join("o/report.html")).unwrap();
     assert!(page.contains("Replicates: ×0.5 1, ×1 8, ×2 1. A point stops after one or two replicates"));
-    assert!(page.contains("The verdict does not change with thickness (0.5 to 2 times as thick)"));
+    assert!(page.contains("share of the filter): continuing erosion at 0.5 to 2 times the thickness"));
     // One replicate of a point is the first of the scene with so much base, and the interval is a wide one.
     let n_base = rows[0][2]["n_base"].to_string();
     let same = format!("base.n_base={n_base}");

@@ -57,7 +57,7 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Figure 1.",
         "Group by ASTM D2487",
         "Rules of practice, in short",
-        "Thickness modelled: 296 mm",
+        "The walk models 296 mm",
         "The model leaves out: ",
         "Hydraulics: no gradient",
         "What the model found",
