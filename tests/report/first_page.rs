@@ -4,7 +4,9 @@ use std::path::Path;
 use std::process::Command;
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::{Direction, FindingRecord, RuleQuantity, RuleRole, Topic, Weight};
+use voidwalk::outcome::record::{
+    Confidence, Direction, FindingRecord, Outcome, RuleQuantity, RuleRole, Topic, Verdict, Weight,
+};
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::PairRules;

@@ -229,7 +229,7 @@ fn one_replicate_has_no_interval_and_says_so() {
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
     let text = words(&made(&plan).0);
-    assert!(text.contains("Their effect is not walked yet; voidwalk resume goes on with it"));
+    assert!(text.contains("thickness is not walked yet; voidwalk resume goes on with it"));
     assert!(!text.contains("not asked for"));
 }
 
