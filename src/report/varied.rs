@@ -61,7 +61,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     Some(Drawn::new("sensitivity", figure, caption))
 }
 
-/// Eroded mass against the thickness of the filter, with which the base varies, and the class that each thickness gives.
+/// Eroded mass against the thickness of the filter, with which the base varies, and the class of each.
 pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let scale_free = folder.outcome.inputs.scale_free;
     let of_row = |row: &'_ OfThickness| known(row.thickness_mm, |thickness| size(thickness, scale_free));

@@ -67,8 +67,8 @@ impl Outcome {
         self.findings.iter().any(errs)
     }
 
-    /// That a pair that holds in the walk lies beyond the boundary of no erosion that the paper found with the
-    /// same model.
+    /// That a pair that holds in the walk lies beyond the boundary of no erosion that the paper found with
+    /// the same model.
     fn beyond_its_own_boundary(&self) -> Option<String> {
         let rule = self.rules.iter().find(|rule| rule.id == PAPER_NO_EROSION && rule.met == Some(false));
         let [value, limit] = against(rule.filter(|_| self.verdict == Verdict::None)?, 3);
@@ -77,8 +77,8 @@ impl Outcome {
         ))
     }
 
-    /// In how many networks no path is left open after the last run: what erodes no more there says nothing of
-    /// the soil.
+    /// In how many networks no path is left open after the last run: that nothing erodes there any more says
+    /// nothing of the soil.
     fn no_open_path(&self) -> Option<String> {
         let last = self.summary.last().filter(|_| self.verdict != Verdict::Continuing)?.run;
         let runs = || self.replicates.iter().flat_map(|of| &of.runs).filter(|run| run.run == last);
@@ -86,7 +86,10 @@ impl Outcome {
         let which = if last == 1 { "first" } else { "second" };
         let of = runs().count();
         (closed > 0).then(|| {
-            format!("After the {which} run the walk's filter is closed: no open path is left in {closed} of {of} networks")
+            format!(
+                "After the {which} run the walk's filter is closed: no open path is left in {closed} of {of} \
+                 networks"
+            )
         })
     }
 
@@ -158,8 +161,8 @@ fn unfold(all: &mut [FindingRecord]) {
 /// Beyond the limit of design, and within the boundary of no erosion.
 const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
 
-/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line; with the class
-/// of the walk and the worse one that another amount of base gives, where there is one.
+/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line; with the
+/// class of the walk and the worse one that another amount of base gives, where there is one.
 ///
 /// Practice speaks first: a walk that is more favourable never makes a filter a good one.
 pub fn headline(

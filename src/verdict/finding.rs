@@ -18,7 +18,8 @@ const OPEN: &[Verdict] = &[Verdict::Undecided];
 macro_rules! soils_not_tested {
     () => {
         "The walk knows no cohesion, no segregation and no crack, and none of these soils was tested itself. \
-         The source gives the two ends of the range alone, so that no probability for a risk analysis follows."
+         The source gives the two ends of the range alone, so that no probability for a risk analysis \
+         follows."
     };
 }
 
@@ -26,8 +27,8 @@ macro_rules! soils_not_tested {
 macro_rules! of_soils {
     () => {
         concat!(
-            "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} times \
-             the centre of that range (nine in ten: {low} to {high}){more}. ",
+            "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} \
+             times the centre of that range (nine in ten: {low} to {high}){more}. ",
             soils_not_tested!()
         )
     };
@@ -126,8 +127,8 @@ findings! {
     curve_range_open(low: Percent, high: Percent, span: Text, each: Text):
         Constrictions, Open, Limits, unshown low high;
         "constrictions", "uncertainty.md",
-        "The verdict is not the same over the whole range of the constriction curve. Eroded in the first run: \
-         {span} ({each}).",
+        "The verdict is not the same over the whole range of the constriction curve. Eroded in the first \
+         run: {span} ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
 
     // What a design's search says against its answer.
