@@ -184,12 +184,12 @@ fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
         let page = fs::read_to_string(root.path().join("u/report.html")).unwrap().replace('\u{202f}', " ");
         for face in [&stdout, &page] {
             assert!(
-                !face.contains("The verdict does not change") && !face.contains("The verdict changes with"),
+                !face.contains("The class does not change") && !face.contains("The class depends on"),
                 "{face}"
             );
         }
-        let sentence = format!("The verdict is undecided; at other thicknesses, {points} (0.5 times");
-        assert!(page.contains(&sentence), "{page}");
+        let sentence = format!(" times the thickness ({points}).");
+        assert!(page.contains("is a share of the filter): ") && page.contains(&sentence), "{page}");
         assert!(
             page.contains(why) && page.contains(&format!("the other points are classed {points}")),
             "{page}"

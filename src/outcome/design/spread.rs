@@ -19,8 +19,8 @@ const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 /// From so many networks on a percentile is not read between the last two of them.
 const ENOUGH: u64 = 20;
 
-/// What the band of so many networks holds of them: of few networks its ends are no networks of their own, but
-/// lie between the two that are outermost.
+/// What the band of so many networks holds of them: of few networks its ends are no networks of their own,
+/// but lie between the two that are outermost.
 pub fn band_in_words(networks: u64) -> &'static str {
     if networks < ENOUGH { "interpolated 5 to 95 %" } else { "5 to 95 %" }
 }

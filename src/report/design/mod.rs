@@ -186,7 +186,8 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                             b { (ratio(boundary.median)) }
                             @if design.replicates == 1 { " on one network: " } @else {
                                 " in the median of " (whole(design.replicates)) " networks, "
-                                (between(boundary.low, boundary.high, ratio)) " in " (band_in_words(design.replicates)) " of them: "
+                                (between(boundary.low, boundary.high, ratio)) " in "
+                                (band_in_words(design.replicates)) " of them: "
                             }
                         },
                         None => {

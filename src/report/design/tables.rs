@@ -47,7 +47,8 @@ pub(super) fn boundaries(design: &Design) -> Markup {
     html! {
         p {
             "Results of the walks alone, without the rules of practice: D15F/D85B" (of_base)
-            ", median and " (band_in_words(design.replicates)) " of " (whole(design.replicates)) " networks; below it the "
+            ", median and " (band_in_words(design.replicates)) " of " (whole(design.replicates))
+            " networks; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
