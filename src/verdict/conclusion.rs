@@ -87,8 +87,8 @@ impl Outcome {
         let of = runs().count();
         (closed > 0).then(|| {
             format!(
-                "After the {which} run the walk's filter is closed: no open path is left in {closed} of {of} \
-                 networks"
+                "The filter is closed in {closed} of {of} networks after the {which} run (no open path is \
+                 left)"
             )
         })
     }

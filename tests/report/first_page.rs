@@ -426,9 +426,9 @@ fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
         outcome.replicates.iter_mut().skip(1).for_each(|of| of.runs[1].backbone_fraction = 0.0);
     });
     let of = Plan::usual().outcome.replicates.len();
+    let closed_in = of - 1;
     let said = format!(
-        ". After the second run the walk's filter is closed: no open path is left in {} of {of} networks",
-        of - 1
+        ". The filter is closed in {closed_in} of {of} networks after the second run (no open path is left)"
     );
     assert!(closed.ends_with(&said), "{closed}");
     let beyond = walk(&|outcome| {
