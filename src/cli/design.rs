@@ -7,7 +7,7 @@ use super::progress::followed;
 use super::specification::{specification, with_option};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, Range};
+use crate::outcome::design::{Boundary, Design, DesignRow, Range, band_in_words};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
@@ -161,7 +161,7 @@ fn ratio(boundary: &Boundary, design: &Design, mm: fn(f64) -> String) -> String 
             return "of one network".to_owned();
         }
         let end = |value: Option<f64>| value.map_or("unknown".into(), words);
-        format!("5 to 95 % of networks: {} to {}", end(low), end(high))
+        format!("{} of networks: {} to {}", band_in_words(design.replicates), end(low), end(high))
     };
     let Boundary { median, low, high, .. } = boundary;
     let of_networks = |low: Option<f64>, high: Option<f64>, words| match low.or(high) {

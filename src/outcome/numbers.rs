@@ -86,10 +86,13 @@ pub fn threshold(fraction: f64) -> String {
     format!("{}{THIN}%", trimmed(fraction * 100.0))
 }
 
-/// The 95 % interval of a fraction, where there is one.
+/// The 95 % interval of a fraction, where there is one; one number where both ends read alike.
 pub fn percent_interval(statistic: &Statistic) -> Option<String> {
     let (low, high) = interval(statistic)?;
-    Some(format!("{} to {}{THIN}%", percent_digits(low), percent_digits(high)))
+    Some(match (percent_digits(low), percent_digits(high)) {
+        (low, high) if low == high => format!("{low}{THIN}%"),
+        (low, high) => format!("{low} to {high}{THIN}%"),
+    })
 }
 
 /// The interval of a fraction, kept within 0 and 1.
@@ -332,6 +335,8 @@ mod tests {
         let statistic = Statistic { mean: 0.01, sd: Some(0.02), low: Some(-0.004), high: Some(0.024) };
         assert_eq!(percent_interval(&statistic).unwrap(), "0.0 to 2.4\u{202f}%");
         assert_eq!(percent_interval(&Statistic { low: None, ..statistic }), None);
+        let nothing = Statistic { mean: 1e-5, sd: None, low: Some(5e-6), high: Some(2e-5) };
+        assert_eq!(percent_interval(&nothing).unwrap(), "<0.01\u{202f}%");
     }
 
     #[test]

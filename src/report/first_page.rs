@@ -238,25 +238,18 @@ fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
         @if let Some(thickness) = network.thickness_mm {
             p.thickness {
-                "Thickness modelled: " b { (unit.size(thickness)) } " along the flow, "
+                "The walk models " b { (unit.size(thickness)) } " of the filter"
+                (outcome.beside_thickness(thickness, |mm| unit.size(mm))) ": "
                 (whole(network.layers)) " layers of voids"
                 @if network.kind != NetworkKind::Graph {
                     ", each D50F by number, "
                     (size(outcome.inputs.filter.d50_by_number_mm, outcome.inputs.scale_free))
                 }
                 ". "
-                @if let Some(grain) = larger_grain(outcome, thickness) {
-                    "That is less than the largest grain of the filter, " (unit.size(grain)) ". "
-                }
                 @if let Some(sentence) = thickness_moves(outcome) { (unbroken(&sentence)) }
             }
         }
     }
-}
-
-/// The largest grain of the filter, where the filter that was walked is thinner than that.
-fn larger_grain(outcome: &Outcome, thickness: f64) -> Option<f64> {
-    outcome.inputs.filter.gradation.last().map(|row| row[0]).filter(|grain| *grain > thickness)
 }
 
 /// How the verdict moves with the thickness.

@@ -157,8 +157,7 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
         @if let Some(over) = outcome.over_curve_range() {
-            p.small { "The table is of the curve itself. Over the range of constrictions " (over) " of the \
-                base erodes." }
+            p.small { "The table is of the curve itself. Eroded " (over) "." }
         }
         @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
         @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
@@ -248,8 +247,8 @@ fn findings(outcome: &Outcome) -> Markup {
 }
 
 /// Of a page that was written before the studies were walked.
-const TO_COME: &str = "The thickness of the filter and the number of base particles move the verdict most. \
-    Their effect is not walked yet; voidwalk resume goes on with it.";
+const TO_COME: &str = "The effect of the amount of base and of the filter's thickness is not walked yet; \
+    voidwalk resume goes on with it.";
 
 /// What was left out of a study, in sentences.
 fn left_out_of(outcome: &Outcome, study: &[&str]) -> Vec<String> {

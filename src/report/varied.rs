@@ -7,6 +7,7 @@ use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper,
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome};
+use crate::verdict::thickness::WITH_AMOUNT;
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates if its erosion \
@@ -48,7 +49,7 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     ];
     let cases: Vec<Varied> = cases.collect();
     let behind = behind(&folder.outcome, &cases);
-    let figure = varied(&folder.walks(), cases, titles)?;
+    let figure = varied_by(&folder.walks(), cases, titles)?;
     let caption = format!(
         "How the verdict moves with the number of base particles. It is proportional to the grains per void \
          and to the mass ratio, so this axis covers both: ×2 is twice the grains \
@@ -60,29 +61,28 @@ pub(super) fn sensitivity(folder: &RunFolder) -> Option<Drawn> {
     Some(Drawn::new("sensitivity", figure, caption))
 }
 
-/// Eroded mass against the thickness of the filter, and the class that each thickness gives.
+/// Eroded mass against the thickness of the filter, with which the base varies, and the class of each.
 pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let scale_free = folder.outcome.inputs.scale_free;
     let of_row = |row: &'_ OfThickness| known(row.thickness_mm, |thickness| size(thickness, scale_free));
     let rows = folder.outcome.thickness.iter().filter(|row| row.factor > 0.0);
     let rows = rows.map(|row| Varied { factor: row.factor, below: of_row(row), walked: &row.walked });
     let titles = [
-        "How the verdict moves with the thickness of the filter",
+        "How the verdict moves with thickness and amount of base together",
         "Percent of the base mass eroded in each run against multiples of the filter's thickness; the \
          colour behind is the verdict",
         "Times the thickness of this filter; below, the thickness modelled",
     ];
     let rows: Vec<Varied> = rows.collect();
     let behind = behind(&folder.outcome, &rows);
-    let figure = varied(&folder.walks(), rows, titles)?;
+    let figure = varied_by(&folder.walks(), rows, titles)?;
     let outcome = &folder.outcome;
-    let offered = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
-        true => "A thicker filter is offered base in proportion.",
-        false => HELD,
+    let varied = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
+        true => format!("{WITH_AMOUNT}."),
+        false => HELD.to_owned(),
     };
     let caption = format!(
-        "How the verdict moves with the thickness of the filter: more layers are more constrictions to \
-         pass. ×1 is this filter, {} layers of voids. {offered} Bars: 95 % intervals. {behind}",
+        "{varied} ×1 is this filter, {} layers of voids. Bars: 95 % intervals. {behind}",
         whole(folder.outcome.inputs.network.layers),
     );
     Some(Drawn::new("thickness", figure, caption))
@@ -105,7 +105,7 @@ fn behind(outcome: &Outcome, cases: &[Varied]) -> String {
 
 /// Eroded mass against multiples of one thing, with title, description and name of the axis; `None` without
 /// cases.
-fn varied(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Figure> {
+fn varied_by(walks: &Walks, mut cases: Vec<Varied>, titles: [&str; 3]) -> Option<Figure> {
     let [title, what, axis] = titles;
     cases.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let (least, most) = (cases.first()?.factor, cases.last()?.factor);

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::sheets::Sheets;
 use crate::constrictions;
 use crate::outcome::design::band::Band;
-use crate::outcome::design::{Design, DesignFinding};
+use crate::outcome::design::{Design, DesignFinding, band_in_words};
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
 
@@ -186,6 +186,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "d85b": design.base.size().map(|base| base.words()),
         "filter": design.filter,
         "boundaries": boundaries,
+        "band_of_networks": band_in_words(design.replicates),
         "replicates": design.replicates,
         "confidence": design.confidence.words(),
         "reasons": design.reasons,

@@ -577,7 +577,7 @@ function soFar(job) {
 }
 
 const between = (range) => (range.low === null && range.high === null ? "band not known"
-  : `${number(range.low)} to ${number(range.high)} in 5 to 95\u202f% of networks`);
+  : `${number(range.low)} to ${number(range.high)}`);
 
 /** A boundary over networks, or why there is none. */
 function boundary(of, note) {
@@ -597,7 +597,7 @@ function boundariesOf(job) {
     el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
   return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
-    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks.`),
+    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks, below it ${done.band_of_networks} of them.`),
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
@@ -639,9 +639,7 @@ function verdictOf(job) {
       ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one), ...findings([...one.reasons, ...one.beside])]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  return [...answer(done), ...plot(done.runs),
-    done.range ? el("p", {}, el("span", { class: "mark" }, "Over the range of the constriction curve"), `: ${percent(done.range[0][0])} to ${percent(done.range[0][1])} in the first run.`) : null,
-    ...findings(done.findings)];
+  return [...answer(done), ...plot(done.runs), ...findings(done.findings)];
 }
 
 function card(job) {

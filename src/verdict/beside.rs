@@ -1,8 +1,9 @@
 //! What the results of a run say beside its verdict, and the findings of an outcome as they are shown.
 
 use super::entry::Finding;
+use super::study_points::beside_ends;
 use super::{amount, finding, thickness};
-use crate::outcome::digits::percent;
+use crate::outcome::digits::{percent, percent_span};
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{
     CurveEnd, CurveRange, FindingRecord, Outcome, PanBounds, PanSize, Run, ShortOf, Stopping, Verdict,
@@ -17,14 +18,12 @@ impl Outcome {
     /// what the replicates leave open, what was trapped, the thickness, and what water and voids came to.
     pub fn found(&self) -> Vec<Finding> {
         let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
-        let unit = if self.inputs.scale_free { "D0F" } else { "mm" };
-        let of_thickness = |thick: f64| finding::modelled_thickness(&format!("{thick:.1} {unit}"));
         [
             self.pan_bounds.as_ref().map(readings),
             self.stopping.as_ref().and_then(short_of),
             self.replicates_leave_open(),
             (trapped > 0).then(|| finding::trapped(trapped)),
-            self.inputs.network.thickness_mm.map(of_thickness),
+            thickness::modelled(self),
             thickness::finding(self),
             amount::finding(self),
             self.permeability(),
@@ -150,21 +149,22 @@ pub fn pan(bounds: &PanBounds) -> Finding {
 /// What the range of a constriction curve says of its verdict.
 pub fn curve_range(range: &CurveRange) -> Finding {
     let end = |end: &CurveEnd| {
-        let runs: Vec<String> = end.walked.runs.iter().map(|s| format!("{:.2} %", 100.0 * s.mean)).collect();
+        let runs: Vec<String> = end.walked.runs.iter().map(|s| percent(s.mean)).collect();
         format!("{}: {}, {} eroded", end.curve, end.walked.verdict.words(), runs.join(" then "))
     };
     let ends: Vec<String> = range.ends.iter().map(end).collect();
     let each = format!("{}; by the curve itself: {}", ends.join("; "), range.verdict.words());
-    let [low, high] =
-        range.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]).map(|of| 100.0 * of);
+    let ends = range.eroded_mass_fraction.first().copied().unwrap_or([f64::NAN; 2]);
+    let span = percent_span(ends.map(|of| of.max(0.0))) + beside_ends(range);
+    let [low, high] = ends.map(|of| 100.0 * of);
     match range.agrees() {
-        true => finding::curve_range_agrees(low, high, &each),
+        true => finding::curve_range_agrees(low, high, &span, &each),
         false if range.worst_counts && range.whole() != Verdict::Undecided => {
-            finding::worst_of_range(range.whole().words(), low, high, &each)
+            finding::worst_of_range(range.whole().words(), low, high, &span, &each)
         }
         // What the curve itself leaves open, its range does not decide.
-        false if range.verdict == Verdict::Undecided => finding::curve_range_open(low, high, &each),
-        false => finding::curve_range_decides(low, high, &each),
+        false if range.verdict == Verdict::Undecided => finding::curve_range_open(low, high, &span, &each),
+        false => finding::curve_range_decides(low, high, &span, &each),
     }
 }
 

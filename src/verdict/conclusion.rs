@@ -1,15 +1,19 @@
 //! What every face says first: whether the filter holds, the line of practice, the line of the walk, and the
 //! three findings that matter most.
 
+use super::amount::worse_in_words;
 use super::beside::is_evidence;
-use super::entry::COHESIVE_FINES;
+use super::entry::{COHESIVE_FINES, EVIDENCE_UNSAFE};
 use super::practice::{Standing, broken, standing};
 use super::probability::{beside_range, stated};
+use super::rule_words::against;
+use super::study_points::beside_ends;
 use super::tested::is_beyond_tests;
-use crate::outcome::digits::percent;
+use crate::outcome::digits::{percent, percent_span};
 use crate::outcome::record::{
-    AppliedRule, Confidence, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, Direction, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
 };
+use crate::outcome::rules::PAPER_NO_EROSION;
 
 /// Findings that stand on the first page and on a terminal; the rest stand further down the page.
 pub const FOREMOST: usize = 3;
@@ -17,7 +21,7 @@ pub const FOREMOST: usize = 3;
 impl Outcome {
     /// Whether the filter holds, does not, or nobody can say, in a line.
     pub fn headline(&self) -> String {
-        headline(&self.rules, self.verdict, self.confidence)
+        headline(&self.rules, self.verdict, self.confidence, worse_in_words(self))
     }
 
     /// The lines that every face begins with, each under its name.
@@ -30,40 +34,75 @@ impl Outcome {
         ]
     }
 
-    /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, and what tests
-    /// on soils of this kind make of it: within the checked range a probability, else where D15F lies beside
-    /// them.
+    /// What the walk says, in a line: its class, the mass eroded, how far it can be relied on, what tests on
+    /// soils of this kind make of it (within the checked range a probability, else where D15F lies beside
+    /// them), and in how many networks no path is left open.
     pub fn walk_in_words(&self) -> String {
-        let mass = self.over_curve_range().map_or_else(
-            || {
-                let what = "95 % interval by the scatter of replicates ";
-                let runs = [("first run", what), ("second", "")].into_iter().zip(&self.summary);
-                runs.map(|((name, what), run)| eroded(name, what, run)).collect::<Vec<_>>().join(", ")
-            },
-            |over| format!("{over} over the range of constrictions"),
-        );
+        let mass = self.over_curve_range().unwrap_or_else(|| {
+            let what = "95 % interval by the scatter of replicates ";
+            let runs = [("first run", what), ("second", "")].into_iter().zip(&self.summary);
+            runs.map(|((name, what), run)| eroded(name, what, run)).collect::<Vec<_>>().join(", ")
+        });
         let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
         }
-        match self.beside_tests() {
-            Some(tests) => format!("{said}. {tests}"),
-            None => said,
+        if self.verdict != Verdict::Continuing && self.errs_unsafely() {
+            said += "; the walk errs on the unsafe side for this pair";
         }
+        if let Some(beyond) = self.beyond_its_own_boundary() {
+            said += &format!("; {beyond}");
+        }
+        [self.beside_tests(), self.no_open_path()]
+            .into_iter()
+            .flatten()
+            .fold(said, |said, more| format!("{said}. {more}"))
+    }
+
+    /// Whether the walk errs on the unsafe side for this pair, by soils of its kind or by its own base.
+    pub fn errs_unsafely(&self) -> bool {
+        let errs =
+            |of: &FindingRecord| of.direction == Direction::Unsafe && ERRS_UNSAFELY.contains(&of.id.as_str());
+        self.findings.iter().any(errs)
+    }
+
+    /// That a pair that holds in the walk lies beyond the boundary of no erosion that the paper found with
+    /// the same model.
+    fn beyond_its_own_boundary(&self) -> Option<String> {
+        let rule = self.rules.iter().find(|rule| rule.id == PAPER_NO_EROSION && rule.met == Some(false));
+        let [value, limit] = against(rule.filter(|_| self.verdict == Verdict::None)?, 3);
+        Some(format!(
+            "beyond the boundary of no erosion of the paper's own network (D15F/D85B {value} > {limit})"
+        ))
+    }
+
+    /// In how many networks no path is left open after the last run: that nothing erodes there any more says
+    /// nothing of the soil.
+    fn no_open_path(&self) -> Option<String> {
+        let last = self.summary.last().filter(|_| self.verdict != Verdict::Continuing)?.run;
+        let runs = || self.replicates.iter().flat_map(|of| &of.runs).filter(|run| run.run == last);
+        let closed = runs().filter(|run| run.backbone_fraction == 0.0).count();
+        let which = if last == 1 { "first" } else { "second" };
+        let of = runs().count();
+        (closed > 0).then(|| {
+            format!(
+                "The filter is closed in {closed} of {of} networks after the {which} run (no open path is \
+                 left)"
+            )
+        })
     }
 
     /// Least and most of the base's mass that erode over the range of the constriction curve, run by run: the
     /// class is that of the whole range. `None` where the curve is no range.
     pub fn over_curve_range(&self) -> Option<String> {
         let range = self.curve_range.as_ref()?;
-        let run = |([low, high], name): (&[f64; 2], &str)| {
-            let [low, high] = [*low, *high].map(|of| percent(of.max(0.0)));
-            let mass = if low == high { low } else { format!("{low} to {high}") };
-            format!("{mass} in the {name}")
+        let run = |(ends, name): (&[f64; 2], &str)| {
+            format!("{} in the {name}", percent_span(ends.map(|of| of.max(0.0))))
         };
         let runs = range.eroded_mass_fraction.iter().zip(["first run", "second"]);
-        Some(runs.map(run).collect::<Vec<_>>().join(", ")).filter(|said| !said.is_empty())
+        let said = runs.map(run).collect::<Vec<_>>().join(", ");
+        (!said.is_empty()).then(|| said + " over the range of constrictions" + beside_ends(range))
     }
 
     /// Whether both probabilities that a test would show no erosion stand beside the verdict: where one
@@ -102,6 +141,9 @@ impl Outcome {
     }
 }
 
+/// Findings by which the walk errs on the unsafe side for a pair.
+const ERRS_UNSAFELY: [&str; 3] = [EVIDENCE_UNSAFE, "broadly_graded", "not_regraded"];
+
 /// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
 /// class stands, before them that it does not stand if the base is dispersive, and that it does not with less
 /// base.
@@ -119,10 +161,16 @@ fn unfold(all: &mut [FindingRecord]) {
 /// Beyond the limit of design, and within the boundary of no erosion.
 const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
 
-/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line.
+/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line; with the
+/// class of the walk and the worse one that another amount of base gives, where there is one.
 ///
 /// Practice speaks first: a walk that is more favourable never makes a filter a good one.
-pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence) -> String {
+pub fn headline(
+    rules: &[AppliedRule],
+    verdict: Verdict,
+    confidence: Confidence,
+    by_amount: Option<String>,
+) -> String {
     let standing = standing(rules);
     let walked = verdict.words();
     let said = match (&standing, verdict) {
@@ -151,7 +199,11 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         (Standing::Met, Verdict::None) if confidence == Confidence::Within => {
             "holds: practice and walk agree".into()
         }
-        (Standing::Met, Verdict::None) => format!("holds by practice; {}", reservation(confidence)),
+        (Standing::Met, Verdict::None) => {
+            let said = by_amount.filter(|_| confidence == Confidence::Outside);
+            let said = said.map(|by_amount| format!("the walk: {by_amount}"));
+            format!("holds by practice; {}", said.unwrap_or_else(|| reservation(confidence).into()))
+        }
         (Standing::Met, Verdict::Undecided) => "holds by practice; the walk is undecided".into(),
         (Standing::Met, _) => format!("holds by practice; the walk is stricter: {walked} in the model"),
     };
@@ -172,7 +224,7 @@ fn reservation(confidence: Confidence) -> &'static str {
         Confidence::Unstable => "the filter may lose its finer part",
         Confidence::Contradicted => "another rule argues against it",
         Confidence::Within | Confidence::Outside => {
-            "the walk agrees, outside the range in which it was checked"
+            "no erosion in the walk, outside the range in which it was checked"
         }
     }
 }
@@ -189,7 +241,7 @@ fn eroded(name: &str, what: &str, run: &RunSummary) -> String {
         mean != low || mean != high
     };
     let interval = match eroded.low.zip(eroded.high).filter(is_wide) {
-        Some((low, high)) => format!(" ({what}{} to {})", percent(low), percent(high)),
+        Some((low, high)) => format!(" ({what}{})", percent_span([low, high].map(|of| of.max(0.0)))),
         None => String::new(),
     };
     format!("{} in the {name}{interval}", percent(eroded.mean))
@@ -204,7 +256,7 @@ mod tests {
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
         let soil = |points| Gradation::from_points(points, None).unwrap();
         let rules = PairRules::of(&soil(base), &soil(filter)).rules;
-        headline(&rules, verdict, judge(verdict, &rules, Vec::new()).confidence)
+        headline(&rules, verdict, judge(verdict, &rules, Vec::new()).confidence, None)
     }
 
     const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
@@ -240,7 +292,7 @@ mod tests {
             margin,
             "does not meet the limit of design, though tests held such filters; no erosion in the model"
         );
-        assert_eq!(headline(&[], Verdict::None, Confidence::Outside), "no erosion in the model");
+        assert_eq!(headline(&[], Verdict::None, Confidence::Outside, None), "no erosion in the model");
     }
 
     #[test]
@@ -248,7 +300,8 @@ mod tests {
         use crate::verdict::finding;
         let note = || finding::not_studied().record(false);
         let fines = || finding::cohesive_fines(20.0).settled().record(false);
-        let amount = || finding::worse_with_amount("0.5", "some erosion", "each").record(true);
+        let amount =
+            || finding::worse_with_amount("why", "classes", "0.5", "some erosion", "each").record(true);
         let ordered = |mut all: Vec<FindingRecord>| -> Vec<String> {
             unfold(&mut all);
             all.into_iter().map(|finding| finding.id).collect()

@@ -74,7 +74,7 @@ macro_rules! findings {
         $(#[$doc:meta])*
         $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
             $(, sets $sets:ident)? $(, against $against:ident)? $(, unshown $($unshown:ident)+)?;
-            $label:literal, $page:literal, $sentence:literal $(, to do $to_do:literal)?;
+            $label:literal, $page:literal, $sentence:expr $(, to do $to_do:literal)?;
     )*) => {
         #[allow(non_upper_case_globals)]
         mod entries {

@@ -14,6 +14,26 @@ const HELD_OR_SEALED: &[Verdict] = &[Verdict::None, Verdict::Some];
 /// What leaves a verdict undecided.
 const OPEN: &[Verdict] = &[Verdict::Undecided];
 
+/// What a reader must know of the soils whose walks stand beside a pair.
+macro_rules! soils_not_tested {
+    () => {
+        "The walk knows no cohesion, no segregation and no crack, and none of these soils was tested itself. \
+         The source gives the two ends of the range alone, so that no probability for a risk analysis \
+         follows."
+    };
+}
+
+/// Where the walk began to erode for soils of this kind.
+macro_rules! of_soils {
+    () => {
+        concat!(
+            "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} \
+             times the centre of that range (nine in ten: {low} to {high}){more}. ",
+            soils_not_tested!()
+        )
+    };
+}
+
 findings! {
     // Rules of practice that are not kept. Limits and values have as many digits as tell them apart.
     /// A filter coarser than the limit of design.
@@ -68,9 +88,9 @@ findings! {
 
     // What the amount of base does to a class.
     /// A worse class with another amount of base.
-    worse_with_amount(times: Text, class: Text, each: Text): Amount, Unsafe, Limits;
-        "amount of base", "uncertainty.md",
-        "The class depends on the amount of base: with {times} times the base {class}. All amounts: {each}.";
+    worse_with_amount(why: Text, classes: Text, times: Text, class: Text, each: Text):
+        Amount, Unsafe, Limits, unshown times class each;
+        "amount of base", "uncertainty.md", "{why}: {classes}.";
 
     // What leaves a class open.
     /// Both readings of the base's finest part, which differ.
@@ -90,22 +110,25 @@ findings! {
          {constriction}. A hydrometer test would decide.",
         to do "Or base.d0_mm.";
     /// A range of constriction curves that do not give one class.
-    curve_range_decides(low: Percent, high: Percent, each: Text): Constrictions, Open, Decides;
+    curve_range_decides(low: Percent, high: Percent, span: Text, each: Text):
+        Constrictions, Open, Decides, unshown low high;
         "constrictions", "uncertainty.md",
-        "The filter's constrictions are known too roughly for one verdict. Over the range of the \
-         constriction curve {low} to {high} of the mass eroded in the first run ({each}).",
+        "The filter's constrictions are known too roughly for one verdict. Eroded in the first run: {span} \
+         ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
     /// A range of which the worst class counts.
-    worst_of_range(class: Text, low: Percent, high: Percent, each: Text): Constrictions, Safe, Note;
+    worst_of_range(class: Text, low: Percent, high: Percent, span: Text, each: Text):
+        Constrictions, Safe, Note, unshown low high;
         "constrictions", "uncertainty.md",
-        "The verdict, {class}, is the worst over the range of constrictions that the filter may have. Over \
-         it {low} to {high} of the mass eroded in the first run ({each}).",
+        "The verdict, {class}, is the worst over the range of constrictions that the filter may have. Eroded \
+         in the first run: {span} ({each}).",
         to do "filter.density packs this very filter.";
     /// The same where the curve itself gives no class.
-    curve_range_open(low: Percent, high: Percent, each: Text): Constrictions, Open, Limits;
+    curve_range_open(low: Percent, high: Percent, span: Text, each: Text):
+        Constrictions, Open, Limits, unshown low high;
         "constrictions", "uncertainty.md",
-        "The verdict is not the same over the whole range of the constriction curve. Over it {low} to {high} \
-         of the mass eroded in the first run ({each}).",
+        "The verdict is not the same over the whole range of the constriction curve. Eroded in the first \
+         run: {span} ({each}).",
         to do "A filter that is packed whole (filter.density) has one measured curve.";
 
     // What a design's search says against its answer.
@@ -442,10 +465,11 @@ findings! {
          {constriction}, but decides nothing. With all of it finer than every constriction and with all of \
          it {sieve} in size, the verdict is {class}.";
     /// A range of constriction curves that all give one class.
-    curve_range_agrees(low: Percent, high: Percent, each: Text): Constrictions, Settled, Limits;
+    curve_range_agrees(low: Percent, high: Percent, span: Text, each: Text):
+        Constrictions, Settled, Limits, unshown low high;
         "constrictions", "uncertainty.md",
-        "The verdict is the same over the whole range of the constriction curve. Over it {low} to {high} of \
-         the mass eroded in the first run ({each}).";
+        "The verdict is the same over the whole range of the constriction curve. Eroded in the first run: \
+         {span} ({each}).";
 
     // What else is to be known.
     /// Tables that may be exchanged, or in another unit.
@@ -589,29 +613,24 @@ findings! {
         more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
         Practice, Settled, Note, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
-        "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} times \
-         the centre of that range (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
-         segregation and no crack, and none of these soils was tested itself. The source gives the two ends \
-         of the range alone, so that no probability for a risk analysis follows.";
+        of_soils!();
     /// The same where the filter is finer than the range of tests.
     evidence_safe(beside: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
         more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
         Practice, Safe, Limits, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
-        "{beside}. For {soils} real soils of this kind ({group}) the walk began to erode at {median} times \
-         the centre of that range (nine in ten: {low} to {high}){more}. The walk knows no cohesion, no \
-         segregation and no crack, and none of these soils was tested itself. The source gives the two ends \
-         of the range alone, so that no probability for a risk analysis follows.";
+        of_soils!();
     /// The same where the walk errs on the unsafe side.
     evidence_unsafe(beside: Text, soils: Count, group: Text, median: Ratio, low: Ratio, high: Ratio,
         more: Text, d15f: KnownMm, range_low: KnownMm, range_high: KnownMm):
         Practice, Unsafe, Limits, unshown d15f range_low range_high;
         "evidence", "uncertainty.md",
-        "For filters like this the walk errs on the unsafe side. For {soils} real soils of this kind \
-         ({group}) it began to erode at {median} times the centre of the range published for soils of these \
-         fines (nine in ten: {low} to {high}){more}. {beside}. The walk knows no cohesion, no segregation \
-         and no crack, and none of these soils was tested itself. The source gives the two ends of the range \
-         alone, so that no probability for a risk analysis follows.";
+        concat!(
+            "For filters like this the walk errs on the unsafe side. For {soils} real soils of this kind \
+             ({group}) it began to erode at {median} times the centre of the range published for soils of \
+             these fines (nine in ten: {low} to {high}){more}. {beside}. ",
+            soils_not_tested!()
+        );
     /// A base of which nobody has said whether it is dispersive, where that changes nothing that is known.
     dispersion_not_known(then: Text, limit: Text): Practice, Open, Note, unshown limit;
         "dispersion", "rules.md",
@@ -619,28 +638,29 @@ findings! {
          dispersion.",
         to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
     /// The thickness that was walked.
-    modelled_thickness(thickness: Text): Thickness, Settled, Note;
-        "thickness", "uncertainty.md", "The modelled filter is {thickness} thick along the flow.";
+    modelled_thickness(thickness: Text, beside: Text): Thickness, Settled, Note;
+        "thickness", "uncertainty.md", "The walk models {thickness} of the filter{beside}.";
     /// A verdict that other thicknesses share.
-    stays_with_thickness(each: Text): Thickness, Settled, Note;
-        "thickness", "uncertainty.md", "The verdict does not change with thickness ({each}).";
+    stays_with_thickness(why: Text, classes: Text, each: Text): Thickness, Settled, Note, unshown each;
+        "thickness", "uncertainty.md", "{why}: {classes}.";
     /// A verdict that other thicknesses do not share.
-    moves_with_thickness(each: Text): Thickness, Open, Note;
-        "thickness", "uncertainty.md", "The verdict changes with thickness ({each}).";
+    moves_with_thickness(why: Text, classes: Text, amount: Text, each: Text):
+        Thickness, Open, Note, unshown each;
+        "thickness", "uncertainty.md", "{why}: {classes}.{amount}";
     /// Other thicknesses of a verdict that is undecided.
-    open_with_thickness(points: Text, each: Text): Thickness, Open, Note;
-        "thickness", "uncertainty.md",
-        "The verdict is undecided; at other thicknesses{points} ({each}).";
+    open_with_thickness(why: Text, classes: Text, points: Text, each: Text):
+        Thickness, Open, Note, unshown points each;
+        "thickness", "uncertainty.md", "{why}: {classes}.";
     /// A verdict that other amounts of base share.
-    stays_with_amount(each: Text): Amount, Settled, Note;
-        "amount of base", "uncertainty.md", "The verdict does not change with the amount of base ({each}).";
+    stays_with_amount(why: Text, classes: Text, each: Text): Amount, Settled, Note, unshown each;
+        "amount of base", "uncertainty.md", "{why}: {classes}.";
     /// A verdict that other amounts of base do not share, none of them with a worse class.
-    moves_with_amount(each: Text): Amount, Open, Note;
-        "amount of base", "uncertainty.md", "The verdict changes with the amount of base ({each}).";
+    moves_with_amount(why: Text, classes: Text, each: Text): Amount, Open, Note, unshown each;
+        "amount of base", "uncertainty.md", "{why}: {classes}.";
     /// Other amounts of base of a verdict that is undecided.
-    open_with_amount(points: Text, each: Text): Amount, Open, Note;
-        "amount of base", "uncertainty.md",
-        "The verdict is undecided; with other amounts of base{points} ({each}).";
+    open_with_amount(why: Text, classes: Text, points: Text, each: Text):
+        Amount, Open, Note, unshown points each;
+        "amount of base", "uncertainty.md", "{why}: {classes}.";
     /// How far the permeability fell.
     permeability(run: Text, falls: Text, clean: Text): Flow, Settled, Note;
         "permeability", "graph.md",

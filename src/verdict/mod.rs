@@ -7,10 +7,12 @@
 //! - `practice` is what the rules of filter practice say of a pair, `tested` its class by the boundaries that
 //!   Foster and Fell saw in tests, and `rule_words` what a single rule found, in words.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
-//! - `evidence` is what soils of the base's kind say of a walk, `probability` has its probabilities in words.
+//! - `evidence` is what soils of the base's kind say of a walk, `evidence_groups` those soils,
+//!   `probability` has its probabilities in words.
 //! - `dispersion` is what is said of a base of which nobody has said whether it is dispersive.
 //! - `left_out` has the words of what the model does not contain and of what a scene does not need.
 //! - `rule_notes` has the words of what those rules say beside their results.
+//! - `amount` and `thickness` are how a verdict moves with them, `study_points` the classes of such walks.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
 //! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
@@ -39,6 +41,7 @@ mod designed_words;
 pub(crate) mod dispersion;
 mod entry;
 pub(crate) mod evidence;
+mod evidence_groups;
 pub(crate) mod finding;
 pub(crate) mod fitting;
 pub(crate) mod left_out;
@@ -51,8 +54,9 @@ mod quantity;
 mod rule_notes;
 pub(crate) mod rule_words;
 mod specification;
+mod study_points;
 pub(crate) mod tested;
-mod thickness;
+pub(crate) mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
 pub(crate) mod words;

@@ -1,13 +1,18 @@
 //! What to do next: which D15F a filter is to have, what to test, what to find out.
 
+use serde_json::Value as Json;
+
 use super::beside::is_evidence;
-use super::entry::EVIDENCE_UNSAFE;
+use super::entry::{COHESIVE_FINES, EVIDENCE_UNSAFE};
 use super::practice::{Standing, broken, standing};
+use super::quantity::FindingValue;
 use super::rule_words::listed;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::record::{
+    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, Verdict,
+};
 use crate::outcome::rules::{
     DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority,
 };
@@ -186,22 +191,29 @@ impl Outcome {
         }
     }
 
-    /// Why a pair that the walk holds is to be tested all the same: what it was not checked for.
+    /// Why a pair that the walk holds is to be tested all the same: in what its soils lie outside what the
+    /// model was checked against, and what else its class hangs on.
     fn why_tested(&self) -> String {
         let against = self.against();
-        let mut why: Vec<String> = Vec::new();
-        for finding in against.iter().filter(|finding| !is_evidence(finding) && !finding.label.is_empty()) {
-            if !why.contains(&finding.label) {
-                why.push(finding.label.clone());
+        let is_unsafe = against.iter().any(|finding| finding.id == EVIDENCE_UNSAFE);
+        let mut reasons: Vec<Reason> = Vec::new();
+        if self.confidence == Confidence::Outside {
+            for finding in against.iter().filter(|finding| !is_evidence(finding)) {
+                reasons.extend(Reason::of(finding).filter(|reason| !reasons.contains(reason)));
             }
         }
-        why.truncate(REASONS);
-        let is_unsafe = against.iter().any(|finding| finding.id == EVIDENCE_UNSAFE);
-        let is_unsafe =
-            is_unsafe.then(|| "the walk errs on the unsafe side for filters like this".to_owned());
-        let limits = (!why.is_empty() && self.confidence == Confidence::Outside)
-            .then(|| format!("the model was not checked for this pair ({})", why.join(", ")));
-        let why: Vec<String> = is_unsafe.into_iter().chain(limits).collect();
+        reasons.truncate(REASONS);
+        let of = |kind: fn(&Reason) -> Option<&String>| reasons.iter().filter_map(kind).cloned();
+        let soils: Vec<String> = of(Reason::soil).collect();
+        let unchecked: Vec<String> = of(Reason::unchecked).collect();
+        let soils = (!soils.is_empty()).then(|| {
+            format!("the soils lie outside what the model was checked against ({})", soils.join(", "))
+        });
+        let unchecked = (!unchecked.is_empty())
+            .then(|| format!("what the walk rests on was not checked ({})", unchecked.join(", ")));
+        let is_unsafe = is_unsafe.then(|| "the walk is no check of it".to_owned());
+        let why: Vec<String> =
+            is_unsafe.into_iter().chain(soils).chain(of(Reason::other)).chain(unchecked).collect();
         match why.is_empty() {
             true => "have this pair tested".into(),
             false => format!("have this pair tested: {}", listed(&why)),
@@ -212,6 +224,55 @@ impl Outcome {
     fn of_dispersion(&self) -> Option<String> {
         let then = self.if_dispersive?.of_filter(Some(self.inputs.filter.d15_mm));
         Some(format!("find out whether the base is dispersive (if it is, {then})"))
+    }
+}
+
+/// Why a pair is to be tested, of one finding.
+#[derive(PartialEq)]
+enum Reason {
+    /// What a soil is that the model was not checked for.
+    Soil(String),
+    /// What else the class hangs on.
+    Other(String),
+    /// The name of what was not checked.
+    Unchecked(String),
+}
+
+impl Reason {
+    /// The reason of a finding; `None` of one without a name.
+    fn of(finding: &FindingRecord) -> Option<Self> {
+        let text = |name: &str| finding.numbers.get(name).and_then(Json::as_str).unwrap_or("soil");
+        let number = |name: &str| finding.numbers.get(name).and_then(Json::as_f64).unwrap_or(f64::NAN);
+        let percent = |name: &str| FindingValue::Percent(number(name)).shown(None);
+        let ratio = |name: &str| FindingValue::Ratio(number(name)).shown(None);
+        let soil = |said: String| Some(Self::Soil(said));
+        match finding.id.as_str() {
+            COHESIVE_FINES => soil(format!("{} fines", percent("fines_percent"))),
+            "fines_not_sieved" => soil(format!("up to {} fines", percent("fines_percent"))),
+            "dispersive_base" => soil("dispersive base".into()),
+            "broadly_graded" | "not_regraded" => soil("broadly graded base".into()),
+            "gap_graded" => soil("gap-graded filter".into()),
+            "cu_unchecked" => soil(format!("Cu of the {} {}", text("soil"), ratio("cu"))),
+            "cu_at_least" => soil(format!("Cu of the {} above {}", text("soil"), ratio("cu"))),
+            "cu_in_doubt" => soil(format!("Cu of the {} at least {}", text("soil"), ratio("least"))),
+            "cu_unknown" => soil(format!("Cu of the {} not known", text("soil"))),
+            "worse_with_amount" => Some(Self::Other("the class changes with the amount of base".into())),
+            "library_of_any_density" => Some(Self::Other("the filter's density is not known".into())),
+            _ if finding.label.is_empty() => None,
+            _ => Some(Self::Unchecked(finding.label.clone())),
+        }
+    }
+
+    fn soil(&self) -> Option<&String> {
+        if let Self::Soil(said) = self { Some(said) } else { None }
+    }
+
+    fn other(&self) -> Option<&String> {
+        if let Self::Other(said) = self { Some(said) } else { None }
+    }
+
+    fn unchecked(&self) -> Option<&String> {
+        if let Self::Unchecked(said) = self { Some(said) } else { None }
     }
 }
 
@@ -234,6 +295,30 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::rules::TESTS_NO_EROSION;
     use crate::verdict::PairRules;
+
+    #[test]
+    fn a_pair_is_tested_for_what_its_soils_are() {
+        use crate::verdict::finding;
+        let said = |finding: crate::verdict::Finding| match Reason::of(&finding.record(true)) {
+            Some(Reason::Soil(said)) => said,
+            Some(Reason::Other(said)) => format!("other: {said}"),
+            Some(Reason::Unchecked(said)) => format!("unchecked: {said}"),
+            None => String::new(),
+        };
+        for (of, words) in [
+            (finding::cohesive_fines(88.0), "88 % fines"),
+            (finding::cu_at_least("base", 8.77, 0.002, 1.2, 4.5), "Cu of the base above 8.77"),
+            (finding::cu_unchecked("filter", 35.4, 1.2, 6.0), "Cu of the filter 35.4"),
+            (finding::dispersive_base(), "dispersive base"),
+            (
+                finding::worse_with_amount("", "", "0.25", "some erosion", ""),
+                "other: the class changes with the amount of base",
+            ),
+            (finding::few_replicates(3), "unchecked: replicates"),
+        ] {
+            assert_eq!(said(of), words);
+        }
+    }
 
     /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
     #[test]

@@ -182,11 +182,11 @@ impl Outcome {
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
-        compared_with_tests(self.verdict, &self.rules)
+        compared_with_tests(self.verdict, &self.rules, self.errs_unsafely())
     }
 }
 
-fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule]) -> String {
+fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule], errs_unsafely: bool) -> String {
     let said = tested_words(rules);
     let tests = match tested(rules) {
         TestedClass::None => Some((0, said)),
@@ -227,10 +227,12 @@ fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule]) -> String {
     };
     text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
                  to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
-                 For uniform sands the model is therefore stricter than tests. For broadly graded bases it \
-                 errs on the unsafe side, because a few coarse grains block for all the rest. It ignores the \
-                 cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., Geotechnical \
-                 Engineering of Dams, Table 9.2.)";
+                 For uniform sands the model is therefore stricter than tests. ";
+    if errs_unsafely {
+        text += "For this pair it errs on the unsafe side. ";
+    }
+    text += "It ignores the cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., \
+             Geotechnical Engineering of Dams, Table 9.2.)";
     text
 }
 
@@ -365,7 +367,7 @@ mod tests {
     #[test]
     fn whether_walk_and_tests_agree_between_the_boundaries_is_not_known() {
         let between = of(&[(3.7, 0.0), (8.0, 100.0)], &SAND, false);
-        let some = compared_with_tests(Verdict::Some, &between);
+        let some = compared_with_tests(Verdict::Some, &between, false);
         assert!(
             some.contains(
                 "“some erosion”. By the boundaries of Foster and Fell the pair has at least some erosion; \
@@ -375,11 +377,14 @@ mod tests {
         );
         assert!(some.contains("Whether they agree is not known: ") && !some.contains("agree here"), "{some}");
         assert!(!some.contains("“at least"), "{some}");
-        let held = compared_with_tests(Verdict::None, &between);
+        let held = compared_with_tests(Verdict::None, &between, false);
         assert!(held.contains("more favourable than the tests here"), "{held}");
-        assert!(compared_with_tests(Verdict::Continuing, &between).contains("stricter than the tests here"));
+        assert!(
+            compared_with_tests(Verdict::Continuing, &between, false)
+                .contains("stricter than the tests here")
+        );
         let good = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
-        let good = compared_with_tests(Verdict::None, &good);
+        let good = compared_with_tests(Verdict::None, &good, false);
         assert!(good.contains("in tests say “no erosion”. ") && good.contains("agree here"), "{good}");
     }
 

@@ -1,22 +1,40 @@
-//! How the verdict moves with the thickness of the filter.
+//! What is said of the thickness of the filter: how much of it was walked, and how the verdict moves with it.
 
 use super::entry::Finding;
 use super::finding as found;
-use crate::outcome::record::{Classed, CurveRange, OfThickness, Outcome, Statistic, Verdict};
+use super::study_points::{classes, reach, times, walked_in_words};
+use crate::outcome::numbers::{significant, size_unit};
+use crate::outcome::record::{OfThickness, Outcome, Sensitivity, Verdict};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
-    of_rows(&outcome.thickness, outcome.class_of_curve(), outcome.points_are())
+    let points = Points {
+        rows: &outcome.thickness,
+        amounts: &outcome.sensitivity,
+        verdict: outcome.verdict,
+        as_others: outcome.class_as_points(),
+        points: outcome.points_are(),
+    };
+    points.finding()
+}
+
+/// How thick the modelled filter is; `None` where its network has no thickness.
+pub(super) fn modelled(outcome: &Outcome) -> Option<Finding> {
+    let unit = size_unit(outcome.inputs.scale_free);
+    let size = |size: f64| format!("{} {unit}", significant(size));
+    let thickness = outcome.inputs.network.thickness_mm?;
+    Some(found::modelled_thickness(&size(thickness), &outcome.beside_thickness(thickness, size)))
 }
 
 impl Outcome {
-    /// The class that the other points of a study are compared with: by the curve itself, where the verdict
-    /// is that of an end of its range.
-    pub fn class_of_curve(&self) -> Verdict {
-        let decided =
-            |range: &&CurveRange| self.verdict != Verdict::Undecided && range.whole() == self.verdict;
-        let range = self.curve_range.as_ref().filter(decided);
-        range.map_or(self.verdict, |range| range.verdict)
+    /// What stands behind so much of the filter in "The walk models … of the filter", with sizes in these
+    /// words: that it is less than the filter's largest grain, where it is.
+    pub fn beside_thickness(&self, thickness_mm: f64, size: impl Fn(f64) -> String) -> String {
+        let largest = self.inputs.filter.gradation.last().map(|row| row[0]);
+        match largest.filter(|grain| *grain > thickness_mm) {
+            Some(grain) => format!(", less than its largest grain ({})", size(grain)),
+            None => " along the flow".into(),
+        }
     }
 
     /// Whether a row has as many times the base particles of the scene itself as it is thick.
@@ -30,103 +48,124 @@ fn own(rows: &[OfThickness]) -> Option<&OfThickness> {
     rows.iter().find(|row| row.factor == 1.0)
 }
 
-/// Of a thickness that was not walked with as many times the base.
-const OTHER_BASE: &str = ", not as many times the base";
+/// How thickness was varied where the amount of base went with it: what moves may be moved by either.
+pub const WITH_AMOUNT: &str =
+    "Thickness was varied together with the amount of base (the base is a share of the filter)";
 
-/// What the rows say beside a verdict: whether it stays, and how much erodes where it does not; `None`
-/// without another thickness. What is undecided neither stays nor moves.
-fn of_rows(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<Finding> {
-    let others: Vec<&OfThickness> = rows.iter().filter(|row| row.factor != 1.0).collect();
-    if others.is_empty() {
-        return None;
+/// How it was varied where a cap or a number of the scene holds the base.
+const OTHER_BASE: &str =
+    "Thickness was varied, and the base not in proportion (its particles are fixed or capped)";
+
+/// The thicknesses that were walked, beside a verdict.
+struct Points<'a> {
+    rows: &'a [OfThickness],
+    /// The amounts of base that were walked with the scene's own thickness.
+    amounts: &'a [Sensitivity],
+    verdict: Verdict,
+    /// The class of the scene itself as the others are classed.
+    as_others: Verdict,
+    /// How the others are classed, where that is not as the verdict is.
+    points: Option<&'a str>,
+}
+
+impl Points<'_> {
+    fn others(&self) -> impl Iterator<Item = &OfThickness> {
+        self.rows.iter().filter(|row| row.factor != 1.0)
     }
-    let own = own(rows)?;
-    let stays = others.iter().all(|row| row.walked.verdict == verdict);
-    let of_row = |row: &&OfThickness| {
-        let held = if row.has_its_base(own) { "" } else { OTHER_BASE };
-        format!("{} times as thick{held}: {}", times(row.factor), walked_in_words(&row.walked))
-    };
-    let each: Vec<String> = others.iter().map(of_row).collect();
-    let each = each.join("; ");
-    Some(match (verdict, stays) {
-        (Verdict::Undecided, _) => {
-            let points = points.map_or(String::new(), |points| format!(", {points}"));
-            found::open_with_thickness(&points, &each)
+
+    /// Whether as many times the base alone gives each of the classes.
+    fn is_the_amount(&self) -> bool {
+        self.others().all(|row| {
+            let alone = self.amounts.iter().find(|amount| amount.factor == row.factor);
+            alone.is_some_and(|amount| amount.walked.verdict == row.walked.verdict)
+        })
+    }
+
+    /// What the rows say beside the verdict: whether it stays, and which class each has where it does not;
+    /// `None` without another thickness. What is undecided neither stays nor moves.
+    fn finding(&self) -> Option<Finding> {
+        self.others().next()?;
+        let own = own(self.rows)?;
+        let is_held = !self.others().all(|row| row.has_its_base(own));
+        let why = if is_held { OTHER_BASE } else { WITH_AMOUNT };
+        let others = self.others().map(|row| (row.factor, row.walked.verdict));
+        let points: Vec<(f64, Verdict)> = others.chain([(1.0, self.as_others)]).collect();
+        let mut said = classes(&points, |ends, _| format!("at {} times the thickness", reach(ends)));
+        if let Some(points) = self.points {
+            said += &format!(" ({points})");
         }
-        (_, true) => {
-            let held = if others.iter().all(|row| row.has_its_base(own)) { "" } else { OTHER_BASE };
-            let reach = reach(others.iter().map(|row| row.factor));
-            found::stays_with_thickness(&format!("{reach} times as thick{held}"))
-        }
-        (_, false) => found::moves_with_thickness(&each),
-    })
-}
-
-/// From the least to the greatest of some multiples.
-pub(super) fn reach(factors: impl Iterator<Item = f64> + Clone) -> String {
-    let (least, greatest) =
-        (factors.clone().fold(f64::INFINITY, f64::min), factors.fold(f64::NEG_INFINITY, f64::max));
-    if least == greatest { times(least) } else { format!("{} to {}", times(least), times(greatest)) }
-}
-
-/// A multiple, without digits that say nothing.
-pub(super) fn times(factor: f64) -> String {
-    let times = format!("{factor:.3}");
-    times.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// The class of other walks, and what eroded in them.
-pub(super) fn walked_in_words(walked: &Classed) -> String {
-    let eroded: Vec<String> = walked.runs.iter().map(|s| percent(s, walked.stopped_when_clear)).collect();
-    let replicates = if walked.replicates == 1 { "replicate" } else { "replicates" };
-    let (class, count) = (walked.verdict.words(), walked.replicates);
-    format!("{class}, {} eroded in {count} {replicates}", eroded.join(" then "))
-}
-
-/// The eroded mass; of a point that stopped early its interval, as one replicate has no digits to show.
-fn percent(eroded: &Statistic, stopped: bool) -> String {
-    match (eroded.low, eroded.high) {
-        (Some(low), Some(high)) if stopped => format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high),
-        _ => format!("{:.2} %", 100.0 * eroded.mean),
+        let each = self
+            .others()
+            .map(|row| format!("{} times as thick: {}", times(row.factor), walked_in_words(&row.walked)));
+        let each = each.collect::<Vec<_>>().join("; ");
+        let stays = self.others().all(|row| row.walked.verdict == self.as_others);
+        Some(match (self.verdict, stays) {
+            (Verdict::Undecided, _) => {
+                let points = self.points.map_or(String::new(), |points| format!(", {points}"));
+                found::open_with_thickness(why, &said, &points, &each)
+            }
+            (_, true) => found::stays_with_thickness(why, &said, &each),
+            (_, false) => {
+                let amount = match !is_held && self.is_the_amount() {
+                    true => " The amount of base alone gives the same classes.",
+                    false => "",
+                };
+                found::moves_with_thickness(why, &said, amount, &each)
+            }
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::{Classed, Statistic};
 
-    fn sentence(rows: &[OfThickness], verdict: Verdict, points: Option<&str>) -> Option<String> {
-        of_rows(rows, verdict, points).map(|finding| finding.sentence())
+    fn walked(verdict: Verdict, mean: f64) -> Classed {
+        let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
+        Classed { replicates: 1, stopped_when_clear: false, verdict, runs }
     }
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> OfThickness {
-        let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
-        let layers = (60.0 * factor) as u64;
         OfThickness {
             factor,
-            layers,
+            layers: (60.0 * factor) as u64,
             thickness_mm: None,
             n_base: (100.0 * factor) as u64,
-            walked: Classed { replicates: 1, stopped_when_clear: false, verdict, runs },
+            walked: walked(verdict, mean),
         }
     }
 
+    fn finding(rows: &[OfThickness], amounts: &[Sensitivity], verdict: Verdict) -> Option<Finding> {
+        Points { rows, amounts, verdict, as_others: verdict, points: None }.finding()
+    }
+
+    fn sentence(rows: &[OfThickness], verdict: Verdict) -> Option<String> {
+        finding(rows, &[], verdict).map(|finding| finding.sentence())
+    }
+
     #[test]
-    fn a_sentence_says_whether_the_verdict_moves() {
+    fn a_sentence_says_that_the_base_was_varied_too_and_the_class_of_each() {
         let own = row(1.0, Verdict::Some, 0.12);
-        assert_eq!(sentence(std::slice::from_ref(&own), Verdict::Some, None), None);
-        let stays = sentence(&[own.clone(), row(2.0, Verdict::Some, 0.1)], Verdict::Some, None).unwrap();
-        assert_eq!(stays, "The verdict does not change with thickness (2 times as thick).");
-        let rows = [row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)];
-        let moves = sentence(&rows, Verdict::Some, None).unwrap();
-        assert!(
-            moves
-                .starts_with("The verdict changes with thickness (0.5 times as thick: some erosion, 20.00 %")
+        assert_eq!(sentence(std::slice::from_ref(&own), Verdict::Some), None);
+        let stays = finding(&[own.clone(), row(2.0, Verdict::Some, 0.1)], &[], Verdict::Some).unwrap();
+        assert_eq!(stays.id(), "stays_with_thickness");
+        assert_eq!(
+            stays.sentence(),
+            "Thickness was varied together with the amount of base (the base is a share of the filter): some \
+             erosion at 1 to 2 times the thickness."
         );
-        assert!(moves.ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate)."), "{moves}");
+        let rows = [row(0.5, Verdict::Some, 0.2), own, row(2.5, Verdict::None, 0.04)];
+        let moves = finding(&rows, &[], Verdict::Some).unwrap();
+        let end = ": some erosion at 0.5 to 1 times the thickness, no erosion at 2.5 times the thickness.";
+        assert!(moves.id() == "moves_with_thickness" && moves.sentence().ends_with(end), "{moves:?}");
+        let each = &moves.record(false).numbers["each"];
+        assert!(
+            each.as_str().unwrap().ends_with("2.5 times as thick: no erosion, 4.00 % eroded in 1 replicate")
+        );
         let held = OfThickness { n_base: 100, ..row(2.0, Verdict::Some, 0.1) };
-        let held = sentence(&[row(1.0, Verdict::Some, 0.12), held], Verdict::Some, None).unwrap();
-        assert!(held.ends_with("(2 times as thick, not as many times the base)."), "{held}");
+        let held = sentence(&[row(1.0, Verdict::Some, 0.12), held], Verdict::Some).unwrap();
+        assert!(held.starts_with("Thickness was varied, and the base not in proportion"), "{held}");
         // Twice the copies of a packing have not quite twice its layers.
         let copies = |factor, n_base, mm| OfThickness {
             n_base,
@@ -135,25 +174,37 @@ mod tests {
         };
         assert!(copies(1.9, 2000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
         assert!(!copies(1.9, 1000, 20.0).has_its_base(&copies(1.0, 1000, 10.0)));
-        let mut clear = row(2.0, Verdict::Continuing, 0.59);
-        clear.walked.stopped_when_clear = true;
-        clear.walked.runs = vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }];
-        let rows = [row(1.0, Verdict::Some, 0.6), row(0.5, Verdict::Some, 0.7), clear];
-        let said = sentence(&rows, Verdict::Some, None).unwrap();
-        assert!(said.contains("continuing erosion, 39 to 80 % eroded in 1 replicate"), "{said}");
+    }
+
+    #[test]
+    fn where_the_amount_alone_gives_the_same_classes_that_is_said() {
+        let rows =
+            [row(0.5, Verdict::Some, 0.1), row(1.0, Verdict::None, 0.05), row(2.0, Verdict::None, 0.02)];
+        let amount = |factor, verdict| Sensitivity {
+            factor,
+            n_base: 100,
+            grains_per_void: None,
+            mass_ratio: None,
+            walked: walked(verdict, 0.05),
+        };
+        let is_said = |half, twice| {
+            let amounts = [amount(0.5, half), amount(2.0, twice)];
+            let said = finding(&rows, &amounts, Verdict::None).unwrap().sentence();
+            said.ends_with(". The amount of base alone gives the same classes.")
+        };
+        assert!(is_said(Verdict::Some, Verdict::None) && !is_said(Verdict::None, Verdict::None));
     }
 
     /// Neither "stays" nor "moves" stands under a verdict that is undecided.
     #[test]
     fn what_is_undecided_neither_stays_nor_moves() {
         let rows = [0.5, 1.0, 2.0].map(|factor| row(factor, Verdict::None, 0.05));
-        for (points, said) in [
-            (Some("by the curve itself"), "at other thicknesses, by the curve itself (0.5 times"),
-            (None, "at other thicknesses (0.5 times as thick: no erosion"),
-        ] {
-            let said = format!("The verdict is undecided; {said}");
-            let found = sentence(&rows, Verdict::Undecided, points).unwrap();
-            assert!(found.starts_with(&said), "{found}");
+        for (points, end) in [(Some("by the curve itself"), " (by the curve itself)."), (None, ".")] {
+            let as_others = Verdict::None;
+            let of = Points { rows: &rows, amounts: &[], verdict: Verdict::Undecided, as_others, points };
+            let found = of.finding().unwrap();
+            let said = format!("no erosion at 0.5 to 2 times the thickness{end}");
+            assert!(found.id() == "open_with_thickness" && found.sentence().ends_with(&said), "{found:?}");
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::entry::Finding;
 use super::finding;
 use crate::gradation::Gradation;
-use crate::outcome::digits::percent;
+use crate::outcome::digits::percent_span;
 use crate::outcome::record::{Replicate, Run, Verdict};
 use crate::outcome::verdict::THRESHOLD;
 
@@ -79,8 +79,7 @@ impl Walked<'_> {
         let most = after.iter().copied().fold(0.0, f64::max);
         let after = match least {
             _ if after.is_empty() => String::new(),
-            least if percent(least) == percent(most) => format!(", after {} of the base", percent(most)),
-            least => format!(", after {} to {} of the base", percent(least), percent(most)),
+            least => format!(", after {} of the base", percent_span([least, most])),
         };
         let on_its_way = inserted(self.layers).min(least);
         Some(finding::clogged(which, &of, &after, 100.0 * on_its_way, self.share / 10.0))

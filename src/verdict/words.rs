@@ -23,16 +23,17 @@ impl UndecidedBy {
 
 impl Outcome {
     /// How the other points of a study are classed, where their classes know nothing of what leaves the
-    /// verdict undecided.
+    /// verdict undecided, or of the ends of the constriction curve's range.
     pub fn points_are(&self) -> Option<&'static str> {
-        if self.verdict != Verdict::Undecided && self.class_of_curve() != self.verdict {
-            return Some("by the curve itself");
-        }
+        // The ends of a range are walked with the thickness and the base of the scene alone.
+        let of_range = self.curve_range.as_ref().map(|_| "by the curve itself");
         let level = self.stopping.as_ref().and_then(|stopping| stopping.decide_percent);
-        match self.undecided_by()? {
-            UndecidedBy::Pan => Some("with the base's finest part finer than every constriction"),
-            UndecidedBy::Curve => Some("by the curve itself"),
-            UndecidedBy::SecondRun | UndecidedBy::Replicates => level.map(|_| "by their 95 % intervals"),
+        match self.undecided_by() {
+            Some(UndecidedBy::Pan) => Some("with the base's finest part finer than every constriction"),
+            Some(UndecidedBy::SecondRun | UndecidedBy::Replicates) if level.is_some() => {
+                Some("by their 95 % intervals")
+            }
+            _ => of_range,
         }
     }
 }

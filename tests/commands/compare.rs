@@ -124,7 +124,7 @@ fn what_stands_beside_a_verdict_stands_beside_it_here() {
     let (text, page, record) = compare("replicates=5");
     assert!(page.contains(all) && page.contains("Thickness"), "{text}");
     for face in [&page, &record["cases"][1]["beside"].to_string()] {
-        assert!(face.contains("The modelled filter is ") && face.contains(" times as thick: "), "{face}");
+        assert!(face.contains("The walk models ") && face.contains(" times the thickness"), "{face}");
     }
     for face in [&text, &page, &record["cases"][1]["practice"].to_string()] {
         assert!(face.contains("Sherard and Dunnigan allow (design)"), "{face}");

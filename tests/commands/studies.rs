@@ -50,7 +50,7 @@ fn a_point_that_is_clear_stops_and_the_page_says_so() {
     }
     let page = fs::read_to_string(root.path().join("o/report.html")).unwrap();
     assert!(page.contains("Replicates: ×0.5 1, ×1 8, ×2 1. A point stops after one or two replicates"));
-    assert!(page.contains("The verdict does not change with thickness (0.5 to 2 times as thick)"));
+    assert!(page.contains("share of the filter): continuing erosion at 0.5 to 2 times the thickness"));
     // One replicate of a point is the first of the scene with so much base, and the interval is a wide one.
     let n_base = rows[0][2]["n_base"].to_string();
     let same = format!("base.n_base={n_base}");
@@ -184,12 +184,12 @@ fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
         let page = fs::read_to_string(root.path().join("u/report.html")).unwrap().replace('\u{202f}', " ");
         for face in [&stdout, &page] {
             assert!(
-                !face.contains("The verdict does not change") && !face.contains("The verdict changes with"),
+                !face.contains("The class does not change") && !face.contains("The class depends on"),
                 "{face}"
             );
         }
-        let sentence = format!("The verdict is undecided; at other thicknesses, {points} (0.5 times");
-        assert!(page.contains(&sentence), "{page}");
+        let sentence = format!(" times the thickness ({points}).");
+        assert!(page.contains("is a share of the filter): ") && page.contains(&sentence), "{page}");
         assert!(
             page.contains(why) && page.contains(&format!("the other points are classed {points}")),
             "{page}"

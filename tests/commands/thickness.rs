@@ -37,9 +37,9 @@ fn a_row_is_what_a_scene_of_that_thickness_gives() {
     assert!(root.path().join("o/figures/thickness.svg").is_file());
     let page = fs::read_to_string(root.path().join("o/report.html")).unwrap();
     assert!(
-        page.contains("with thickness (")
+        page.contains("Thickness was varied together with the amount of base")
             && page.contains("Filters of other thicknesses")
-            && page.contains("2 times as thick")
+            && page.contains("2 times the thickness")
     );
     assert!(!root.path().join("thick/figures/thickness.svg").exists());
 }
@@ -61,7 +61,7 @@ fn half_and_twice_come_with_the_study_of_the_base_and_nothing_else() {
     assert_eq!(layers, [6, 12, 24]);
     let page = fs::read_to_string(root.path().join("o/report.html")).unwrap();
     assert!(page.contains("3000 *"), "no mark");
-    assert!(!page.contains("is offered base in proportion. Bars"));
+    assert!(!page.contains("Thickness was varied together with the amount of base"), "the base is held");
     refused(
         &call(root.path(), &["check", "s.toml", "--set", "record.thickness=[0]"]),
         "a list of numbers above 0",

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::process::Command;
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::{Direction, FindingRecord, RuleQuantity, RuleRole, Topic, Weight};
+use voidwalk::outcome::record::{
+    Confidence, Direction, FindingRecord, Outcome, RuleQuantity, RuleRole, Topic, Verdict, Weight,
+};
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::PairRules;
@@ -72,10 +74,13 @@ fn inches_stand_beside_mm_where_a_scene_asks_for_them() {
     (rule.id, rule.quantity, rule.unit) = ("sherard-dunnigan".into(), RuleQuantity::D15F, "mm".into());
     (rule.applies, rule.value, rule.limit) = (true, Some(5.08), Some(2.54));
     let metric = words(&made(&plan).0);
-    assert!(metric.contains("Thickness modelled: 610 mm along") && !metric.contains("US sieveSize"));
+    assert!(
+        metric.contains("The walk models 610 mm of the filter along the flow: ")
+            && !metric.contains("US sieveSize")
+    );
     plan.scene.push_str("[about]\nunits = \"us\"\n");
     let us = words(&made(&plan).0);
-    assert!(us.contains("Thickness modelled: 610 mm (24.0 in) along"), "{us}");
+    assert!(us.contains("The walk models 610 mm (24.0 in) of the filter along the flow: "), "{us}");
     assert!(us.contains("US sieveSize (mm)") && us.contains("mm (in)") && us.contains("9.5 (0.374)"), "{us}");
     // Every length of a rule, and of Figure 1.
     for row in ["D15F = 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)", "= 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)"]
@@ -125,7 +130,7 @@ fn every_rule_is_in_short() {
     let short = |plan: &Plan| {
         let text = words(&made(plan).0);
         let begin = text.find("Rules of practice, in short").unwrap();
-        text[begin..begin + text[begin..].find("Thickness modelled").unwrap()].to_owned()
+        text[begin..begin + text[begin..].find("The walk models").unwrap()].to_owned()
     };
     let mut plan = Plan::usual();
     assert!(short(&plan).contains("Terzaghi") && short(&plan).contains("continuing erosion"));
@@ -178,15 +183,15 @@ fn thickness_and_what_is_not_counted_are_said_once() {
         to_do: String::new(),
     };
     plan.outcome.findings = vec![
-        found("modelled_thickness", "The modelled filter is 296 mm thick along the flow."),
+        found("modelled_thickness", "The walk models 296.0 mm of the filter."),
         found("stays_with_thickness", "The verdict stays with thickness."),
         found("pan_of_filter", "The finest 6 % of the filter is not counted."),
     ];
     let text = words(&made(&plan).0);
-    for said in ["Thickness modelled: 296 mm", "The verdict stays with thickness.", "is not counted."] {
+    for said in ["The walk models 296 mm of", "The verdict stays with thickness.", "is not counted."] {
         assert_eq!(text.matches(said).count(), 1, "{said}: {text}");
     }
-    assert!(!text.contains("296 mm thick") && !text.contains("filter thickness: "), "{text}");
+    assert!(!text.contains("296.0 mm") && !text.contains("filter thickness: "), "{text}");
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
     assert!(place("Walk: ") < place("is not counted.") && place("is not counted.") < place("Next: "));
 }
@@ -402,4 +407,73 @@ fn every_figure_of_a_run_is_on_the_list_of_what_a_replaced_run_leaves() {
     let mut listed = FolderKind::Run.figures().to_vec();
     listed.sort_unstable();
     assert_eq!(drawn, listed);
+}
+
+/// What the walk is worth stands beside its class, on the first page.
+#[test]
+fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
+    let walk = |change: &dyn Fn(&mut Outcome)| {
+        let mut plan = Plan::usual();
+        plan.outcome.verdict = Verdict::None;
+        change(&mut plan.outcome);
+        plan.outcome.walk_in_words()
+    };
+    let said = walk(&|_| ());
+    for doubt in ["open path", "paper's own", "unsafe side"] {
+        assert!(!said.contains(doubt), "{doubt}: {said}");
+    }
+    let closed = walk(&|outcome| {
+        outcome.replicates.iter_mut().skip(1).for_each(|of| of.runs[1].backbone_fraction = 0.0);
+    });
+    let of = Plan::usual().outcome.replicates.len();
+    let closed_in = of - 1;
+    let said = format!(
+        ". The filter is closed in {closed_in} of {of} networks after the second run (no open path is left)"
+    );
+    assert!(closed.ends_with(&said), "{closed}");
+    let beyond = walk(&|outcome| {
+        let rule = &mut outcome.rules[0];
+        (rule.id, rule.unit, rule.at_least) = ("paper-no-erosion".into(), String::new(), false);
+        (rule.met, rule.value, rule.limit) = (Some(false), Some(5.58), Some(5.0));
+    });
+    let said = "; beyond the boundary of no erosion of the paper's own network (D15F/D85B 5.58 > 5.00)";
+    assert!(beyond.contains(said), "{beyond}");
+    let finding = |verdict: Verdict| {
+        walk(&|outcome| {
+            outcome.verdict = verdict;
+            outcome.findings = vec![FindingRecord {
+                id: "evidence_unsafe".into(),
+                direction: Direction::Unsafe,
+                ..FindingRecord::of_earlier("For filters like this the walk errs on the unsafe side.")
+            }];
+        })
+    };
+    let said = "; the walk errs on the unsafe side for this pair";
+    assert!(finding(Verdict::None).contains(said) && finding(Verdict::Some).contains(said));
+    assert!(!finding(Verdict::Continuing).contains(said));
+}
+
+/// The class that another amount of base gives stands in the headline, and in no other words.
+#[test]
+fn a_walk_whose_class_follows_from_the_amount_of_base_does_not_agree() {
+    let mut plan = Plan::usual();
+    let outcome = &mut plan.outcome;
+    (outcome.verdict, outcome.confidence) = (Verdict::None, Confidence::Outside);
+    let rule = &mut outcome.rules[0];
+    (rule.id, rule.role) = ("sherard-dunnigan".into(), RuleRole::Retention);
+    (rule.quantity, rule.applies, rule.met) = (RuleQuantity::D15F, true, Some(true));
+    outcome.rules.truncate(1);
+    for row in &mut outcome.sensitivity {
+        row.walked.verdict = if row.factor < 0.5 { Verdict::Some } else { Verdict::None };
+    }
+    assert_eq!(
+        outcome.headline(),
+        "holds by practice; the walk: no erosion with base of 5 % of the filter's mass, some erosion with a \
+         quarter of it"
+    );
+    outcome.sensitivity.clear();
+    assert_eq!(
+        outcome.headline(),
+        "holds by practice; no erosion in the walk, outside the range in which it was checked"
+    );
 }

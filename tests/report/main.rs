@@ -57,7 +57,7 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Figure 1.",
         "Group by ASTM D2487",
         "Rules of practice, in short",
-        "Thickness modelled: 296 mm",
+        "The walk models 296 mm",
         "The model leaves out: ",
         "Hydraulics: no gradient",
         "What the model found",
@@ -229,7 +229,7 @@ fn one_replicate_has_no_interval_and_says_so() {
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
     let text = words(&made(&plan).0);
-    assert!(text.contains("Their effect is not walked yet; voidwalk resume goes on with it"));
+    assert!(text.contains("thickness is not walked yet; voidwalk resume goes on with it"));
     assert!(!text.contains("not asked for"));
 }
 

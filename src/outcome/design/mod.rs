@@ -19,4 +19,4 @@ pub use record::{
 };
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};
-pub use spread::{Beyond, spread};
+pub use spread::{Beyond, band_in_words, spread};

@@ -16,6 +16,15 @@ pub enum Beyond {
 /// Percentiles of a boundary over networks (percent).
 const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 
+/// From so many networks on a percentile is not read between the last two of them.
+const ENOUGH: u64 = 20;
+
+/// What the band of so many networks holds of them: of few networks its ends are no networks of their own,
+/// but lie between the two that are outermost.
+pub fn band_in_words(networks: u64) -> &'static str {
+    if networks < ENOUGH { "interpolated 5 to 95 %" } else { "5 to 95 %" }
+}
+
 /// The 5, 50 and 95 percentile of values of which some are only known to lie above or below all that was
 /// searched: where a percentile hangs on one of those, on which side it lies (below where it hangs on both:
 /// the cautious one). Between two values a percentile is straight in
@@ -56,6 +65,12 @@ mod tests {
         let eleven: Vec<_> = (0..=10).rev().map(|k| Ok(f64::from(k))).collect();
         assert_eq!(spread(&eleven), [Ok(0.5), Ok(5.0), Ok(9.5)]);
         assert_eq!(spread(&[Ok(3.0)]), [Ok(3.0); 3]);
+        // Of five networks the ends of the band are not the least and the most.
+        let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
+        let [low, _, high] = spread(&five).map(Result::unwrap);
+        assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");
+        let few = "interpolated 5 to 95 %";
+        assert_eq!([5, 19, 20].map(band_in_words), [few, few, "5 to 95 %"]);
     }
 
     #[test]

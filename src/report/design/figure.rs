@@ -1,7 +1,7 @@
 //! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
 
 use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
-use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow};
+use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow, band_in_words};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
     DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, TERZAGHI, TESTS_CONTINUING,
@@ -83,10 +83,11 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let mut caption = format!(
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
          second where it was walked. {}; orange: some erosion; red: continuing erosion. The colours blend \
-         over the 5 to 95 % band of the networks.{of_base}",
+         over the {} band of the networks.{of_base}",
         row.name(),
         row.thickness,
-        practice.words()
+        practice.words(),
+        band_in_words(design.replicates)
     );
     if design.boundaries.len() > 1 {
         if least.is_some() {

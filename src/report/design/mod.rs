@@ -21,7 +21,7 @@ use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
 use super::specification::{Stated, cautions, still_to_set, to_specify};
 use super::written::Written;
-use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow};
+use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow, band_in_words};
 use crate::outcome::record::Confidence;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
@@ -186,7 +186,8 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                             b { (ratio(boundary.median)) }
                             @if design.replicates == 1 { " on one network: " } @else {
                                 " in the median of " (whole(design.replicates)) " networks, "
-                                (between(boundary.low, boundary.high, ratio)) " in 5 to 95 % of them: "
+                                (between(boundary.low, boundary.high, ratio)) " in "
+                                (band_in_words(design.replicates)) " of them: "
                             }
                         },
                         None => {

@@ -5,7 +5,7 @@ use maud::{Markup, Render, html};
 use super::words::{in_band, ratio, sentence, shown_in};
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, band_in_words};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
@@ -47,7 +47,8 @@ pub(super) fn boundaries(design: &Design) -> Markup {
     html! {
         p {
             "Results of the walks alone, without the rules of practice: D15F/D85B" (of_base)
-            ", median and 5 to 95 % of " (whole(design.replicates)) " networks; below it the "
+            ", median and " (band_in_words(design.replicates)) " of " (whole(design.replicates))
+            " networks; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")

@@ -1,0 +1,102 @@
+//! The points of a study in words: which class each amount of base or thickness gives, and what was walked.
+
+use crate::outcome::digits::percent;
+use crate::outcome::record::{Classed, CurveRange, Outcome, PanSize, Statistic, Verdict};
+use crate::outcome::undecided::UndecidedBy;
+
+impl Outcome {
+    /// The class that the other points of a study are compared with: by the curve itself, where the verdict
+    /// is that of an end of its range.
+    pub fn class_of_curve(&self) -> Verdict {
+        let decided =
+            |range: &&CurveRange| self.verdict != Verdict::Undecided && range.whole() == self.verdict;
+        let range = self.curve_range.as_ref().filter(decided);
+        range.map_or(self.verdict, |range| range.verdict)
+    }
+
+    /// The class of the scene itself as the other points of a study are classed: without what leaves the
+    /// verdict undecided.
+    pub(super) fn class_as_points(&self) -> Verdict {
+        let of = match self.undecided_by() {
+            Some(UndecidedBy::Pan) => {
+                self.pan_bounds.as_ref().and_then(|bounds| bounds.verdict_of(PanSize::Passive))
+            }
+            Some(UndecidedBy::Curve) => self.curve_range.as_ref().map(|range| range.verdict),
+            _ => None,
+        };
+        of.unwrap_or_else(|| self.class_of_curve())
+    }
+}
+
+/// Classes by rising multiples: neighbours of one class together, those of the scene itself first. `said`
+/// words a group by its least and its greatest multiple, and whether it is the first.
+pub(super) fn classes(points: &[(f64, Verdict)], said: impl Fn([f64; 2], bool) -> String) -> String {
+    let mut points = points.to_vec();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut groups: Vec<([f64; 2], Verdict)> =
+        points.chunk_by(|a, b| a.1 == b.1).map(|of| ([of[0].0, of[of.len() - 1].0], of[0].1)).collect();
+    let own = groups.iter().position(|([least, most], _)| (*least..=*most).contains(&1.0));
+    if let Some(own) = own {
+        groups[..=own].rotate_right(1);
+    }
+    let each = groups.iter().enumerate();
+    let each = each.map(|(at, (ends, class))| format!("{} {}", class.words(), said(*ends, at == 0)));
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// From one number to another, without digits that say nothing.
+pub(super) fn reach([least, most]: [f64; 2]) -> String {
+    if least == most { times(least) } else { format!("{} to {}", times(least), times(most)) }
+}
+
+/// A multiple, without digits that say nothing.
+pub(super) fn times(factor: f64) -> String {
+    let times = format!("{factor:.3}");
+    times.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// What makes least and most eroded over a range wider than its ends that were walked; empty where nothing
+/// does.
+pub(super) fn beside_ends(range: &CurveRange) -> &'static str {
+    if range.has_intervals() { ", 95 % intervals included" } else { "" }
+}
+
+/// The class of other walks, and what eroded in them.
+pub(super) fn walked_in_words(walked: &Classed) -> String {
+    let eroded: Vec<String> = walked.runs.iter().map(|s| share(s, walked.stopped_when_clear)).collect();
+    let replicates = if walked.replicates == 1 { "replicate" } else { "replicates" };
+    let (class, count) = (walked.verdict.words(), walked.replicates);
+    format!("{class}, {} eroded in {count} {replicates}", eroded.join(" then "))
+}
+
+/// The eroded mass; of a point that stopped early its interval, as one replicate has no digits to show.
+fn share(eroded: &Statistic, stopped: bool) -> String {
+    match (eroded.low, eroded.high) {
+        (Some(low), Some(high)) if stopped => format!("{:.0} to {:.0} %", 100.0 * low, 100.0 * high),
+        _ => percent(eroded.mean),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_of_one_class_stand_together_and_the_scene_itself_first() {
+        use Verdict::{None, Some, Undecided};
+        let said =
+            |ends: [f64; 2], first: bool| format!("{}{}", reach(ends), if first { " times" } else { "" });
+        let points = [(0.25, Some), (4.0, None), (0.5, Undecided), (1.0, None), (2.0, None)];
+        let words = classes(&points, said);
+        assert_eq!(words, "no erosion 1 to 4 times, some erosion 0.25, undecided 0.5");
+        assert_eq!(classes(&[(1.0, None), (0.5, None)], said), "no erosion 0.5 to 1 times");
+    }
+
+    #[test]
+    fn a_point_that_stopped_early_has_its_interval() {
+        let runs = vec![Statistic { mean: 0.59, sd: None, low: Some(0.386), high: Some(0.797) }];
+        let walked = Classed { replicates: 1, stopped_when_clear: true, verdict: Verdict::Continuing, runs };
+        let said = "continuing erosion, 39 to 80 % eroded in 1 replicate";
+        assert_eq!(walked_in_words(&walked), said);
+    }
+}
