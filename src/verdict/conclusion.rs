@@ -133,6 +133,15 @@ pub fn headline(rules: &[AppliedRule], verdict: Verdict, confidence: Confidence)
         }
         (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
         (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
+        (Standing::WashedOut, Verdict::None | Verdict::Undecided) => {
+            "does not meet practice: the filter may lose its finer part, and is too coarse without it".into()
+        }
+        (Standing::WashedOut, _) => {
+            format!(
+                "does not hold: {walked} in the model, and the filter may lose its finer part and is too \
+                 coarse without it"
+            )
+        }
         (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
         (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
         (Standing::Unstable, Verdict::Continuing) => {

@@ -6,6 +6,7 @@
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
 //! - `practice` is what the rules of filter practice say of a pair, `tested` its class by the boundaries that
 //!   Foster and Fell saw in tests, and `rule_words` what a single rule found, in words.
+//! - `washout` is whether a filter that is not internally stable retains its base without its finer part.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
 //! - `evidence` is what soils of the base's kind say of a walk, `probability` has its probabilities in words.
 //! - `dispersion` is what is said of a base of which nobody has said whether it is dispersive.
@@ -55,6 +56,7 @@ pub(crate) mod tested;
 mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
+mod washout;
 pub(crate) mod words;
 #[cfg(test)]
 mod worse_soils;

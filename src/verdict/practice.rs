@@ -3,11 +3,12 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::rule_words::{against, listed, met_of, size};
+use super::rule_words::{against, bounded, credit, is_of_dispersive, listed, met_of, size, without_margin};
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
+use super::washout::washout;
 use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::record::{
-    AppliedRule, LimitOfDesign, Outcome, Practice, RuleQuantity, RuleRole, TestedClass, Verdict,
+    AppliedRule, LimitOfDesign, Outcome, Practice, RuleNote, RuleQuantity, RuleRole, TestedClass, Verdict,
 };
 use crate::outcome::rules::{
     DESIGN, PAPER_NO_EROSION, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
@@ -25,6 +26,9 @@ pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule>
 /// retention that agree with the class say nothing: the line of practice has them.
 pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(|role| broken(rules, role));
+    // One number is one finding.
+    let repeats = |rule: &&AppliedRule| rule.id == TESTS_NO_EROSION && without_margin(rules).is_some();
+    let each = each.filter(|rule| !repeats(rule));
     let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();
     let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
         listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())
@@ -49,6 +53,9 @@ fn of_rule(rule: &AppliedRule) -> Finding {
     let [value, limit] = against(rule, 3);
     let limit = limit + if rule.limit_at_most { " at most" } else { "" };
     match (rule.id.as_str(), rule.role) {
+        (DESIGN | TESTS_NO_EROSION, _) if is_of_dispersive(rule) => {
+            finding::rule_of_retention(rule.quantity.name(), &limit, &value, credit(rule))
+        }
         (DESIGN, _) => finding::limit_of_design(&limit, &value),
         (TESTS_NO_EROSION, _) => finding::tests_no_erosion(&limit, &value),
         (TESTS_CONTINUING, _) => finding::tests_continuing(&limit, &value),
@@ -63,7 +70,7 @@ fn of_rule(rule: &AppliedRule) -> Finding {
 fn asked(rule: &AppliedRule) -> String {
     let [value, limit] = against(rule, 3);
     let allowed = if rule.at_least { "at least" } else { "up to" };
-    format!("{} is {value}, and practice asks for {allowed} {limit}", rule.quantity)
+    format!("{} is {}, and practice asks for {allowed} {limit}", rule.quantity, bounded(rule, &value))
 }
 
 fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
@@ -80,7 +87,9 @@ fn undrained(rules: &[AppliedRule]) -> (Vec<&AppliedRule>, Vec<&AppliedRule>) {
 /// D15F of a filter that is too fine to drain, and what practice asks for.
 fn too_fine(rules: &[AppliedRule]) -> Option<[String; 2]> {
     let (of_size, _) = undrained(rules);
-    let [value, limit] = against(of_size.first()?, 3);
+    let first = *of_size.first()?;
+    let [value, limit] = against(first, 3);
+    let value = bounded(first, &value);
     let least = of_size.get(1).map_or(String::new(), |least| {
         format!(", and EM 1110-2-1901 for {} at the least", against(least, 3)[1])
     });
@@ -127,6 +136,8 @@ pub enum Standing {
     Fails,
     /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
     NoMargin,
+    /// It keeps the limits as placed, and breaks one without the finer part that it may lose.
+    WashedOut,
     /// It keeps the limits, but may lose its own fines.
     Unstable,
     /// The limit of design has no result: what is missing.
@@ -138,10 +149,15 @@ pub enum Standing {
 }
 
 impl Standing {
+    /// Whether practice is not met, and no test held such a filter.
+    pub fn fails(&self) -> bool {
+        matches!(self, Self::Fails | Self::WashedOut)
+    }
+
     /// The same as a record keeps it.
     pub fn recorded(&self) -> ComparedStanding {
         match self {
-            Self::Fails => ComparedStanding::Fails,
+            Self::Fails | Self::WashedOut => ComparedStanding::Fails,
             Self::NoMargin => ComparedStanding::NoMargin,
             Self::Unstable => ComparedStanding::Unstable,
             Self::Unknown(_) => ComparedStanding::Unknown,
@@ -165,6 +181,7 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
     match design.met {
         _ if fails => Standing::Fails,
         Some(false) => Standing::NoMargin,
+        _ if washout(rules).is_some() => Standing::WashedOut,
         _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
         Some(true) => Standing::Met,
         None => {
@@ -175,9 +192,18 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
 }
 
 impl Outcome {
-    /// What practice says of the pair, in a line.
+    /// What practice says of the pair, in a line, with the limit of a dispersive base that the filter breaks
+    /// where nobody has said whether the base is one.
     pub fn practice_in_words(&self) -> String {
-        practice_in_words(&self.rules)
+        let beyond = self.beyond_if_dispersive();
+        let beyond = beyond.map_or_else(String::new, |said| format!("; {said}"));
+        practice_in_words(&self.rules) + &beyond
+    }
+
+    /// The limit of a dispersive base that the filter breaks, where nobody has said whether the base is one;
+    /// `None` where it breaks none, or is too coarse in any case.
+    pub(super) fn beyond_if_dispersive(&self) -> Option<String> {
+        self.if_dispersive?.beyond_in_words(&self.rules, Some(self.inputs.filter.d15_mm))
     }
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
@@ -204,10 +230,14 @@ fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule]) -> String {
         Some((_, class)) => format!("The boundaries that Foster and Fell saw in tests say “{class}”. "),
         None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
     };
+    text += match without_margin(rules) {
+        Some(_) => "The limit of dispersive bases (Fell et al., for design and for no erosion alike) ",
+        None => "The limit of design (Sherard and Dunnigan) ",
+    };
     text += match met_of(rules, DESIGN) {
-        Some(true) => "The limit of design (Sherard and Dunnigan) is met. ",
-        Some(false) => "The limit of design (Sherard and Dunnigan) is not met. ",
-        None => "The limit of design (Sherard and Dunnigan) gives no result. ",
+        Some(true) => "is met. ",
+        Some(false) => "is not met. ",
+        None => "gives no result. ",
     };
     text += match walked.zip(tests.map(|(class, _)| class)) {
         _ if tested(rules) == TestedClass::Unknown && walked != Some(0) => "",
@@ -241,6 +271,7 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
     let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION);
+    let washout = washout(rules).filter(|_| retention.is_empty());
     said.push(match design {
         Some(rule) => match beyond_tests.filter(|_| rule.met == Some(true)) {
             Some(tests) => {
@@ -255,7 +286,10 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
         },
         None => "the limit of design was not applied".into(),
     });
-    said.extend(of_tests(rules));
+    // Within the one limit of a dispersive base tests have no other.
+    let is_one_limit = without_margin(rules).is_some_and(|rule| rule.met == Some(true));
+    said.extend(of_tests(rules).filter(|_| !is_one_limit));
+    said.extend(washout.as_ref().map(|of| of.in_words()));
     for rule in retention.iter().filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id)) {
         // What the limit of design says already in millimetres is no second fault.
         if design.is_none_or(|design| design.met.is_none()) {
@@ -268,7 +302,8 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
         (RuleRole::Drainage, "may not drain"),
         (RuleRole::Placing, "may segregate"),
     ];
-    let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
+    let is_said = |role| role == RuleRole::Stability && washout.is_some();
+    let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty() && !is_said(*role));
     let also: Vec<String> = also.map(|(_, what)| what.to_owned()).collect();
     if !also.is_empty() {
         said.push(format!("the filter {}", listed(&also)));
@@ -278,23 +313,32 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
         said.push(DRAINAGE_UNKNOWN.into());
     }
     let result = match design.and_then(|rule| rule.met) {
-        _ if !retention.is_empty() => "not met",
-        Some(_) => "met",
-        None => "no result",
+        _ if !retention.is_empty() => "not met: ",
+        Some(true) if washout.is_some() => "not met: as placed ",
+        _ if washout.is_some() => "not met: ",
+        Some(true) if is_one_limit => "met, without a margin in the limit: ",
+        Some(_) => "met: ",
+        None => "no result: ",
     };
-    format!("{result}: {}", said.join("; "))
+    result.to_owned() + &said.join("; ")
 }
 
 fn of_design(rule: &AppliedRule) -> String {
     let [value, limit] = against(rule, 3);
     let at_most = if rule.limit_at_most { " at most" } else { "" };
+    let whose = match is_of_dispersive(rule) {
+        true => {
+            let of_size = if rule.note.says(RuleNote::Category(1)) { "6.4 D85B, " } else { "" };
+            format!(
+                "of a dispersive base ({of_size}Fell et al., Table 9.2, note b, for design and for no erosion \
+                 alike)"
+            )
+        }
+        false => "that Sherard and Dunnigan allow (design)".into(),
+    };
     match (rule.met, rule.limit) {
-        (Some(true), _) => {
-            format!("D15F {value} is within the {limit} that Sherard and Dunnigan allow (design)")
-        }
-        (Some(false), _) => {
-            format!("D15F {value} is more than the {limit}{at_most} that Sherard and Dunnigan allow (design)")
-        }
+        (Some(true), _) => format!("D15F {value} is within the {limit} {whose}"),
+        (Some(false), _) => format!("D15F {value} is more than the {limit}{at_most} {whose}"),
         (None, Some(_)) => format!(
             "the limit of Sherard and Dunnigan (design) is {limit}{at_most}, D15F {value}: {}",
             first_clause(&rule.needs.to_string())
@@ -324,6 +368,7 @@ pub(super) fn severity(verdict: Verdict) -> Option<u8> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
     use crate::verdict::{PairOptions, PairRules};
 
     fn of(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
@@ -393,6 +438,83 @@ mod tests {
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         let unstable = said(&gap, &SAND);
         assert!(unstable.contains("; the filter may lose its finer part, may not drain"), "{unstable}");
+    }
+
+    /// A till, and a gravel of 0 to 32 mm that loses its finer part: as placed it retains the till.
+    #[test]
+    fn a_filter_that_is_too_coarse_without_its_finer_part_does_not_meet_practice() {
+        let rules = of(&GRAVEL_0_32, &REGRADED_TILL, false);
+        assert_eq!(standing(&rules), Standing::WashedOut);
+        assert_eq!(standing(&rules).recorded(), ComparedStanding::Fails);
+        let line = practice_in_words(&rules);
+        assert!(
+            line.starts_with(
+                "not met: as placed D15F 0.610 mm is within the 1.26 mm that Sherard and Dunnigan allow \
+                 (design); Foster and Fell: no erosion (up to 0.700 mm); the filter is not internally stable \
+                 by Kézdi (4.13, limit 4.00), "
+            ),
+            "{line}"
+        );
+        assert!(line.ends_with("is 2.52 mm, beyond both limits; the filter may segregate"), "{line}");
+        // What is left of a finer one retains the till: met, with the warning.
+        let finer = GRAVEL_0_32.map(|(size, percent)| (0.25 * size, percent));
+        let rules = of(&finer, &REGRADED_TILL, false);
+        assert_eq!(standing(&rules), Standing::Unstable);
+        let line = practice_in_words(&rules);
+        assert!(
+            line.starts_with("met: D15F ") && line.contains("the filter may lose its finer part"),
+            "{line}"
+        );
+        // Without the record of what is left, as in files of earlier versions, it is the warning alone.
+        let mut rules = of(&GRAVEL_0_32, &REGRADED_TILL, false);
+        rules.iter_mut().for_each(|rule| rule.without_finer = None);
+        assert_eq!(standing(&rules), Standing::Unstable);
+    }
+
+    /// Fell et al. give 6.4 D85B for design and for no erosion alike: one number, credited once.
+    #[test]
+    fn the_limit_of_a_dispersive_base_is_one_number_without_a_margin() {
+        let clay = [(0.002, 30.0), (0.075, 88.0), (0.15, 94.0), (2.0, 100.0)];
+        let sand = |d15f: f64| [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
+        let line = practice_in_words(&of(&sand(0.3), &clay, true));
+        assert!(
+            line.starts_with("met, without a margin in the limit: D15F 0.300 mm is within the 0.") && line.ends_with(
+                " mm of a dispersive base (6.4 D85B, Fell et al., Table 9.2, note b, for design and for no \
+                 erosion alike)"
+            ),
+            "{line}"
+        );
+        let broken = of(&sand(0.6), &clay, true);
+        let line = practice_in_words(&broken);
+        assert!(
+            line.starts_with("not met: D15F 0.600 mm is more than the 0.") && line.contains("base (6.4 D85B")
+        );
+        assert!(
+            !line.contains("Sherard") && line.contains("Foster and Fell: at least some erosion"),
+            "{line}"
+        );
+        let found: Vec<String> = findings(Verdict::None, &broken).iter().map(Finding::sentence).collect();
+        let cited = found.iter().filter(|said| said.ends_with("(Fell et al. (Table 9.2, note b))."));
+        assert_eq!(cited.count(), 1, "{found:?}");
+        assert!(!found.iter().any(|said| said.contains("Sherard")), "{found:?}");
+        let listed = crate::verdict::by_authority::listed(&broken);
+        let retention: Vec<&str> = listed
+            .iter()
+            .filter(|of| of.role == RuleRole::Retention && of.applies)
+            .map(|of| &*of.name)
+            .collect();
+        assert_eq!(
+            retention,
+            [
+                "Fell et al.: the filter retains a dispersive base (design and no erosion alike, without a margin)"
+            ]
+        );
+        // The floor of the limit of design is another number, and its own source's.
+        let fine = practice_in_words(&of(&sand(0.15), &[(0.001, 0.0), (0.01, 85.0), (0.02, 100.0)], true));
+        assert!(fine.contains("Sherard and Dunnigan") && !fine.contains("note b"), "{fine}");
+        let silt = [(0.01, 0.0), (0.075, 60.0), (0.3, 92.0), (0.6, 100.0)];
+        let silt = practice_in_words(&of(&sand(0.4), &silt, true));
+        assert!(silt.contains("the 0.500 mm of a dispersive base (Fell et al., Table 9.2"), "{silt}");
     }
 
     #[test]
