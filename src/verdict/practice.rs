@@ -437,6 +437,12 @@ mod tests {
         );
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         let unstable = said(&gap, &SAND);
+        assert!(
+            unstable.contains("is 2.82 mm, beyond the limit of design; the filter may not drain"),
+            "{unstable}"
+        );
+        // Without its finer part a filter of half the size still retains the sand.
+        let unstable = said(&gap.map(|(size, percent)| (0.5 * size, percent)), &SAND);
         assert!(unstable.contains("; the filter may lose its finer part, may not drain"), "{unstable}");
     }
 
@@ -457,7 +463,7 @@ mod tests {
         );
         assert!(line.ends_with("is 2.52 mm, beyond both limits; the filter may segregate"), "{line}");
         // What is left of a finer one retains the till: met, with the warning.
-        let finer = GRAVEL_0_32.map(|(size, percent)| (0.25 * size, percent));
+        let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
         let rules = of(&finer, &REGRADED_TILL, false);
         assert_eq!(standing(&rules), Standing::Unstable);
         let line = practice_in_words(&rules);
@@ -494,7 +500,7 @@ mod tests {
             "{line}"
         );
         let found: Vec<String> = findings(Verdict::None, &broken).iter().map(Finding::sentence).collect();
-        let cited = found.iter().filter(|said| said.ends_with("(Fell et al. (Table 9.2, note b))."));
+        let cited = found.iter().filter(|said| said.ends_with("(Fell et al., Table 9.2, note b)."));
         assert_eq!(cited.count(), 1, "{found:?}");
         assert!(!found.iter().any(|said| said.contains("Sherard")), "{found:?}");
         let listed = crate::verdict::by_authority::listed(&broken);

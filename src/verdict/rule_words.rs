@@ -91,7 +91,7 @@ pub(super) fn bounded(rule: &AppliedRule, value: &str) -> String {
 }
 
 /// Who gives the limit of a dispersive base, which is one number for design and for no erosion.
-const NOTE_B: &str = "Fell et al. (Table 9.2, note b)";
+const NOTE_B: &str = "Fell et al., Table 9.2, note b";
 
 /// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
 /// of its own, and so no margin.

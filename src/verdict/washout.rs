@@ -26,8 +26,12 @@ pub(super) struct Washout<'r> {
     is_one_limit: bool,
 }
 
-/// Whether a filter is not internally stable, and beyond a limit of retention without its finer part; of
-/// several parts the smallest that is enough.
+/// Percent of a broadly graded soil that may lie loose between its coarser grains (Kenney and Lau).
+const LOOSE_PERCENT: f64 = 20.0;
+
+/// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
+/// several parts that of Kezdi's split comes first, whose sizes stand in the table of rules, unless it is more
+/// than what may be loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let judged =
         || rules.iter().filter(|of| of.role == RuleRole::Stability && of.applies && of.met.is_some());
@@ -48,7 +52,7 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     };
     let parts = unstable.iter().filter_map(|rule| rule.without_finer);
     let enough = parts.filter(|left| !beyond(left).is_empty());
-    let left = enough.min_by(|a, b| a.percent.total_cmp(&b.percent))?;
+    let left = enough.min_by_key(|left| left.percent > LOOSE_PERCENT)?;
     Some(Washout {
         left,
         beyond: beyond(&left),
@@ -83,7 +87,8 @@ impl Washout<'_> {
         let breaks = |id: &str| self.beyond.contains(&id);
         let beyond = match (breaks(DESIGN), breaks(TESTS_NO_EROSION)) {
             (true, true) if !self.is_one_limit => "beyond both limits",
-            (true, _) => "beyond that limit",
+            (true, true) => "beyond that limit",
+            (true, false) => "beyond the limit of design",
             (false, true) => "beyond that of Foster and Fell",
             (false, false) => "beyond a limit of retention",
         };
@@ -160,7 +165,7 @@ pub(in crate::verdict) mod tests {
 
     #[test]
     fn what_is_left_of_a_finer_filter_retains_the_base_all_the_same() {
-        let finer = GRAVEL_0_32.map(|(size, percent)| (0.25 * size, percent));
+        let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
         let rules = rules(&finer, &REGRADED_TILL);
         assert_eq!(met_of(&rules, LI_FANNIN), Some(false));
         assert!(washout(&rules).is_none());

@@ -59,7 +59,7 @@ fn a_shape_index_says_from_where_it_was_judged() {
     let judged = of("kenney-lau", &[&[(0.5, 2.0), (1.0, 30.0), (4.0, 100.0)]]);
     let said = judged.note.to_string();
     assert!(
-        judged.met == Some(true) && said.contains("judged from F = 2.0 % (finest sieve) up to F = 20 %"),
+        judged.met == Some(true) && said.contains("judged from F = 2.0 % (finest sieve) up to F = 30 %"),
         "{said}"
     );
     let whole = of("kenney-lau", &[&[(0.5, 0.0), (1.0, 30.0), (4.0, 100.0)]]);
