@@ -310,8 +310,8 @@ mod tests {
         }
     }
 
-    /// A limit that holds if the base is dispersive, and that the filter breaks, stands in the line of practice;
-    /// the test stands in the next step, whatever the walk says, and no finding says it again.
+    /// A limit that holds if the base is dispersive, and that the filter breaks, stands in the line of
+    /// practice; the test stands in the next step, whatever the walk says, and no finding says it again.
     #[test]
     fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
         let walked = walked(45.0, 0.6, &[]);

@@ -46,8 +46,8 @@ pub struct BatchRow {
     pub limit_at_most: bool,
     /// Whose limit it is.
     pub rule: String,
-    /// Whether the filter keeps every rule of retention, as placed and without the finer part that it may lose;
-    /// `None` where that is not known.
+    /// Whether the filter keeps every rule of retention, as placed and without the finer part that it may
+    /// lose; `None` where that is not known.
     pub met: Option<bool>,
     /// The class by the tests of Foster and Fell, in words.
     pub tests: String,
@@ -414,6 +414,27 @@ mod tests {
         let said = open_in_words(&rows, "F").join("\n");
         assert!(said.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{said}");
         assert!(governing(&rows, "G", 3).is_empty());
+    }
+
+    /// What is too coarse without its finer part is not met in the table either.
+    #[test]
+    fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
+        use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
+        let filter = |scale: f64| soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
+        let of = |scale| {
+            let filter = vec![("F".to_owned(), filter(scale))];
+            row("till", &soil(&REGRADED_TILL), &filter, PairOptions::default())
+        };
+        let (coarse, fine) = (of(1.0), of(0.2));
+        assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
+        let note = "may lose its finer part, too coarse without its finest 17.6 %";
+        assert!(coarse.note.starts_with(note), "{coarse:?}");
+        assert_eq!((fine.met, fine.may_lose_fines), (Some(true), true));
+        assert!(
+            fine.note.starts_with("may lose its finer part") && !fine.note.contains("coarse"),
+            "{fine:?}"
+        );
+        assert!(counts_in_words(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
     }
 
     #[test]

@@ -219,6 +219,23 @@ mod tests {
         assert!(!tests.contains("classes"), "{tests}");
     }
 
+    /// The Corps states criteria of internal stability, and NRCS none.
+    #[test]
+    fn an_authority_with_criteria_of_stability_does_not_call_met_what_is_too_coarse_after_washout() {
+        use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let pair = PairRules::of(&soil(&REGRADED_TILL), &soil(&GRAVEL_0_32));
+        let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm).unwrap();
+        let corps = said(Authority::Usace);
+        let left = " as placed, but 2.52 mm without its finest 17.6 %, which the filter may lose (Sherard";
+        assert!(
+            corps.contains(": not met: D15F 0.610 mm is within 1.26 mm") && corps.contains(left),
+            "{corps}"
+        );
+        let nrcs = said(Authority::Nrcs);
+        assert!(nrcs.starts_with("NRCS: met: ") && nrcs.contains("Kézdi (1979)"), "{nrcs}");
+    }
+
     /// Whatever is not listed and not met is named.
     #[test]
     fn no_broken_rule_is_lost() {

@@ -103,8 +103,8 @@ impl IfDispersive {
         }
     }
 
-    /// The limit that a filter of this D15F (mm) breaks then, where it keeps `rules` as they are: what does not
-    /// hold anyway would not hold the more.
+    /// The limit that a filter of this D15F (mm) breaks then, where it keeps `rules` as they are: what does
+    /// not hold anyway would not hold the more.
     fn newly_broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<[String; 2]> {
         let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
         let d15f = d15f_mm.filter(|d15f| self.is_broken_by(*d15f) && is_kept(*d15f))?;

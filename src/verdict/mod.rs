@@ -4,8 +4,8 @@
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
-//! - `practice` is what the rules of filter practice say of a pair, `tested` its class by the boundaries that
-//!   Foster and Fell saw in tests, and `rule_words` what a single rule found, in words.
+//! - `practice` is what the rules of filter practice say of a pair, `practice_words` its line, `tested` its
+//!   class by the boundaries that Foster and Fell saw in tests, and `rule_words` what a single rule found.
 //! - `washout` is whether a filter that is not internally stable retains its base without its finer part.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
 //! - `evidence` is what soils of the base's kind say of a walk, `probability` has its probabilities in words.
@@ -47,6 +47,7 @@ mod next;
 mod pair;
 mod planned_walk;
 pub(crate) mod practice;
+pub(crate) mod practice_words;
 mod probability;
 mod quantity;
 mod rule_notes;

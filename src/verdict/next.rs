@@ -260,7 +260,7 @@ mod tests {
         assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
         let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap();
         assert_eq!(greatest(&rules, d15f), Some((limit(TESTS_NO_EROSION), false)));
-        let practice = crate::verdict::practice::practice_in_words(&rules);
+        let practice = crate::verdict::practice_words::practice_in_words(&rules);
         assert!(practice.starts_with("not met: D15F "), "{practice}");
         assert!(
             practice.contains("is more than the 0.700 mm up to which tests saw no erosion"),

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::entry::Finding;
 use super::finding;
-use super::practice::practice_in_words;
+use super::practice_words::practice_in_words;
 use super::words::capital;
 use crate::gradation::Gradation;
 use crate::outcome::record::AppliedRule;

@@ -120,6 +120,11 @@ pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
 
+/// What a rule needs, without why.
+pub(super) fn first_clause(needs: &str) -> String {
+    needs.split([':', ';']).next().unwrap_or_default().to_owned()
+}
+
 /// `a`, `a and b`, `a, b and c`.
 pub(super) fn listed(items: &[String]) -> String {
     match items {

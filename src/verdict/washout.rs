@@ -30,8 +30,8 @@ pub(super) struct Washout<'r> {
 const LOOSE_PERCENT: f64 = 20.0;
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
-/// several parts that of Kezdi's split comes first, whose sizes stand in the table of rules, unless it is more
-/// than what may be loose.
+/// several parts that of Kezdi's split comes first, whose sizes stand in the table of rules, unless it is
+/// more than what may be loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let judged =
         || rules.iter().filter(|of| of.role == RuleRole::Stability && of.applies && of.met.is_some());
