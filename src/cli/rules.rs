@@ -11,7 +11,7 @@ use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
 use crate::verdict::left_out::NOT_COVERED;
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -95,6 +95,7 @@ fn words(
         number(filter.d85_mm),
         number(filter.cu)
     ));
+    line(format!("practice {}", pair.practice));
     for warning in &pair.warnings {
         line(format!("warning {warning}"));
     }
@@ -157,7 +158,7 @@ fn row(rule: &AppliedRule) -> String {
     };
     let value = value.unwrap_or_default();
     let limit = limit.map_or(String::new(), |limit| format!(", {sign} {limit}{unit}{at_most}"));
-    format!("  {result:<12}{}: {} = {value}{unit}{limit}", rule.name, rule.quantity)
+    format!("  {result:<12}{}: {} {} {value}{unit}{limit}", rule.name, rule.quantity, value_begins(rule))
 }
 
 /// Four digits that mean something.

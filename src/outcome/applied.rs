@@ -29,6 +29,10 @@ pub struct AppliedRule {
     pub quantity: RuleQuantity,
     /// Its value for these inputs; `None` where they do not give it.
     pub value: Option<f64>,
+    /// On which side of `value` the true one lies, where sieves give only a bound; `None` where it is the value
+    /// itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value_bound: Option<ValueBound>,
     /// The most, or the least, that the rule allows; `None` where no number is known.
     pub limit: Option<f64>,
     /// Unit of value and limit: `mm`, `D0F`, `%`; empty for a ratio.
@@ -58,6 +62,10 @@ pub struct AppliedRule {
     pub formula: String,
     /// Where the rule is published.
     pub source: String,
+    /// What is left of the filter without the part that is finer than where a rule of internal stability has
+    /// its value; `None` of other rules, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without_finer: Option<WithoutFiner>,
     /// Which verdicts it speaks against where it is not kept.
     #[serde(default)]
     pub speaks_against: String,
@@ -74,6 +82,28 @@ impl AppliedRule {
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
     }
+}
+
+/// On which side of a value the true one lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub enum ValueBound {
+    /// It is no more than the value.
+    #[serde(rename = "at most")]
+    AtMost,
+    /// It is no less than the value.
+    #[serde(rename = "at least")]
+    AtLeast,
+}
+
+/// What is left of a filter without its finer part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct WithoutFiner {
+    /// The part that is taken out (% of the filter's mass).
+    pub percent: f64,
+    /// 15 % finer of what is left (mm, or D0F where sizes have no unit).
+    pub d15f: f64,
 }
 
 /// What a rule limits.

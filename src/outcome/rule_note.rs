@@ -86,8 +86,12 @@ notes! {
     LimitAtLeast,
     /// D10 lies in the filter's finest part: Cu is at least the value.
     CuAtLeast,
+    /// No sieve of the filter is finer than this (mm): the value is at most what passes it.
+    FinestSieveOfFilter(f64),
     /// The percent finer at which a band is widest.
     AtPercentFiner(f64),
+    /// A band is compared from this percent finer, below which no sieve tells.
+    BandFrom(f64),
     /// Width of a joint (mm), D95B (mm), and their ratio.
     Joint(f64, f64, f64),
     /// A probability below the least that the source states.
@@ -104,6 +108,8 @@ notes! {
     KezdiHidden(f64),
     /// F (%) of an index of shape, and the most that F can be (%).
     ShapeAt(f64, f64),
+    /// The same of a filter of which no sieve tells below the second of three (%).
+    ShapeAbovePan(f64, f64, f64),
     /// D90/D15, and the range of D90/D60 that is stable by Burenkova.
     BurenkovaRange(f64, f64, f64),
     /// Sand and gravel with few fines, by Wan and Fell.

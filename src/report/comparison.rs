@@ -278,7 +278,8 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::record::AppliedRule;
     use crate::verdict::PairRules;
-    use crate::verdict::practice::{Standing, practice_in_words, standing};
+    use crate::verdict::practice::{Standing, standing};
+    use crate::verdict::practice_words::practice_in_words;
 
     fn rules(base: &[(f64, f64)], filter: &[(f64, f64)]) -> Vec<AppliedRule> {
         let of = |points| Gradation::from_points(points, None).unwrap();

@@ -19,8 +19,8 @@ use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
 use crate::verdict::FOREMOST;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::{Standing, standing};
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
+use crate::verdict::practice::standing;
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
 use crate::verdict::words::capital;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
@@ -92,7 +92,7 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
     let all = findings(outcome);
     let (foremost, more) = all.split_at(all.len().min(FOREMOST));
     html! {
-        @let fails = standing(&outcome.rules) == Standing::Fails;
+        @let fails = standing(&outcome.rules).fails();
         section.verdict.(colour(outcome.verdict, outcome.confidence, fails)) {
             p.word { (clean(&capital(&headline))) "." }
             @for (name, said) in &lines {
@@ -212,7 +212,9 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             false => html! { (clean(&rule.name)) },
         })
         .text("here", |rule| match &value_and_limit(rule, unit)[0] {
-            Some(value) => html! { (clean(rule.quantity.name())) " " span.q { "= " (clean(value)) } },
+            Some(value) => html! {
+                (clean(rule.quantity.name())) " " span.q { (value_begins(rule)) " " (clean(value)) }
+            },
             None => html! { "–" },
         })
         .text("limit", |rule| {

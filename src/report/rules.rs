@@ -8,15 +8,16 @@ use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 use crate::verdict::by_authority::listed;
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of};
+use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
 const DIGITS: i32 = 3;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let listed = listed(&outcome.rules);
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        listed(&outcome.rules).into_iter().partition(|rule| rule.role == RuleRole::Walk);
+        listed.iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
@@ -108,7 +109,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         })
         .number("Here", |rule| {
             let [value, _] = value_and_limit(rule, unit);
-            let value = value.map_or_else(|| "–".to_owned(), |value| format!("= {value}"));
+            let value =
+                value.map_or_else(|| "–".to_owned(), |value| format!("{} {value}", value_begins(rule)));
             html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
         })
         .number("Limit", |rule| {

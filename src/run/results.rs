@@ -310,6 +310,32 @@ mod tests {
         }
     }
 
+    /// A limit that holds if the base is dispersive, and that the filter breaks, stands in the line of
+    /// practice; the test stands in the next step, whatever the walk says, and no finding says it again.
+    #[test]
+    fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
+        let walked = walked(45.0, 0.6, &[]);
+        let test = "have the base tested for dispersion by a pinhole or crumb test";
+        for verdict in [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided] {
+            let of = Outcome { verdict, ..walked.clone() };
+            let (practice, next) = (of.practice_in_words(), of.next_in_words());
+            let beyond = "; if the base is dispersive, the limit is 0.500 mm, and 0.";
+            assert!(practice.starts_with("met: D15F ") && practice.contains(beyond), "{practice}");
+            assert!(next.contains(test) && !next.contains("0.500"), "{next}");
+            assert_eq!(next.starts_with(test), verdict == Verdict::None, "{next}");
+            assert!(of.ordered().iter().all(|finding| finding.id != "dispersive_would_not_hold"));
+        }
+        let kept = Outcome { verdict: Verdict::None, ..super::tests::walked(45.0, 0.45, &[]) };
+        let next = kept.next_in_words();
+        assert!(
+            next.contains(&format!(
+                "{test} (if it is dispersive, practice allows a D15F of 0.500 mm, which is met)"
+            )),
+            "{next}"
+        );
+        assert!(!kept.practice_in_words().contains("dispersive"));
+    }
+
     /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
     /// it 0.111 mm, and neither the limit of design nor that of drainage follows it below its floor.
     #[test]

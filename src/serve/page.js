@@ -340,26 +340,29 @@ const ROLES = [["retention", "The filter retains the base"],
 const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
 
 function showRules(pair) {
-  const broken = pair.rules.filter((rule) => rule.applies && rule.met === false);
+  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], bound: pair.value_begins[at] }))
+    .filter((row) => row.named);
+  const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
   const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
   const { base } = pair;
   parts.push(el("p", {}, `The base as practice reads it: D85 ${number(base.d85_mm)} mm, `, base.regraded
     ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
   `; ${base.why}.`));
+  parts.push(el("p", {}, el("b", {}, "Practice: "), `${pair.practice}.`));
   parts.push(el("p", {}, broken.length
-    ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map((rule) => rule.name).join("; "))
+    ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map(({ named }) => named[0]).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
   el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rows = (role) => pair.rules.map((rule, at) => [rule, pair.shown[at], pair.results[at], pair.limit_begins[at]]).filter(([rule]) => rule.role === role).map(([rule, [value, limit], found, sign]) => {
-    return el("tr", {}, el("td", {}, result(found)), el("td", {}, rule.name),
-      el("td", {}, rule.quantity), el("td", { class: "n" }, value || "–"),
+  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source], shown: [value, limit], found, sign, bound }) => {
+    return el("tr", {}, el("td", {}, result(found)), el("td", {}, name),
+      el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
       el("td", { class: "n" }, limit ? `${sign} ${limit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}` : "–"),
-      el("td", { class: "small" }, [rule.note, rule.needs, rule.source].filter(Boolean).join(" – ")));
+      el("td", { class: "small" }, [rule.note, rule.needs, source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
     ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
     ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
-    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rows(role))));
+    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rowsOfRole(role))));
   parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }

@@ -31,7 +31,8 @@ use crate::study::batch::BatchPlan;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
-use crate::verdict::rule_words::{limit_begins, result_of};
+use crate::verdict::by_authority::listed;
+use crate::verdict::rule_words::{limit_begins, result_of, value_begins};
 use crate::verdict::{PairOptions, PairRules};
 
 const PAGE: &str = include_str!("page.html");
@@ -336,11 +337,21 @@ impl Routes {
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
         // The page shows value and limit as every sheet does, and works nothing out.
-        let shown: Vec<_> =
-            pair.rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
-        let results: Vec<_> = pair.rules.iter().map(|rule| result_of(rule).words()).collect();
-        let begins: Vec<_> = pair.rules.iter().map(limit_begins).collect();
+        let rules = &pair.rules;
+        let listed = listed(rules);
+        // What a sheet lists once is no row of its own.
+        let names: Vec<_> = rules
+            .iter()
+            .map(|rule| listed.iter().find(|of| of.id == rule.id).map(|of| [&of.name, &of.source]))
+            .map(|of| json!(of))
+            .collect();
+        let shown: Vec<_> = rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
+        let results: Vec<_> = rules.iter().map(|rule| result_of(rule).words()).collect();
+        let begins: Vec<_> = rules.iter().map(limit_begins).collect();
+        let values: Vec<_> = rules.iter().map(value_begins).collect();
         let mut value = serde_json::to_value(pair).map_err(wrong)?;
+        value["listed"] = json!(names);
+        value["value_begins"] = json!(values);
         value["shown"] = json!(shown);
         value["results"] = json!(results);
         value["limit_begins"] = json!(begins);

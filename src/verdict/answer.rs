@@ -224,7 +224,8 @@ mod tests {
         let found = judged(true);
         assert_eq!(found.confidence, Confidence::Contradicted);
         assert!(
-            found.reasons()[0].starts_with("The limit of design is D15F 0.500 mm, this is 0.600 mm"),
+            found.reasons()[0]
+                .starts_with("Practice allows D15F up to 0.500 mm, this is 0.600 mm (Fell et al."),
             "{found:?}"
         );
     }

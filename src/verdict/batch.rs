@@ -3,13 +3,14 @@
 
 use super::pair::{Mistake, PairOptions, PairRules};
 use super::practice::{DRAINAGE_UNKNOWN, broken};
-use super::rule_words::against;
+use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
+use super::washout::washout;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{SizeUnit, rounded_up};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
-use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, authority};
+use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY};
 use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -45,7 +46,8 @@ pub struct BatchRow {
     pub limit_at_most: bool,
     /// Whose limit it is.
     pub rule: String,
-    /// Whether the filter keeps every rule of retention; `None` where that is not known.
+    /// Whether the filter keeps every rule of retention, as placed and without the finer part that it may
+    /// lose; `None` where that is not known.
     pub met: Option<bool>,
     /// The class by the tests of Foster and Fell, in words.
     pub tests: String,
@@ -142,13 +144,16 @@ impl BatchRow {
             rule.applies && rule.role == RuleRole::Retention && rule.quantity != RuleQuantity::D15FOverD85B
         };
         let unknown = rules.iter().filter(of_retention).any(|rule| rule.met.is_none());
+        let washout = washout(rules);
         let met = match (broken(rules, RuleRole::Retention).is_empty(), unknown || strictest.is_none()) {
+            _ if washout.is_some() => Some(false),
             (false, _) => Some(false),
             (true, true) => None,
             (true, false) => Some(true),
         };
+        let unstable = washout.map_or_else(|| "may lose its finer part".into(), |of| of.in_brief());
         let also = [
-            (RuleRole::Stability, "may lose its finer part"),
+            (RuleRole::Stability, unstable.as_str()),
             (RuleRole::Drainage, "may not drain"),
             (RuleRole::Placing, "may segregate"),
         ];
@@ -204,7 +209,7 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
         let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
         rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
     };
-    authority(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
+    credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
 /// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
@@ -409,6 +414,27 @@ mod tests {
         let said = open_in_words(&rows, "F").join("\n");
         assert!(said.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{said}");
         assert!(governing(&rows, "G", 3).is_empty());
+    }
+
+    /// What is too coarse without its finer part is not met in the table either.
+    #[test]
+    fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
+        use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
+        let filter = |scale: f64| soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
+        let of = |scale| {
+            let filter = vec![("F".to_owned(), filter(scale))];
+            row("till", &soil(&REGRADED_TILL), &filter, PairOptions::default())
+        };
+        let (coarse, fine) = (of(1.0), of(0.2));
+        assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
+        let note = "may lose its finer part, too coarse without its finest 17.6 %";
+        assert!(coarse.note.starts_with(note), "{coarse:?}");
+        assert_eq!((fine.met, fine.may_lose_fines), (Some(true), true));
+        assert!(
+            fine.note.starts_with("may lose its finer part") && !fine.note.contains("coarse"),
+            "{fine:?}"
+        );
+        assert!(counts_in_words(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
     }
 
     #[test]

@@ -1,34 +1,52 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::pair::{PairRules, StatedByAuthority};
-use super::rule_words::against;
+use super::rule_words::{against, credit, without_margin};
 use super::tested::tested_in_brief;
+use super::washout::washout;
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{
-    Authority, PERMEABILITY, PERMEABILITY_LEAST, TESTS_CONTINUING, authority, is_stated_by,
+    Authority, DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, is_stated_by,
 };
 
 /// The rules of practice that one authority states, in their order, as a sheet lists them; those of the walk
 /// are none of them.
 pub fn stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
-    listed(&all_stated_by(rules, by)).into_iter().cloned().collect()
+    listed(&all_stated_by(rules, by))
 }
 
 fn all_stated_by(rules: &[AppliedRule], by: Authority) -> Vec<AppliedRule> {
     rules.iter().filter(|rule| rule.role != RuleRole::Walk && is_stated_by(rule, by)).cloned().collect()
 }
 
-/// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first.
-pub fn listed(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
+/// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
+/// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
+pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
             |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
         rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_said)
     };
-    rules.iter().filter(|rule| !repeats(rule)).collect()
+    let is_one = without_margin(rules).is_some();
+    let once = rules.iter().filter(|rule| !repeats(rule) && !(is_one && rule.id == TESTS_NO_EROSION));
+    let named = |rule: &AppliedRule| match is_one && rule.id == DESIGN {
+        true => {
+            AppliedRule { name: OF_DISPERSIVE.into(), source: OF_DISPERSIVE_SOURCE.into(), ..rule.clone() }
+        }
+        false => rule.clone(),
+    };
+    once.map(named).collect()
 }
+
+/// The name of the limit of a dispersive base, which leaves design no margin.
+const OF_DISPERSIVE: &str =
+    "Fell et al.: the filter retains a dispersive base (design and no erosion alike, without a margin)";
+
+/// Where it is stated.
+const OF_DISPERSIVE_SOURCE: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, \
+                                    Table 9.2, note (b)";
 
 impl PairRules {
     /// With what one authority states of the two soils; of all authorities it says nothing.
@@ -62,7 +80,7 @@ pub fn of_pair(rules: &[AppliedRule], by: Authority, d15f: Option<f64>) -> Optio
     }
     // A D15F that lies in a finest tail has the limits in mm all the same.
     let governing = match governing(&stated_by(rules, by), d15f.unwrap_or(1.0)) {
-        Some((rule, value)) => format!("{value} ({})", authority(&rule)),
+        Some((rule, value)) => format!("{value} ({})", credit(&rule)),
         None => "no limit of D15F for this base".into(),
     };
     let left = left_by(rules, by);
@@ -91,14 +109,14 @@ pub fn of_design(rules: &[AppliedRule], by: Authority, unit: &str) -> Option<Str
     let own = retention(&stated, d15f).filter(|_| has_unit);
     let governing = match own {
         _ if !has_unit => "the limit is not known, as sizes have no unit".into(),
-        Some((rule, limit)) => format!("D15F up to {} ({})", in_mm(rule, limit), authority(rule)),
+        Some((rule, limit)) => format!("D15F up to {} ({})", in_mm(rule, limit), credit(rule)),
         None => "no limit of D15F for this base".into(),
     };
     let is_less = |limit: f64| own.is_none_or(|(_, own)| limit < own * (1.0 - 1e-9));
     let stricter = left.iter().filter(|_| has_unit).filter_map(|rule| {
         let is_retained = matches!(rule.role, RuleRole::Retention | RuleRole::Continuation);
         let (_, limit) = *limits(std::slice::from_ref(*rule), d15f).first()?;
-        let whose = if rule.role == RuleRole::Retention { authority(rule) } else { &rule.name };
+        let whose = if rule.role == RuleRole::Retention { credit(rule) } else { &rule.name };
         (is_retained && !rule.at_least && is_less(limit)).then(|| format!("{whose}, {}", in_mm(rule, limit)))
     });
     let stricter: Vec<String> = stricter.collect();
@@ -125,7 +143,10 @@ fn governing(stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)>
     let quantity = &rule.quantity;
     let at_most = if rule.limit_at_most { " at most" } else { "" };
     let said = match rule.met {
-        Some(true) => format!("met: {quantity} {value} is within {limit}"),
+        Some(true) => match washout(stated) {
+            Some(of) => format!("not met: {quantity} {value} is within {limit}{}", of.as_placed()),
+            None => format!("met: {quantity} {value} is within {limit}"),
+        },
         Some(false) => format!("not met: {quantity} {value} is more than {limit}{at_most}"),
         None => format!("no result: {quantity} {value}, limit {limit}{at_most}"),
     };
@@ -198,6 +219,23 @@ mod tests {
         assert!(!tests.contains("classes"), "{tests}");
     }
 
+    /// The Corps states criteria of internal stability, and NRCS none.
+    #[test]
+    fn an_authority_with_criteria_of_stability_does_not_call_met_what_is_too_coarse_after_washout() {
+        use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
+        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let pair = PairRules::of(&soil(&REGRADED_TILL), &soil(&GRAVEL_0_32));
+        let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm).unwrap();
+        let corps = said(Authority::Usace);
+        let left = " as placed, but 2.52 mm without its finest 17.6 %, which the filter may lose (Sherard";
+        assert!(
+            corps.contains(": not met: D15F 0.610 mm is within 1.26 mm") && corps.contains(left),
+            "{corps}"
+        );
+        let nrcs = said(Authority::Nrcs);
+        assert!(nrcs.starts_with("NRCS: met: ") && nrcs.contains("Kézdi (1979)"), "{nrcs}");
+    }
+
     /// Whatever is not listed and not met is named.
     #[test]
     fn no_broken_rule_is_lost() {
@@ -249,7 +287,7 @@ mod tests {
                 for (rule, limit) in all.filter(|(rule, limit)| retains(rule) && *limit < own * (1.0 - 1e-9))
                 {
                     let stricter = said.split("stricter among them: ").nth(1).unwrap_or_default();
-                    let one = format!("{}, {limit:.3} mm", authority(rule));
+                    let one = format!("{}, {limit:.3} mm", credit(rule));
                     assert!(stricter.contains(&one), "{one}: {said}");
                     named += 1;
                 }

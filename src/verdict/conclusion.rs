@@ -3,7 +3,7 @@
 
 use super::amount::worse_in_words;
 use super::beside::is_evidence;
-use super::entry::{COHESIVE_FINES, EVIDENCE_UNSAFE};
+use super::entry::{COHESIVE_FINES, DISPERSIVE_WOULD_NOT_HOLD, EVIDENCE_UNSAFE};
 use super::practice::{Standing, broken, standing};
 use super::probability::{beside_range, stated};
 use super::rule_words::against;
@@ -133,7 +133,12 @@ impl Outcome {
     /// the rest.
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
-        let mut all: Vec<FindingRecord> = all.filter(|finding| !is_evidence(finding)).collect();
+        // The limit of a dispersive base that the filter breaks stands in the line of practice.
+        let is_said = |finding: &FindingRecord| {
+            finding.id == DISPERSIVE_WOULD_NOT_HOLD && self.beyond_if_dispersive().is_some()
+        };
+        let all = all.filter(|finding| !is_evidence(finding) && !is_said(finding));
+        let mut all: Vec<FindingRecord> = all.collect();
         if self.verdict == Verdict::None {
             unfold(&mut all);
         }
@@ -145,8 +150,7 @@ impl Outcome {
 const ERRS_UNSAFELY: [&str; 3] = [EVIDENCE_UNSAFE, "broadly_graded", "not_regraded"];
 
 /// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
-/// class stands, before them that it does not stand if the base is dispersive, and that it does not with less
-/// base.
+/// class stands, and that it does not with less base.
 fn unfold(all: &mut [FindingRecord]) {
     let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
         if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
@@ -154,7 +158,6 @@ fn unfold(all: &mut [FindingRecord]) {
         }
     };
     keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
-    keep(FOREMOST - 2, &|finding| finding.id == "dispersive_would_not_hold");
     keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
 }
 
@@ -181,6 +184,15 @@ pub fn headline(
         }
         (Standing::Fails, Verdict::Undecided) => "does not meet practice; the walk is undecided".into(),
         (Standing::Fails, _) => format!("does not hold: practice is not met, {walked} in the model"),
+        (Standing::WashedOut, Verdict::None | Verdict::Undecided) => {
+            "does not meet practice: the filter may lose its finer part, and is too coarse without it".into()
+        }
+        (Standing::WashedOut, _) => {
+            format!(
+                "does not hold: {walked} in the model, and the filter may lose its finer part and is too \
+                 coarse without it"
+            )
+        }
         (Standing::NoMargin, Verdict::Undecided) => format!("{NO_MARGIN}; the walk is undecided"),
         (Standing::NoMargin, _) => format!("{NO_MARGIN}; {walked} in the model"),
         (Standing::Unstable, Verdict::Continuing) => {
@@ -312,11 +324,6 @@ mod tests {
         let both = ordered(vec![note(), note(), fines(), amount()]);
         assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
         assert_eq!(ordered(vec![note(), fines(), note()])[1], "cohesive_fines");
-        let dispersive = || finding::dispersive_would_not_hold("0.500 mm", "0.600 mm").record(true);
-        let all = ordered(vec![note(), note(), note(), dispersive(), fines()]);
-        assert_eq!(all[1..3], ["dispersive_would_not_hold", "cohesive_fines"]);
-        let all = ordered(vec![note(), note(), dispersive(), amount(), fines()]);
-        assert_eq!(all[1..3], ["dispersive_would_not_hold", "worse_with_amount"]);
     }
 
     /// Nobody reads "holds" alone where practice has something against the filter.
@@ -329,6 +336,17 @@ mod tests {
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         assert_eq!(
             said(&gap, &SAND, Verdict::None),
+            "does not meet practice: the filter may lose its finer part, and is too coarse without it; the \
+             filter may not drain"
+        );
+        let some = said(&gap, &SAND, Verdict::Some);
+        assert!(
+            some.starts_with("does not hold: some erosion in the model, and the filter may lose "),
+            "{some}"
+        );
+        // Without its finer part a filter of half the size still retains the sand.
+        assert_eq!(
+            said(&gap.map(|(size, percent)| (0.5 * size, percent)), &SAND, Verdict::None),
             "may not hold: the filter may lose its finer part; the filter may not drain"
         );
         // A sand whose fines nobody sieved.

@@ -190,11 +190,11 @@ impl DesignedSamples {
             open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
         let (row, of) = strictest?;
         Some(format!(
-            "Not known whether dispersive: {} with 15 % fines or more; if {} is: {}. {} then not valid: \
-             {DESIGN_EACH_AGAIN}",
+            "{} with 15 % fines or more may be dispersive, which is not stated. If {} is, {}. {} then not \
+             valid: {DESIGN_EACH_AGAIN}",
             counted(open.len()),
             row.sample,
-            of.words_of_base(),
+            of.clause_of_base(),
             match (open.len(), self.rows.len()) {
                 (_, 1) => "Its band is",
                 (1, _) => "Its band, and the filter for all, are",
@@ -314,7 +314,7 @@ mod tests {
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no maximum D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
-            "Not known whether dispersive: 2 samples with 15 % fines or more; if silt is: D15F up to ",
+            "2 samples with 15 % fines or more may be dispersive, which is not stated. If silt is, D15F is ",
             " mm. Their bands, and the filter for all, are then not valid: design again for dispersive soils",
             "Not a complete specification: the maximum D90F is still to be set",
             "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",

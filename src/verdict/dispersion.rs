@@ -77,6 +77,14 @@ impl IfDispersive {
         self.words_with("have the base tested with the filter")
     }
 
+    /// The same as a clause of its own: "D15F is at most 0.500 mm".
+    pub fn clause_of_base(&self) -> String {
+        match self.at_most {
+            true => self.words_of_base(),
+            false => format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm)),
+        }
+    }
+
     fn words_with(&self, test: &str) -> String {
         match self.at_most {
             true => self.open_with(test),
@@ -93,6 +101,21 @@ impl IfDispersive {
             (Some(false), false) => format!("practice allows a D15F of {limit} mm, which is met"),
             (None, false) => format!("practice allows a D15F of {limit} mm"),
         }
+    }
+
+    /// The limit that a filter of this D15F (mm) breaks then, where it keeps `rules` as they are: what does
+    /// not hold anyway would not hold the more.
+    fn newly_broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<[String; 2]> {
+        let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
+        let d15f = d15f_mm.filter(|d15f| self.is_broken_by(*d15f) && is_kept(*d15f))?;
+        Some(value_and_limit(d15f, self.d15f_max_mm, false, 3).map(|size| format!("{size} mm")))
+    }
+
+    /// The same in words, as a part of the line of practice.
+    pub fn beyond_in_words(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<String> {
+        let [value, limit] = self.newly_broken_by(rules, d15f_mm)?;
+        let at_most = if self.at_most { "at most " } else { "" };
+        Some(format!("if the base is dispersive, the limit is {at_most}{limit}, and {value} is beyond it"))
     }
 
     /// Whether a filter of this D15F (mm) is known to be too coarse for it.
@@ -112,14 +135,8 @@ pub fn finding(
     if matches!(verdict, Verdict::Some | Verdict::Continuing) {
         return None;
     }
-    // What does not hold anyway would not hold the more.
-    let is_kept = |d15f: &f64| retention(rules, *d15f).is_none_or(|(_, limit)| *d15f <= limit);
-    let newly = d15f_mm.filter(|d15f| if_dispersive.is_broken_by(*d15f)).filter(is_kept);
-    Some(match newly {
-        Some(d15f) => {
-            let [value, limit] = value_and_limit(d15f, if_dispersive.d15f_max_mm, false, 3);
-            finding::dispersive_would_not_hold(&format!("{limit} mm"), &format!("{value} mm"))
-        }
+    Some(match if_dispersive.newly_broken_by(rules, d15f_mm) {
+        Some([value, limit]) => finding::dispersive_would_not_hold(&limit, &value),
         None => {
             let limit = format!("{} mm", rounded_down(if_dispersive.d15f_max_mm));
             finding::dispersion_not_known(&if_dispersive.of_filter(d15f_mm), &limit)
@@ -220,6 +237,24 @@ mod tests {
         let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
         let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
         assert_eq!(both, of(0.5, open.lacks));
+    }
+
+    /// Of a filter that practice allows, and that a dispersive base would have finer.
+    #[test]
+    fn a_limit_that_is_broken_if_the_base_is_dispersive_is_named_with_the_size_beyond_it() {
+        let base = Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None);
+        let base = base.unwrap();
+        let said = |d15f: f64| {
+            let points = [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
+            let filter = Gradation::from_points(&points, None).unwrap();
+            let inputs = RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) };
+            let of = IfDispersive::of(&inputs).unwrap();
+            of.beyond_in_words(&PairRules::of(&base, &filter).rules, Some(d15f))
+        };
+        let beyond = "if the base is dispersive, the limit is 0.500 mm, and 0.610 mm is beyond it";
+        assert_eq!(said(0.61).unwrap(), beyond);
+        // Within it, and too coarse in any case.
+        assert_eq!([said(0.45), said(0.8)], [None, None]);
     }
 
     #[test]

@@ -9,6 +9,9 @@ use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdic
 /// The name of the finding of fines that may be cohesive.
 pub const COHESIVE_FINES: &str = "cohesive_fines";
 
+/// Id of the limit that a filter breaks if its base is dispersive.
+pub const DISPERSIVE_WOULD_NOT_HOLD: &str = "dispersive_would_not_hold";
+
 /// The name of the finding that the walk errs on the unsafe side for soils of this kind.
 pub const EVIDENCE_UNSAFE: &str = "evidence_unsafe";
 

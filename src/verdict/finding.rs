@@ -352,11 +352,11 @@ findings! {
         "uniformity", "soils.md",
         "The Cu of the {soil} is more than {cu} (D10 is finer than {d10}), and the model was checked for \
          {low} to {high}.";
-    /// A Cu between two bounds, of which one is out of the checked range.
-    cu_in_doubt(soil: Text, least: Ratio, most: Ratio, low: Ratio, high: Ratio): Base, Open, Limits;
+    /// A Cu of which sieves tell the least alone, and that may be out of the checked range.
+    cu_in_doubt(soil: Text, least: Ratio, how: Text, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
-        "The Cu of the {soil} is between {least} and {most}, and the model was checked for {low} to {high}. \
-         The D10 of the {soil} is finer than its finest sieve.";
+        "The Cu of the {soil} is at least {least}{how}, and the model was checked for {low} to {high}. The \
+         D10 of the {soil} is finer than its finest sieve.";
     /// A Cu that is not known.
     cu_unknown(soil: Text, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",

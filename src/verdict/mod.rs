@@ -4,8 +4,9 @@
 //!   function of its name that reports it. A translation is another table of sentences.
 //! - [`judge()`] takes class, rules and findings, and gives the answer with its label and ordered findings.
 //! - [`PlannedWalk`] is what is found about soils and network before their walk.
-//! - `practice` is what the rules of filter practice say of a pair, `tested` its class by the boundaries that
-//!   Foster and Fell saw in tests, and `rule_words` what a single rule found, in words.
+//! - `practice` is what the rules of filter practice say of a pair, `practice_words` its line, `tested` its
+//!   class by the boundaries that Foster and Fell saw in tests, and `rule_words` what a single rule found.
+//! - `washout` is whether a filter that is not internally stable retains its base without its finer part.
 //! - `by_authority` is what a sheet says that lists the rules of one authority.
 //! - `evidence` is what soils of the base's kind say of a walk, `evidence_groups` those soils,
 //!   `probability` has its probabilities in words.
@@ -49,6 +50,7 @@ mod next;
 mod pair;
 mod planned_walk;
 pub(crate) mod practice;
+pub(crate) mod practice_words;
 mod probability;
 mod quantity;
 mod rule_notes;
@@ -59,6 +61,7 @@ pub(crate) mod tested;
 pub(crate) mod thickness;
 mod walked_batch;
 pub(crate) mod walks;
+mod washout;
 pub(crate) mod words;
 #[cfg(test)]
 mod worse_soils;

@@ -18,15 +18,23 @@ use crate::outcome::rules::{
 };
 use crate::outcome::undecided::UndecidedBy;
 
+/// What tells whether a base is dispersive.
+const TEST_OF_DISPERSION: &str = "have the base tested for dispersion by a pinhole or crumb test";
+
 /// Reasons that are named of those for which a pair is to be tested.
 const REASONS: usize = 3;
 
 impl Outcome {
     /// What to do next, in a sentence without its end.
     pub fn next_in_words(&self) -> String {
+        // Of a filter that is too coarse for a dispersive base alone the line of practice has the limit.
+        let test = match self.beyond_if_dispersive() {
+            Some(_) => format!("; {TEST_OF_DISPERSION}"),
+            None => String::new(),
+        };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => self.of_retention(),
-            Standing::Unstable => {
+            Standing::WashedOut | Standing::Unstable => {
                 let mut whose: Vec<String> = Vec::new();
                 for rule in broken(&self.rules, RuleRole::Stability) {
                     let name = authority(rule).to_owned();
@@ -35,12 +43,16 @@ impl Outcome {
                     }
                 }
                 let rules = listed(&whose);
-                format!("take a filter that is stable by {rules}, or have its internal stability tested")
+                format!(
+                    "take a filter that is stable by {rules}, or have its internal stability tested{test}"
+                )
             }
-            Standing::Unknown(needs) => format!("get {needs}"),
+            Standing::Unknown(needs) => format!("get {needs}{test}"),
             Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
-                Some(said) => said,
-                None => self.of_walk() + &self.of_fines(),
+                Some(said) => said + &test,
+                // Of "no erosion" the test comes first.
+                None if self.verdict == Verdict::None => self.of_walk() + &self.of_fines(),
+                None => self.of_walk() + &self.of_fines() + &test,
             },
         }
     }
@@ -223,7 +235,10 @@ impl Outcome {
     /// What to find out of a base of which nobody has said whether it is dispersive.
     fn of_dispersion(&self) -> Option<String> {
         let then = self.if_dispersive?.of_filter(Some(self.inputs.filter.d15_mm));
-        Some(format!("find out whether the base is dispersive (if it is, {then})"))
+        Some(match self.beyond_if_dispersive() {
+            Some(_) => TEST_OF_DISPERSION.into(),
+            None => format!("{TEST_OF_DISPERSION} (if it is dispersive, {then})"),
+        })
     }
 }
 
@@ -330,7 +345,7 @@ mod tests {
         assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");
         let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap();
         assert_eq!(greatest(&rules, d15f), Some((limit(TESTS_NO_EROSION), false)));
-        let practice = crate::verdict::practice::practice_in_words(&rules);
+        let practice = crate::verdict::practice_words::practice_in_words(&rules);
         assert!(practice.starts_with("not met: D15F "), "{practice}");
         assert!(
             practice.contains("is more than the 0.700 mm up to which tests saw no erosion"),

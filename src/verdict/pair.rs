@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::entry::Finding;
 use super::finding;
+use super::practice_words::practice_in_words;
 use super::words::capital;
 use crate::gradation::Gradation;
 use crate::outcome::record::AppliedRule;
@@ -20,6 +21,8 @@ pub struct PairRules {
     pub base: BaseSizes,
     /// Every rule.
     pub rules: Vec<AppliedRule>,
+    /// What they say together, in a line, as it stands on every page: whether practice is met, and why.
+    pub practice: String,
     /// What may be wrong with the two tables, and what was taken for what.
     pub warnings: Vec<String>,
     /// What one authority states of them, where one is asked for; `rules` has all of them all the same.
@@ -195,6 +198,7 @@ impl PairRules {
                 cu: base.cu(),
                 cc: base.cc(),
             },
+            practice: practice_in_words(&rules),
             rules,
             warnings: found.iter().map(Finding::with_to_do).collect(),
             by_authority: None,

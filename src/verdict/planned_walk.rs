@@ -103,7 +103,7 @@ impl PlannedWalk<'_> {
     }
 
     fn cu_of_filter(&self) -> Option<Finding> {
-        not_as_uniform("filter", self.filter?.cu().map(|cu| [cu, cu]), FILTER_CU)
+        not_as_uniform("filter", "", self.filter?.cu().map(|cu| [cu, cu]), FILTER_CU)
     }
 
     /// Where D10 is finer than the finest sieve and blocks nothing, its size is never looked for: Cu is more
@@ -114,7 +114,10 @@ impl PlannedWalk<'_> {
             (None, Some([least, most])) if least == most && self.pan_is_passive => {
                 Some(finding::cu_at_least("base", least, self.base.smallest_mm(), low, high))
             }
-            (_, cu) => not_as_uniform("base", cu, BASE_CU),
+            (_, cu) => {
+                let how = if self.regraded_from.is_some() { " as regraded" } else { "" };
+                not_as_uniform("base", how, cu, BASE_CU)
+            }
         }
     }
 
@@ -164,12 +167,12 @@ fn is_within(cu: f64, [low, high]: [f64; 2]) -> bool {
 }
 
 /// That a soil, whose Cu lies between two bounds, is more or less uniform than those for which the model was
-/// checked.
-fn not_as_uniform(soil: &str, cu: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<Finding> {
+/// checked; `how` it was read. The greater bound follows from the filter, and is no size of the soil.
+fn not_as_uniform(soil: &str, how: &str, cu: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<Finding> {
     match cu {
         Some([least, most]) if is_within(least, [low, high]) && is_within(most, [low, high]) => None,
         Some([least, most]) if most - least < 0.005 => Some(finding::cu_unchecked(soil, least, low, high)),
-        Some([least, most]) => Some(finding::cu_in_doubt(soil, least, most, low, high)),
+        Some([least, _]) => Some(finding::cu_in_doubt(soil, least, how, low, high)),
         None => Some(finding::cu_unknown(soil, low, high)),
     }
 }
@@ -242,6 +245,20 @@ mod tests {
         assert_eq!(of(&|plan| plan.base_cu = None), ["cu_unknown"]);
         assert_eq!(of(&|plan| plan.base_cu = Some([4.6, 4.6])), ["cu_unchecked"]);
         assert_eq!(of(&|plan| plan.base_cu = Some([4.0, 5.0])), ["cu_in_doubt"]);
+        // The end that follows from the filter is not said.
+        let doubt = |regraded_from, most| {
+            let plan = PlannedWalk { regraded_from, base_cu: Some([4.03, most]), ..plan.clone() };
+            let found = plan.findings();
+            found.iter().find(|of| of.id() == "cu_in_doubt").unwrap().sentence()
+        };
+        for most in [9.28, 25.4] {
+            assert_eq!(
+                doubt(Some(&sand), most),
+                "The Cu of the base is at least 4.03 as regraded, and the model was checked for 1.2 to 4.5. \
+                 The D10 of the base is finer than its finest sieve."
+            );
+            assert!(doubt(None, most).starts_with("The Cu of the base is at least 4.03, and the model "));
+        }
         // 14 % finer than 0.002 mm, D60 0.2 mm.
         let clayey = soil(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
         let open = PlannedWalk { base: &clayey, base_cu: Some([100.0, 100.0]), ..plan.clone() };

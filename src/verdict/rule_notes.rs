@@ -61,7 +61,13 @@ impl RuleNote {
             Self::LimitAtMost => "D15B is finer than the finest sieve: the limit is at most this",
             Self::LimitAtLeast => "D15B is finer than the finest sieve; the limit is never less than this",
             Self::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this",
+            Self::FinestSieveOfFilter(size) => {
+                return format!("the finest sieve is {} mm: at most what passes it", significant(size));
+            }
             Self::AtPercentFiner(percent) => return format!("at {} % finer", fixed(percent, 0)),
+            Self::BandFrom(percent) => {
+                return format!("compared from {} % finer, as no finer sieve tells", fixed(percent, 0));
+            }
             Self::Joint(joint, d95b, ratio) => {
                 let [d95b, ratio] = [fixed(d95b, 3), fixed(ratio, 2)];
                 return format!(
@@ -88,6 +94,13 @@ impl RuleNote {
             }
             Self::ShapeAt(at, most) => {
                 return format!("at F = {} %, judged up to F = {} %", fixed(at, 1), given(most));
+            }
+            Self::ShapeAbovePan(at, from, most) => {
+                let [at, from] = [at, from].map(|percent| fixed(percent, 1));
+                return format!(
+                    "at F = {at} %, judged from F = {from} % (finest sieve) up to F = {} %",
+                    given(most)
+                );
             }
             Self::BurenkovaRange(whole, low, high) => {
                 let [whole, low, high] = [whole, low, high].map(|value| fixed(value, 2));

@@ -2,8 +2,8 @@
 //! it.
 
 use crate::outcome::apart::{digits_of, value_and_limit};
-use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
-use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION, authority};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
+use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_NO_EROSION, authority};
 
 /// What a rule of practice found. Every face shows this, and none works it out by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,9 +73,56 @@ pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     }
 }
 
+/// What stands before its value: a bound of it, where sieves tell no more.
+pub fn value_begins(rule: &AppliedRule) -> &'static str {
+    match rule.value_bound {
+        None => "=",
+        Some(ValueBound::AtMost) => "at most",
+        Some(ValueBound::AtLeast) => "at least",
+    }
+}
+
+/// A value, shown behind its quantity in a sentence: "Cu of the filter is at least 7.1".
+pub(super) fn bounded(rule: &AppliedRule, value: &str) -> String {
+    match rule.value_bound {
+        None => value.to_owned(),
+        Some(_) => format!("{} {value}", value_begins(rule)),
+    }
+}
+
+/// Who gives the limit of a dispersive base, which is one number for design and for no erosion.
+const NOTE_B: &str = "Fell et al., Table 9.2, note b";
+
+/// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
+/// of its own, and so no margin.
+pub(super) fn is_of_dispersive(rule: &AppliedRule) -> bool {
+    [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
+        && rule.applies
+        && rule.note.says(RuleNote::Dispersive)
+        && !rule.limit_at_most
+        && rule.limit != Some(DESIGN_FLOOR_MM)
+}
+
+/// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+    let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
+    let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
+    (design.limit == tests.limit).then_some(design)
+}
+
+/// Who gives the limit of a rule, as a sentence cites it.
+pub(super) fn credit(rule: &AppliedRule) -> &str {
+    if is_of_dispersive(rule) { NOTE_B } else { authority(rule) }
+}
+
 /// Whether a rule that was made for these soils is kept; `None` where it has no result.
 pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
+}
+
+/// What a rule needs, without why.
+pub(super) fn first_clause(needs: &str) -> String {
+    needs.split([':', ';']).next().unwrap_or_default().to_owned()
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -101,6 +148,7 @@ pub(super) fn cited(id: &str, authority: &str) -> String {
 pub(super) fn cited_rule(rule: &AppliedRule) -> String {
     match authority(rule) {
         name if *name == rule.name => name.into(),
+        _ if is_of_dispersive(rule) => "the limit of Fell et al. for dispersive bases".into(),
         authority => cited(&rule.id, authority),
     }
 }
@@ -119,7 +167,7 @@ pub(super) fn size(value: Option<f64>, unit: &str) -> String {
     value.map_or("unknown".into(), |value| with_unit(short(value), unit))
 }
 
-fn with_unit(number: String, unit: &str) -> String {
+pub(super) fn with_unit(number: String, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 

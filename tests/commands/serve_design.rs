@@ -152,6 +152,10 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
     let found = pair["results"].as_array().unwrap();
     let begins = pair["limit_begins"].as_array().unwrap();
     assert_eq!([found.len(), begins.len()], [all.len(); 2]);
+    let [listed, values] = ["listed", "value_begins"].map(|name| pair[name].as_array().unwrap());
+    assert_eq!([listed.len(), values.len()], [all.len(); 2]);
+    assert_eq!((&listed[0][0], &values[0]), (&all[0]["name"], &"=".into()));
+    assert!(pair["practice"].as_str().unwrap().starts_with("met: D15F "), "{pair}");
     for ((rule, found), begin) in all.iter().zip(found).zip(begins) {
         let is_boundary = rule["role"] == "continuation";
         match rule["met"].as_bool() {

@@ -242,6 +242,8 @@ pub fn outcome(replicates: u64) -> Outcome {
             let quantity =
                 if quantity == "D15F/D85B" { RuleQuantity::D15FOverD85B } else { RuleQuantity::D15FOverD95B };
             AppliedRule {
+                value_bound: None,
+                without_finer: None,
                 id: String::new(),
                 name,
                 authority: String::new(),

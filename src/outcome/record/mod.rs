@@ -40,7 +40,7 @@ pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
-pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole};
+pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
 pub use super::model_limit::ModelLimit;
 pub use super::pan::{PanBounds, PanReading, PanSize};
 pub use super::rule_note::{RuleNote, RuleText};

@@ -35,6 +35,10 @@ pub const PAPER_CONTINUING: &str = "paper-continuing";
 /// Id of Terzaghi's ratio.
 pub const TERZAGHI: &str = "terzaghi";
 
+/// Id of Li and Fannin's criterion of internal stability, which takes the milder of Kenney and Lau's and
+/// Kezdi's at every size.
+pub const LI_FANNIN: &str = "li-fannin";
+
 /// Fell et al., who give Table 9.2.
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
                     Foster 1999; Foster & Fell 2001)";
@@ -259,7 +263,7 @@ pub const RULES: &[FilterRule] = &[
         judge: stability::kenney_lau,
     },
     FilterRule {
-        id: "li-fannin",
+        id: LI_FANNIN,
         authority: "Li and Fannin (2008)",
         stated_by: &[Usace],
         says: "internal stability of the filter",

@@ -1,11 +1,13 @@
 //! Every rule, applied to two soils, or to two envelopes of curves.
 
+use std::cmp::Ordering::Equal;
+
 use super::all::RULES;
 use super::authority::Authority;
 use super::base::BaseSoil;
 use super::rule::{FilterRule, Pairing, RuleInputs, RuleUnit};
 use crate::gradation::Gradation;
-use crate::outcome::applied::AppliedRule;
+use crate::outcome::applied::{AppliedRule, ValueBound};
 use crate::outcome::rule_note::RuleText;
 
 /// Applies every rule.
@@ -108,7 +110,12 @@ pub fn apply_to_envelopes(
         Pairing::FineFilterCoarseBase => one(rule, sides.finest_filter, sides.coarsest_base),
         Pairing::EachFilter => {
             let each = (0..filters.len()).filter_map(|filter| one(rule, filter, sides.finest_base));
-            each.min_by(|a, b| margin(a).partial_cmp(&margin(b)).unwrap_or(std::cmp::Ordering::Equal))
+            let each: Vec<AppliedRule> = each.collect();
+            let left = each.iter().filter(|of| of.is_broken()).filter_map(|of| of.without_finer);
+            let coarsest = left.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
+            let worst = each.into_iter().min_by(|a, b| margin(a).partial_cmp(&margin(b)).unwrap_or(Equal))?;
+            // Any curve of the envelope may be delivered, and be left without its finer part.
+            Some(AppliedRule { without_finer: coarsest.or(worst.without_finer), ..worst })
         }
     };
     RULES.iter().filter_map(of).collect()
@@ -141,6 +148,10 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
     // A limit that can only be less is broken for certain, or kept for certain where it is the least allowed.
     let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
+    let value_bound = judged.value_bound.filter(|_| judged.value.is_some());
+    // So is one of whose value only a bound is known: met where the bound itself meets it, or broken by it.
+    let is_surely = |bound: ValueBound| (bound == ValueBound::AtMost) != rule.at_least;
+    let met = met.filter(|met| value_bound.is_none_or(|bound| *met == is_surely(bound)));
     Some(AppliedRule {
         id: rule.id.into(),
         name: rule.name(),
@@ -149,6 +160,7 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
         applies: judged.applies,
         quantity: rule.quantity.clone(),
         value: judged.value,
+        value_bound,
         limit: judged.limit,
         unit: match rule.unit {
             RuleUnit::Size if inputs.scale_free => "D0F".into(),
@@ -164,6 +176,7 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
         applies_to: rule.applies_to.into(),
         formula: rule.formula.into(),
         source: rule.source.into(),
+        without_finer: judged.without_finer,
         speaks_against: rule.role.speaks_against().into(),
         filter_curve: String::new(),
         base_curve: String::new(),

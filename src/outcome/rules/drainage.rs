@@ -4,7 +4,7 @@
 
 use super::rule::{Judged, RuleInputs};
 use crate::gradation::{FINES_MM, Gradation};
-use crate::outcome::record::RuleNote;
+use crate::outcome::record::{RuleNote, ValueBound};
 
 /// Times D15B that D15F is at least, by USBR (2011) and NRCS (2017).
 const TIMES: f64 = 5.0;
@@ -49,7 +49,8 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
         return match d15f {
             Some(_) => judged,
             None if finest < limit => {
-                Judged { value: Some(finest), met: Some(false), ..judged }.noted(RuleNote::D15FAtMost)
+                let judged = Judged { value: Some(finest), met: Some(false), ..judged };
+                judged.bound(ValueBound::AtMost).noted(RuleNote::D15FAtMost)
             }
             None => judged.lacking(RuleNote::NeedsD15FSieved),
         };
@@ -59,7 +60,8 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     let judged = match (d15f, d15b) {
         (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted(RuleNote::BeforeRegrading),
         (None, _) if finest < surely => {
-            Judged { met: Some(false), ..Judged::of(Some(finest), Some(limit)) }.noted(RuleNote::D15FAtMost)
+            let judged = Judged { met: Some(false), ..Judged::of(Some(finest), Some(limit)) };
+            judged.bound(ValueBound::AtMost).noted(RuleNote::D15FAtMost)
         }
         (None, Some(_)) => Judged::of(None, Some(limit)).lacking(RuleNote::NeedsD15FSieved),
         (Some(d15f), None) if d15f >= limit => {
@@ -79,10 +81,14 @@ pub fn fines(inputs: &RuleInputs) -> Judged {
     if inputs.scale_free || !inputs.filter_is_measured {
         return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
     }
-    let (filter, finer) = (inputs.filter, inputs.filter.percent_finer_by_mass(FINES_MM));
-    match filter.pan_fraction() == 0.0 || filter.smallest_mm() <= FINES_MM || finer <= MOST_FINES_PERCENT {
-        true => Judged::of(Some(finer), MOST),
-        false => Judged::of(None, MOST).lacking(RuleNote::NeedsFinesOfFilter),
+    let filter = inputs.filter;
+    match (filter.percent_finer_if_known(FINES_MM), filter.percent_finer_by_mass(FINES_MM)) {
+        (Some(known), _) => Judged::of(Some(known), MOST),
+        (None, most) if most <= MOST_FINES_PERCENT => {
+            let note = RuleNote::FinestSieveOfFilter(filter.smallest_mm());
+            Judged::of(Some(most), MOST).bound(ValueBound::AtMost).noted(note)
+        }
+        (None, _) => Judged::of(None, MOST).lacking(RuleNote::NeedsFinesOfFilter),
     }
 }
 
@@ -104,7 +110,9 @@ pub fn uniformity(inputs: &RuleInputs) -> Judged {
             // D10 is at most the finest sieve, or D60 lies in the tail as well.
             let least = inputs.filter.d(60.0).map(|d60| d60 / inputs.filter.smallest_mm());
             match least.filter(|least| Some(*least) > MOST) {
-                Some(least) => Judged::of(Some(least), MOST).noted(RuleNote::CuAtLeast),
+                Some(least) => {
+                    Judged::of(Some(least), MOST).bound(ValueBound::AtLeast).noted(RuleNote::CuAtLeast)
+                }
                 None => Judged::of(None, MOST).lacking(RuleNote::NeedsD10F),
             }
         }
@@ -135,5 +143,11 @@ pub fn band(inputs: &RuleInputs) -> Judged {
     let Some((percent, ratio)) = within.filter_map(widest).max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Judged::of(None, Some(WIDEST_BAND)).lacking(RuleNote::NeedsSievesOfFilter);
     };
-    Judged::of(Some(ratio), Some(WIDEST_BAND)).noted(RuleNote::AtPercentFiner(percent))
+    let judged = Judged::of(Some(ratio), Some(WIDEST_BAND)).noted(RuleNote::AtPercentFiner(percent));
+    // Below the finest sieve the band may be wider.
+    let pan = inputs.filter_curves.iter().map(|curve| 100.0 * curve.pan_fraction()).fold(0.0, f64::max);
+    match pan > BAND[0] {
+        true => judged.bound(ValueBound::AtLeast).noted(RuleNote::BandFrom(pan)),
+        false => judged,
+    }
 }

@@ -16,7 +16,7 @@ mod stability;
 mod walk;
 
 pub use all::{
-    CONSTRICTED_EXIT, DESIGN, FILTER_FINES, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY,
+    CONSTRICTED_EXIT, DESIGN, FILTER_FINES, LI_FANNIN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY,
     PERMEABILITY_LEAST, RULES, TERZAGHI, TESTS_CONTINUING, TESTS_NO_EROSION,
 };
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
@@ -29,5 +29,7 @@ pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBou
 #[cfg(doc)]
 use super::applied::RuleRole;
 
+#[cfg(test)]
+mod bounds;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use super::authority::Authority;
 use super::base::BaseSoil;
 use crate::gradation::Gradation;
-use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole};
+use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
 
 /// A rule of practice, as it stands in the table of [`super::RULES`].
 pub struct FilterRule {
@@ -74,6 +74,8 @@ pub struct Judged {
     pub applies: bool,
     /// Its value here.
     pub value: Option<f64>,
+    /// Which side of the value the true one lies on, where the value is a bound.
+    pub value_bound: Option<ValueBound>,
     /// Its limit here.
     pub limit: Option<f64>,
     /// Whether the true limit is not known, and is at most `limit`.
@@ -84,6 +86,8 @@ pub struct Judged {
     pub needs: Option<RuleNote>,
     /// What else a reader must know.
     pub notes: Vec<RuleNote>,
+    /// What is left of the filter without the part that is finer than where the value is.
+    pub without_finer: Option<WithoutFiner>,
     /// Whether nobody asked for it: it is not listed.
     pub is_left_out: bool,
 }
@@ -97,6 +101,11 @@ impl Judged {
     /// The same where the limit is only the most that the true one can be.
     pub fn at_most(self) -> Self {
         Self { limit_at_most: true, ..self }
+    }
+
+    /// The same where the value is only a bound of the true one.
+    pub fn bound(self, side: ValueBound) -> Self {
+        Self { value_bound: Some(side), ..self }
     }
 
     /// The same with one more note, if there is one.

@@ -2,7 +2,7 @@
 
 use super::rule::{Judged, RuleInputs};
 use crate::gradation::{FINES_MM, Gradation, KEZDI_RANGE, ShapeIndex};
-use crate::outcome::record::RuleNote;
+use crate::outcome::record::{RuleNote, ValueBound, WithoutFiner};
 
 /// Kezdi's ratio over sensible splits.
 pub fn kezdi(inputs: &RuleInputs) -> Judged {
@@ -15,7 +15,11 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
         let hidden = (tail > KEZDI_RANGE[0]).then_some(RuleNote::KezdiHidden(tail));
         [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
     });
-    index(inputs, 4.0, found.map(|split| split.value), notes.unwrap_or_default())
+    let judged = index(inputs, 4.0, found.map(|split| split.value), notes.unwrap_or_default());
+    let left = found.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
+    let judged = Judged { without_finer: left, ..judged };
+    // What is hidden may have a greater ratio.
+    if tail > KEZDI_RANGE[0] { judged.bound(ValueBound::AtLeast) } else { judged }
 }
 
 /// Kenney and Lau's shape curve.
@@ -30,9 +34,18 @@ pub fn li_fannin(inputs: &RuleInputs) -> Judged {
 
 fn shape(inputs: &RuleInputs, of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
     let (filter, found) = (inputs.filter, of(inputs.filter));
-    let at_f =
-        |found: ShapeIndex| RuleNote::ShapeAt(found.percent, filter.loose_percent().unwrap_or(f64::NAN));
-    index(inputs, 1.0, found.map(|found| found.value), found.map(at_f).into_iter().collect())
+    let most = filter.loose_percent().unwrap_or(f64::NAN);
+    let at_f = |found: ShapeIndex| match 100.0 * filter.pan_fraction() {
+        0.0 => RuleNote::ShapeAt(found.percent, most),
+        pan => RuleNote::ShapeAbovePan(found.percent, pan, most),
+    };
+    let judged = index(inputs, 1.0, found.map(|found| found.value), found.map(at_f).into_iter().collect());
+    Judged { without_finer: found.and_then(|found| without(filter, found.percent)), ..judged }
+}
+
+/// What is left of a filter without its part that is finer than so many percent.
+fn without(filter: &Gradation, percent: f64) -> Option<WithoutFiner> {
+    Some(WithoutFiner { percent, d15f: filter.d(percent + 0.15 * (100.0 - percent))? })
 }
 
 /// An index of the filter's shape, with where it is.

@@ -1,7 +1,7 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Run, Statistic};
+use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
 use crate::verdict::rule_words::result_of;
@@ -120,6 +120,7 @@ fn rules(outcome: &Outcome) -> Sheet {
         "Authority",
         "Quantity",
         "Value",
+        "The value is",
         "Limit",
         "Unit of value and limit",
         "The limit is",
@@ -139,9 +140,14 @@ fn rules(outcome: &Outcome) -> Sheet {
     sheet
 }
 
-fn of_rule(rule: &AppliedRule) -> [Entry; 15] {
+fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
     let notes: Vec<String> = [&rule.note, &rule.needs].iter().map(ToString::to_string).collect();
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
+    let value_is = match rule.value_bound {
+        Some(ValueBound::AtMost) => "the most that it can be",
+        Some(ValueBound::AtLeast) => "the least that it can be",
+        None => "",
+    };
     let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
         (None, ..) => "",
         _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
@@ -154,6 +160,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 15] {
         (&rule.authority).into(),
         rule.quantity.name().into(),
         rule.value.into(),
+        value_is.into(),
         rule.limit.into(),
         (&rule.unit).into(),
         limit_is.into(),

@@ -184,10 +184,11 @@ impl Specification {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
         let band = match self.band {
-            Some(_) => "the band and its limits are then not valid: ",
+            Some(_) => "this band and its limits are then not valid: ",
             None => "",
         };
-        Some(format!("If the base is dispersive (not stated): {}; {band}{DESIGN_AGAIN}", of.words_of_base()))
+        let limit = of.clause_of_base();
+        Some(format!("If the base is dispersive, which is not stated, {limit}; {band}{DESIGN_AGAIN}"))
     }
 }
 

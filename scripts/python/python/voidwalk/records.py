@@ -84,6 +84,7 @@ __all__ = [
     "StepValue",
     "Stopping",
     "WalkOutcome",
+    "WithoutFiner",
 ]
 
 
@@ -748,6 +749,21 @@ class Ratios(TypedDict):
     d15f_over_d95b: float
 
 
+class WithoutFiner(TypedDict):
+    """What is left of a filter without its finer part.
+
+    Keys
+    ----
+    percent
+        The part that is taken out (% of the filter's mass).
+    d15f
+        15 % finer of what is left (mm, or D0F where sizes have no unit).
+    """
+
+    percent: float
+    d15f: float
+
+
 class _AppliedRule(TypedDict):
     id: str
     name: str
@@ -786,6 +802,9 @@ class AppliedRule(_AppliedRule, total=False):
         What it limits, as `D15F/D85B`.
     value
         Its value for these inputs; `None` where they do not give it.
+    value_bound
+        On which side of `value` the true one lies, where sieves give only a bound; `None` where it is the value
+        itself.
     limit
         The most, or the least, that the rule allows; `None` where no number is known.
     unit
@@ -807,6 +826,9 @@ class AppliedRule(_AppliedRule, total=False):
         Its limit in words.
     source
         Where the rule is published.
+    without_finer
+        What is left of the filter without the part that is finer than where a rule of internal stability has
+        its value; `None` of other rules, and in files of earlier versions.
     speaks_against
         Which verdicts it speaks against where it is not kept.
     filter_curve
@@ -816,7 +838,9 @@ class AppliedRule(_AppliedRule, total=False):
     """
 
     authority: str
+    value_bound: Optional[Literal["at most", "at least"]]
     limit_at_most: bool
+    without_finer: Optional[WithoutFiner]
     filter_curve: str
     base_curve: str
 
@@ -2554,6 +2578,7 @@ class _PairRules(TypedDict):
     filter: FilterSizes
     base: BaseSizes
     rules: List[AppliedRule]
+    practice: str
     warnings: List[str]
 
 
@@ -2572,6 +2597,8 @@ class PairRules(_PairRules, total=False):
         The base after regrading.
     rules
         Every rule.
+    practice
+        What they say together, in a line, as it stands on every page: whether practice is met, and why.
     warnings
         What may be wrong with the two tables, and what was taken for what.
     by_authority

@@ -1,0 +1,184 @@
+//! What is left of a filter that is not internally stable, and whether that still retains its base.
+//!
+//! Retention is judged of such a filter twice, as placed and after washout of its finer part (U.S. Army Corps
+//! of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter Gradation). One of several
+//! published criteria that is not met is a doubt. Li and Fannin's takes the milder of Kenney and Lau's and
+//! Kezdi's at every size: where it is not met, or has no result and none of the others is met, and what is
+//! left breaks a limit of retention, practice is not met.
+
+use super::quantity::fixed;
+use super::rule_words::{against, listed, met_of, with_unit, without_margin};
+use crate::outcome::apart::value_and_limit;
+use crate::outcome::design::band::limits;
+use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
+use crate::outcome::rules::{DESIGN, LI_FANNIN, TESTS_NO_EROSION, authority};
+
+/// A filter that without the finer part that it may lose is beyond a limit of retention.
+pub(super) struct Washout<'r> {
+    left: WithoutFiner,
+    /// The rules of retention that it breaks then, and the least of their limits.
+    beyond: Vec<&'r str>,
+    least: f64,
+    unit: &'r str,
+    /// The criteria of internal stability that are not met.
+    unstable: Vec<&'r AppliedRule>,
+    /// Whether design and no erosion have one limit.
+    is_one_limit: bool,
+}
+
+/// Percent of a broadly graded soil that may lie loose between its coarser grains (Kenney and Lau).
+const LOOSE_PERCENT: f64 = 20.0;
+
+/// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
+/// several parts that of Kezdi's split comes first, whose sizes stand in the table of rules, unless it is
+/// more than what may be loose.
+pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+    let judged =
+        || rules.iter().filter(|of| of.role == RuleRole::Stability && of.applies && of.met.is_some());
+    let unstable: Vec<&AppliedRule> = judged().filter(|of| of.met == Some(false)).collect();
+    let is_unstable = match met_of(rules, LI_FANNIN) {
+        Some(met) => !met,
+        None => unstable.len() > 1 && unstable.len() == judged().count(),
+    };
+    if !is_unstable {
+        return None;
+    }
+    let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
+    let limits = limits(rules, d15f.unwrap_or(1.0));
+    let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
+    let beyond = |left: &WithoutFiner| {
+        let broken = limits.iter().filter(|(_, limit)| left.d15f > limit * (1.0 + 1e-9));
+        broken.map(|(rule, _)| rule.id.as_str()).collect::<Vec<_>>()
+    };
+    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
+    let enough = parts.filter(|left| !beyond(left).is_empty());
+    let left = enough.min_by_key(|left| left.percent > LOOSE_PERCENT)?;
+    Some(Washout {
+        left,
+        beyond: beyond(&left),
+        least: limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min),
+        unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
+        unstable,
+        is_one_limit: without_margin(rules).is_some(),
+    })
+}
+
+impl Washout<'_> {
+    /// Which part it may lose, with its size: "its finest 17.6 %".
+    fn part(&self) -> String {
+        format!("its finest {} %", fixed(self.left.percent, 1))
+    }
+
+    /// D15F without that part.
+    pub fn d15f(&self) -> String {
+        let [value, _] = value_and_limit(self.left.d15f, self.least, false, 3);
+        with_unit(value, self.unit)
+    }
+
+    /// That the filter is not internally stable, by which criteria, and what is beyond which limit then.
+    pub fn in_words(&self) -> String {
+        let each = self.unstable.iter().map(|rule| {
+            let [value, limit] = against(rule, 3);
+            // The year of a source stands in the table of rules.
+            let name = authority(rule).split(" (").next().unwrap_or_default();
+            format!("{name} ({value}, limit {limit})")
+        });
+        let by = listed(&each.collect::<Vec<_>>());
+        let breaks = |id: &str| self.beyond.contains(&id);
+        let beyond = match (breaks(DESIGN), breaks(TESTS_NO_EROSION)) {
+            (true, true) if !self.is_one_limit => "beyond both limits",
+            (true, true) => "beyond that limit",
+            (true, false) => "beyond the limit of design",
+            (false, true) => "beyond that of Foster and Fell",
+            (false, false) => "beyond a limit of retention",
+        };
+        format!(
+            "the filter is not internally stable by {by}; without {} its D15F is {}, {beyond}",
+            self.part(),
+            self.d15f()
+        )
+    }
+
+    /// The same for the cell of a table.
+    pub fn in_brief(&self) -> String {
+        format!("may lose its finer part, too coarse without {}", self.part())
+    }
+
+    /// The same behind a limit of one authority.
+    pub fn as_placed(&self) -> String {
+        format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
+    }
+}
+
+#[cfg(test)]
+pub(in crate::verdict) mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::verdict::PairRules;
+
+    fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
+        let soil = |points| Gradation::from_points(points, None).unwrap();
+        PairRules::of(&soil(base), &soil(filter)).rules
+    }
+
+    /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
+    pub(in crate::verdict) const REGRADED_TILL: [(f64, f64); 9] = [
+        (0.075, 28.0),
+        (0.15, 37.0),
+        (0.425, 48.0),
+        (0.85, 55.0),
+        (2.0, 64.0),
+        (4.75, 74.0),
+        (9.5, 82.0),
+        (19.0, 89.0),
+        (37.5, 100.0),
+    ];
+    /// A gravel of 0 to 32 mm that is not internally stable by three of four criteria.
+    pub(in crate::verdict) const GRAVEL_0_32: [(f64, f64); 11] = [
+        (0.075, 2.0),
+        (0.125, 4.0),
+        (0.25, 8.0),
+        (0.5, 13.0),
+        (1.0, 20.0),
+        (2.0, 27.0),
+        (4.0, 36.0),
+        (8.0, 48.0),
+        (16.0, 70.0),
+        (31.5, 95.0),
+        (37.5, 100.0),
+    ];
+
+    #[test]
+    fn a_filter_that_is_too_coarse_without_its_finer_part_is_found_with_both_limits() {
+        let rules = rules(&GRAVEL_0_32, &REGRADED_TILL);
+        let said = washout(&rules).unwrap().in_words();
+        assert_eq!(
+            said,
+            "the filter is not internally stable by Kézdi (4.13, limit 4.00), Kenney and Lau (0.800, limit \
+             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 17.6 % its D15F is 2.52 mm, \
+             beyond both limits"
+        );
+        // A folder that is read back says the same.
+        let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
+        assert_eq!(washout(&read).unwrap().in_words(), said);
+    }
+
+    #[test]
+    fn what_is_left_of_a_finer_filter_retains_the_base_all_the_same() {
+        let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
+        let rules = rules(&finer, &REGRADED_TILL);
+        assert_eq!(met_of(&rules, LI_FANNIN), Some(false));
+        assert!(washout(&rules).is_none());
+    }
+
+    /// A straight line of Cu 60 is not stable by Kenney and Lau alone.
+    #[test]
+    fn one_of_several_criteria_is_a_doubt_alone() {
+        let broad = Gradation::linear_from_d0(0.1, 60.0).unwrap();
+        let base = Gradation::from_points(&[(0.05, 0.0), (0.2, 100.0)], None).unwrap();
+        let rules = PairRules::of(&base, &broad).rules;
+        let unstable = rules.iter().filter(|of| of.is_broken() && of.role == RuleRole::Stability);
+        assert!(unstable.count() > 0 && met_of(&rules, LI_FANNIN) == Some(true));
+        assert!(washout(&rules).is_none());
+    }
+}
