@@ -254,7 +254,7 @@ enum Reason {
 }
 
 impl Reason {
-    /// The reason of a finding; `None` of one without a name.
+    /// The reason of a finding; `None` of one without a name, and of one that is said elsewhere.
     fn of(finding: &FindingRecord) -> Option<Self> {
         let text = |name: &str| finding.numbers.get(name).and_then(Json::as_str).unwrap_or("soil");
         let number = |name: &str| finding.numbers.get(name).and_then(Json::as_f64).unwrap_or(f64::NAN);
@@ -273,6 +273,8 @@ impl Reason {
             "cu_unknown" => soil(format!("Cu of the {} not known", text("soil"))),
             "worse_with_amount" => Some(Self::Other("the class changes with the amount of base".into())),
             "library_of_any_density" => Some(Self::Other("the filter's density is not known".into())),
+            // What comes first says that, too.
+            "dispersive_would_not_hold" => None,
             _ if finding.label.is_empty() => None,
             _ => Some(Self::Unchecked(finding.label.clone())),
         }
@@ -330,6 +332,7 @@ mod tests {
                 "other: the class changes with the amount of base",
             ),
             (finding::few_replicates(3), "unchecked: replicates"),
+            (finding::dispersive_would_not_hold("0.500 mm", "0.610 mm"), ""),
         ] {
             assert_eq!(said(of), words);
         }
