@@ -29,8 +29,8 @@ pub struct AppliedRule {
     pub quantity: RuleQuantity,
     /// Its value for these inputs; `None` where they do not give it.
     pub value: Option<f64>,
-    /// On which side of `value` the true one lies, where sieves give only a bound; `None` where it is the value
-    /// itself.
+    /// On which side of `value` the true one lies, where sieves give only a bound; `None` where it is the
+    /// value itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value_bound: Option<ValueBound>,
     /// The most, or the least, that the rule allows; `None` where no number is known.

@@ -30,7 +30,7 @@ pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
         rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_said)
     };
     let is_one = without_margin(rules).is_some();
-    let once = rules.iter().filter(|rule| !repeats(rule) && !(is_one && rule.id == TESTS_NO_EROSION));
+    let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
     let named = |rule: &AppliedRule| match is_one && rule.id == DESIGN {
         true => {
             AppliedRule { name: OF_DISPERSIVE.into(), source: OF_DISPERSIVE_SOURCE.into(), ..rule.clone() }
