@@ -26,6 +26,8 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     let dispersive = of.if_dispersive.map(|of| of.words_of_base());
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
+    sheet.item("Margin", of.without_margin_in_words(), "");
+    sheet.item("Walk", design.and_then(|design| design.answer().walk), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
