@@ -362,7 +362,10 @@ mod tests {
         };
         let all = DesignedSamples::new("s".into(), vec![guide(Some(16.3)), guide(None)]);
         let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
-        assert!(said.contains("The walk is no guide for 1 of 2 samples: its boundary of no erosion "), "{said}");
+        assert!(
+            said.contains("The walk is no guide for 1 of 2 samples: its boundary of no erosion "),
+            "{said}"
+        );
         let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
         let at = |line: &str| line.contains(",16.3");
         assert_eq!(csv.lines().map(at).collect::<Vec<_>>(), [false, true, false], "{csv}");

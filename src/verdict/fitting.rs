@@ -220,8 +220,9 @@ mod tests {
         let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 60.0], [6.0, 95.0], [20.0, 100.0]];
         let judged = shape(long).judged_filter_in_words().unwrap();
         assert!(
-            judged.starts_with("The filter as given is judged, in the size of this D15F. It leaves the band at ")
-                && judged.ends_with(" are finer there, and the band has at least 100 %."),
+            judged.starts_with(
+                "The filter as given is judged, in the size of this D15F. It leaves the band at "
+            ) && judged.ends_with(" are finer there, and the band has at least 100 %."),
             "{judged}"
         );
         let within = vec![[0.2, 0.0], [0.35, 15.0], [1.7, 60.0], [6.0, 100.0]];

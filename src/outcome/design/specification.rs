@@ -39,8 +39,8 @@ pub struct Specification {
     pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
-    /// What a reader must know of the base itself, each of its curve where there are several; empty in files
-    /// of earlier versions.
+    /// What a reader must know of the base itself, each of its curve where there are several, and of a side
+    /// of the band that is not stable; empty in files of earlier versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<DesignFinding>,
     /// Every step, with its numbers.
@@ -114,8 +114,8 @@ pub struct SpecificationStep {
     pub source: String,
 }
 
-/// The size of a band by which a table of the maximum D90F is entered. It is rounded down: a finer D10F allows
-/// no coarser D90F.
+/// The size of a band by which a table of the maximum D90F is entered. It is rounded down: a finer D10F
+/// allows no coarser D90F.
 pub const ENTERED_BY: &str = "minimum D10F";
 
 /// A number of a step.
@@ -131,8 +131,8 @@ pub struct StepValue {
 }
 
 impl StepValue {
-    /// The number with its unit, a minimum rounded up, a maximum and [`ENTERED_BY`] rounded down; `None` where
-    /// it is not known.
+    /// The number with its unit, a minimum rounded up, a maximum and [`ENTERED_BY`] rounded down; `None`
+    /// where it is not known.
     pub fn words(&self) -> Option<String> {
         self.words_in(SizeUnit::Mm)
     }

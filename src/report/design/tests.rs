@@ -1,13 +1,13 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::design::Boundary;
+use crate::outcome::design::Specification;
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::Fit;
 use crate::outcome::design::{BaseStated, DesignAnswer};
 use crate::outcome::record::{AppliedRule, ModelLimit, SheetCover};
 use crate::outcome::rules::DESIGN;
 use crate::report::numbers::rounded_down;
-use crate::outcome::design::Specification;
 use crate::verdict::{PairRules, SpecificationOptions};
 
 fn written(design: &Design, csv: &str) -> String {
@@ -210,7 +210,8 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
 /// A number of the walk stands in bold where the walk decides, and in plain weight below a limit of practice.
 #[test]
 fn a_boundary_that_does_not_decide_is_not_in_bold() {
-    let silt = Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+    let silt =
+        Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
     let d85 = silt.d(85.0).unwrap();
     let with = |ratio: f64| {
         let mut of = design(Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85)), Confidence::Outside);

@@ -44,20 +44,10 @@ fn a_till_is_limited_by_practice_and_the_walks_figure_stands_nowhere() {
     let found = design(&till(), Some(12.6));
     let answer = found.answer();
     assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
-    assert_eq!(
-        (answer.set_by, answer.rule.as_deref()),
-        (SetBy::Practice, Some("foster-fell-no-erosion"))
-    );
-    assert!(
-        answer.said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"),
-        "{}",
-        answer.said
-    );
+    assert_eq!((answer.set_by, answer.rule.as_deref()), (SetBy::Practice, Some("foster-fell-no-erosion")));
+    assert!(answer.said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"), "{}", answer.said);
     assert!(answer.said.contains("Sherard and Dunnigan's limit of design is 1.1"), "{}", answer.said);
-    assert_eq!(
-        answer.walk.as_deref(),
-        Some("The walk sets no tighter limit, and is no check of it")
-    );
+    assert_eq!(answer.walk.as_deref(), Some("The walk sets no tighter limit, and is no check of it"));
     assert_eq!(answer.said, format!("{}. {}", answer.limit, answer.walk.as_ref().unwrap()));
     assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
 }
@@ -86,10 +76,7 @@ fn a_walk_that_errs_on_the_unsafe_side_is_said_to_be_no_check() {
     assert!(said.starts_with("The maximum D15F is not known") && said.ends_with(unsafe_alone), "{said}");
     open.rules.clear();
     let said = open.answer().said;
-    assert!(
-        said.contains(&format!(" in the model alone{unsafe_alone}; the limit of practice")),
-        "{said}"
-    );
+    assert!(said.contains(&format!(" in the model alone{unsafe_alone}; the limit of practice")), "{said}");
     open.findings.clear();
     assert!(!open.answer().said.contains("unsafe"));
     // Uniform filters have no such group.
@@ -115,10 +102,7 @@ fn what_neither_or_one_of_them_knows_is_said() {
     assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
     // What programs read: null where nothing is known.
     let json = serde_json::to_value(&nothing).unwrap();
-    assert!(
-        json["d15f_max_mm"].is_null() && json["rule"].is_null() && json["set_by"] == "walk",
-        "{json}"
-    );
+    assert!(json["d15f_max_mm"].is_null() && json["rule"].is_null() && json["set_by"] == "walk", "{json}");
     assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
     // The minimum D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
     let below = design(&till(), None).answer();
@@ -129,11 +113,7 @@ fn what_neither_or_one_of_them_knows_is_said() {
     open.base.tail_mass_fraction = 0.38;
     let answer = open.answer();
     assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
-    assert!(
-        answer.said.contains("by practice alone") && answer.said.contains("38.0 %"),
-        "{}",
-        answer.said
-    );
+    assert!(answer.said.contains("by practice alone") && answer.said.contains("38.0 %"), "{}", answer.said);
     let mut scale_free = design(&sand(), Some(5.2));
     (scale_free.base.d85_mm, scale_free.unit) = (None, "D85B".into());
     let answer = scale_free.answer();
@@ -148,19 +128,15 @@ fn what_neither_or_one_of_them_knows_is_said() {
 /// 30 % pass the finest sieve: with as many fines the limit would be less than half of four D85B.
 #[test]
 fn a_limit_that_is_at_most_some_size_is_no_known_limit() {
-    let base = Gradation::from_points(
-        &[(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)],
-        None,
-    );
+    let base =
+        Gradation::from_points(&[(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)], None);
     let base = base.unwrap();
     for held in [Some(3.0), None] {
         let mut open = design(&base, held);
         open.base.tail_mass_fraction = 0.3;
         let answer = open.answer();
         assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b, &answer.rule), (None, None, &None));
-        assert!(
-            answer.said.starts_with("The maximum D15F is not known: the limit of practice is at most 7")
-        );
+        assert!(answer.said.starts_with("The maximum D15F is not known: the limit of practice is at most 7"));
         assert_eq!(
             answer.said.contains("The walk alone holds D15F up to"),
             held.is_some(),
@@ -195,8 +171,7 @@ fn the_inverse_stops_at_the_base_that_practice_allows() {
     assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
     let none = design_answer(&inverse, Some(&FinestBase { ratio: None, ..finest.clone() }));
     assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
-    let open =
-        |ratio| design_answer(&inverse, Some(&FinestBase { ratio, is_open: true, ..finest.clone() }));
+    let open = |ratio| design_answer(&inverse, Some(&FinestBase { ratio, is_open: true, ..finest.clone() }));
     let unknown = open(None);
     assert_eq!((unknown.d85b_min_mm, unknown.d15f_over_d85b, &unknown.rule), (None, None, &None));
     assert!(
@@ -219,9 +194,9 @@ fn specified(base: &Gradation, held: Option<f64>) -> Design {
 #[test]
 fn a_walk_beyond_every_test_is_said_to_be_no_guide() {
     let mut found = specified(&till(), Some(12.6));
-    let no_guide = "The walk is no guide here: its boundary of no erosion is 18 times the centre of the range \
-                    in which erosion began in tests on soils with such fines (0.700 to 1.70 mm; Fell et al., \
-                    Table 9.2)";
+    let no_guide = "The walk is no guide here: its boundary of no erosion is 18 times the centre of the \
+                    range in which erosion began in tests on soils with such fines (0.700 to 1.70 mm; Fell \
+                    et al., Table 9.2)";
     assert_eq!(found.answer().walk.as_deref(), Some(no_guide));
     assert!((found.beyond_tests().unwrap() - 17.7).abs() < 0.1, "{:?}", found.beyond_tests());
     assert_eq!(found.walk_beside_practice(), "The walk is no guide here.");
@@ -252,7 +227,8 @@ fn an_answer_has_its_parts_and_their_text() {
     let margin = answer.margin.as_deref().unwrap();
     assert_eq!(
         margin,
-        "This limit has no margin: it is the lowest D15F at which tests showed erosion (Fell et al., Table 9.2)"
+        "This limit has no margin: it is the lowest D15F at which tests showed erosion (Fell et al., \
+         Table 9.2)"
     );
     let dispersive = answer.if_dispersive.as_deref().unwrap();
     assert!(dispersive.ends_with(": design again for a dispersive base"), "{dispersive}");

@@ -192,7 +192,7 @@ impl Specification {
         let fines = curve.fines_percent.filter(|_| greatest >= limit)?;
         let why = match (self.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
             (true, _) => {
-                "Fell et al. (Table 9.2, note b) give one number for design and for the boundary of no erosion"
+                "Fell et al. (Table 9.2, note b) give one number for design and for no erosion in tests"
                     .into()
             }
             (false, [low, _]) if limit < low * (1.0 - AT_END) => return None,
