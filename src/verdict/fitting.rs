@@ -92,11 +92,11 @@ impl Design {
             let finer = judged.percent_finer_by_mass(limit.opening_mm);
             let [least, most] = [limit.min_percent_finer, limit.max_percent_finer];
             let (by, bound) = match finer < least {
-                true => (least - finer, format!("at least {}", trimmed(least))),
-                false => (finer - most, format!("at most {}", trimmed(most))),
+                true => (least - finer, format!("asks for at least {}", trimmed(least))),
+                false => (finer - most, format!("allows at most {}", trimmed(most))),
             };
             let said = format!(
-                "It leaves the band at {}: {} are finer there, and the band has {bound} %.",
+                "It leaves the band at {}: {} are finer there, and the band {bound} %.",
                 limit.sieve,
                 percent(finer / 100.0)
             );
@@ -104,7 +104,10 @@ impl Design {
         };
         let worst = known.filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0));
         let place = worst.map_or_else(|| "It stays within the band.".into(), |(_, said)| said);
-        Some(format!("The filter as given is judged, in the size of this D15F. {place}"))
+        Some(format!(
+            "The filter as given is judged, scaled to this D15F. {place} Step 12 checks the sides of the band \
+             for internal stability."
+        ))
     }
 
     /// Which standard products fit, a sentence without its end; `None` where none was compared.
@@ -220,13 +223,12 @@ mod tests {
         let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 60.0], [6.0, 95.0], [20.0, 100.0]];
         let judged = shape(long).judged_filter_in_words().unwrap();
         assert!(
-            judged.starts_with(
-                "The filter as given is judged, in the size of this D15F. It leaves the band at "
-            ) && judged.ends_with(" are finer there, and the band has at least 100 %."),
+            judged.starts_with("The filter as given is judged, scaled to this D15F. It leaves the band at ")
+                && judged.contains(" are finer there, and the band asks for at least 100 %. Step 12 checks"),
             "{judged}"
         );
         let within = vec![[0.2, 0.0], [0.35, 15.0], [1.7, 60.0], [6.0, 100.0]];
-        assert!(shape(within).judged_filter_in_words().unwrap().ends_with("It stays within the band."));
+        assert!(shape(within).judged_filter_in_words().unwrap().contains(" It stays within the band. "));
         assert_eq!(core(Confidence::Within).judged_filter_in_words(), None);
         let doubted = core(Confidence::Contradicted);
         assert_eq!(said(&doubted), ["in doubt", "does not fit"]);
