@@ -105,8 +105,8 @@ impl Design {
         let worst = known.filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0));
         let place = worst.map_or_else(|| "It stays within the band.".into(), |(_, said)| said);
         Some(format!(
-            "The filter as given is judged, scaled to this D15F. {place} Step 12 checks the sides of the band \
-             for internal stability."
+            "The filter as given is judged, scaled to this D15F. {place} Step 12 checks the sides of the \
+             band for internal stability."
         ))
     }
 
