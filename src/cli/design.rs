@@ -4,7 +4,7 @@ use super::args::DesignArgs;
 use super::design_each::design_each;
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::specification::{specification, with_option};
+use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range, band_in_words};
@@ -15,6 +15,7 @@ use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
+use crate::verdict::DESIGN_AGAIN;
 use crate::verdict::by_authority::of_design;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
@@ -84,8 +85,13 @@ fn words(design: &Design) -> String {
             design.filter, design.base.name
         ),
     }];
-    lines.push(with_option(&design.answer().said));
+    let answer = design.answer();
+    let of_base = design.specification.as_ref();
+    let dispersive = of_base.and_then(|of| of.if_dispersive_in_words(&by_option(DESIGN_AGAIN)));
+    lines.push(answer.limit);
     lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
+    let beside = [answer.margin, answer.walk, dispersive].into_iter().flatten();
+    lines.extend(beside.map(|said| format!("  {said}.")));
     for row in &design.boundaries {
         lines.extend(of_row(row, design));
     }

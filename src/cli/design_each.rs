@@ -7,7 +7,7 @@ use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
 use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::specification::with_option;
+use super::specification::by_option;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
 use crate::run::RunError;
@@ -15,7 +15,7 @@ use crate::store::format;
 use crate::study::design::DesignOptions;
 use crate::study::designs::{SampleDesignOptions, each};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::{DesignedSample, DesignedSamples};
+use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples};
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-designs";
@@ -41,8 +41,8 @@ fn words(all: &DesignedSamples, out: &Path) -> String {
     let mut text = aligned(DesignedSample::columns(SizeUnit::of(false, all.inches)), &all.rows)
         + &in_notes(&all.notes)
         + "\n";
-    for said in all.in_words() {
-        let said = with_option(&if all.inches { with_inches(&said) } else { said });
+    for said in all.in_words(&by_option(DESIGN_EACH_AGAIN)) {
+        let said = if all.inches { with_inches(&said) } else { said };
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", plain(&said));
     }

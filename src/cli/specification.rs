@@ -14,7 +14,7 @@ use crate::run::RunError;
 use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
-use crate::verdict::{DESIGN_AGAIN, DESIGN_EACH_AGAIN};
+use crate::verdict::DESIGN_AGAIN;
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
@@ -41,10 +41,9 @@ pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String])
     Ok(())
 }
 
-/// A sentence that asks for another design, with the option that makes it.
-pub(super) fn with_option(said: &str) -> String {
-    let with = |said: String, again: &str| said.replace(again, &format!("{again} (--dispersive)"));
-    [DESIGN_AGAIN, DESIGN_EACH_AGAIN].into_iter().fold(said.to_owned(), with)
+/// What to do where a base is found to be dispersive, with the option that does it.
+pub(super) fn by_option(again: &str) -> String {
+    format!("{again} (--dispersive)")
 }
 
 /// Steps, limits and products.
@@ -81,8 +80,10 @@ fn words(of: &Specification) -> String {
     if let Some(said) = of.still_to_set() {
         wrapped(&sized(&said), 0).iter().for_each(|said| line(said));
     }
-    if let Some(said) = of.if_dispersive_in_words() {
-        line(&sized(&format!("{}.", with_option(&said))));
+    let margin = of.without_margin_in_words();
+    let dispersive = of.if_dispersive_in_words(&by_option(DESIGN_AGAIN));
+    for said in margin.into_iter().chain(dispersive) {
+        line(&sized(&format!("{said}.")));
     }
     let findings = of.findings.iter().map(|found| sized(&found.words()));
     findings.flat_map(|found| wrapped(&found, 0)).for_each(|text| line(&text));

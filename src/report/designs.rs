@@ -16,7 +16,7 @@ use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::sizes::{SizedSoil, of_many};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks};
+use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples, DesignedWalks};
 
 const RECORD: &str = "designs.json";
 
@@ -40,7 +40,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         @if all.filter.is_empty() { ", by the rules of practice alone" }
         @else { ", " (titled_by_file("filter", "filter of the shape", &all.filter)) }
     };
-    let said = all.in_words();
+    let said = all.in_words(DESIGN_EACH_AGAIN);
     let has_walks = !all.model_leaves_out.is_empty();
     let first = html! { div.first[has_walks] {
         section.verdict {
@@ -150,7 +150,8 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
             "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
              minimum D15F that drains it. "
             @if !all.filter.is_empty() {
-                "No erosion by walk up to: the D15F that nearly all networks hold. "
+                "No erosion by walk up to: the D15F that nearly all networks hold; “no guide” beyond the \
+                 range in which erosion began in tests on soils with such fines. "
             }
             "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for \
              the sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \

@@ -20,7 +20,8 @@ use super::written::Written;
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
-use crate::verdict::fitting::{FITS, OUTSIDE};
+use crate::verdict::DESIGN_AGAIN;
+use crate::verdict::fitting::{FITS, leaves_at};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -90,7 +91,8 @@ fn answer(of: &Specification) -> Markup {
         section.verdict {
             @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
             (to_specify(of))
-            @if let Some(said) = of.if_dispersive_in_words() {
+            @if let Some(said) = of.without_margin_in_words() { p { (unbroken(&said)) "." } }
+            @if let Some(said) = of.if_dispersive_in_words(DESIGN_AGAIN) {
                 p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
@@ -147,7 +149,7 @@ pub(super) fn to_specify(of: &Specification) -> Markup {
 /// Which standard products fit, or which comes closest.
 fn products_in_short(of: &Specification) -> String {
     let named = |of: &ProductMargin| match of.worst_sieve_mm {
-        Some(_) => format!("{} ({OUTSIDE})", of.product),
+        Some(sieve) => format!("{} ({})", of.product, leaves_at(sieve)),
         None => of.product.clone(),
     };
     let fitting: Vec<String> = of.products.iter().filter(|of| of.fits() == Some(true)).map(named).collect();
@@ -249,7 +251,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
         .text("Leaves the band by most", beyond);
     if says_fit {
-        table = table.text("", |product| match (of.product_in_words(product), product.fits()) {
+        table = table.text("", |product| match (&*of.product_in_words(product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
             (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
             (said, _) => html! { (said) },
@@ -280,7 +282,7 @@ mod tests {
         let base = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let said = products_in_short(&core);
-        assert!(said.contains("ASTM C33 fine aggregate (but lies outside this band)."), "{said}");
+        assert!(said.contains("ASTM C33 fine aggregate (leaves the band at "), "{said}");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
         // The greatest is not known, and the least alone refuses the finest product.
         let unknown = Specification {

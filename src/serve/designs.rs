@@ -241,6 +241,9 @@ mod tests {
         let shown = of_design(&design).unwrap();
         assert_eq!(shown["boundaries"][0]["practice"], "practice allows up to 0.806 mm");
         assert_eq!(shown["cautions"][0], unstable.words());
+        // The page shows the answer part by part.
+        assert_eq!(shown["answer"]["limit"], design.answer().limit);
+        assert!(!design.answer().limit.is_empty());
         assert_eq!(shown["warnings"], json!(["another"]));
         // Without a specification the warning stays where it was.
         let alone = Design { specification: None, ..design };

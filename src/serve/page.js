@@ -582,25 +582,31 @@ function soFar(job) {
 const between = (range) => (range.low === null && range.high === null ? "band not known"
   : `${number(range.low)} to ${number(range.high)}`);
 
-/** A boundary over networks, or why there is none. */
-function boundary(of, note) {
+/** A boundary over networks, or why there is none; in bold where the walk decides. */
+function boundary(of, note, decides) {
+  const shown = (text) => el(decides ? "b" : "span", {}, text);
   if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, note || "it lies beyond the search")];
   const sized = of.d85b_mm ? ["D85B", of.d85b_mm] : of.d15f_mm ? ["D15F", of.d15f_mm] : null;
   return [
-    ...(sized ? [el("b", {}, `${sized[0]} ${number(sized[1].median)} mm`), el("br"), between(sized[1]), el("br")] : []),
-    sized ? `D15F/D85B ${number(of.median)}` : el("b", {}, `D15F/D85B ${number(of.median)}`), el("br"), between(of),
+    ...(sized ? [shown(`${sized[0]} ${number(sized[1].median)} mm`), el("br"), between(sized[1]), el("br")] : []),
+    sized ? `D15F/D85B ${number(of.median)}` : shown(`D15F/D85B ${number(of.median)}`), el("br"), between(of),
     note ? el("span", { class: "small" }, el("br"), note) : null];
 }
 
 function boundariesOf(job) {
   const done = job.result;
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
+  const decides = !done.answer || done.answer.set_by !== "practice";
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
-    el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note)),
+    el("td", {}, boundary(row.no_erosion, row.no_erosion_note, decides)), el("td", {}, boundary(row.continuing, row.continuing_note, decides)),
     el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
-  return [done.answer ? el("p", { class: "word" }, `${done.answer.said}.`) : null,
+  const said = done.answer || {};
+  return [done.answer ? el("p", { class: "word" }, `${said.limit}.`) : null,
+    said.margin ? el("p", {}, `${said.margin}.`) : null,
+    said.if_dispersive ? el("p", {}, el("b", {}, `${said.if_dispersive}.`)) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks, below it ${done.band_of_networks} of them.`),
+    said.walk ? el("p", {}, `${said.walk}.`) : null,
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },

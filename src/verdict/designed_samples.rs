@@ -184,6 +184,11 @@ pub struct SampleDesign {
     pub confidence: Confidence,
     /// The weightiest reason why no further.
     pub reason: Option<String>,
+    /// The walk's D15F of no erosion over the centre of the range in which erosion began in tests on soils
+    /// with such fines, where it lies beyond that range: the walk is no guide there. `None` in files of
+    /// earlier versions, too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond_tests: Option<f64>,
     /// The answer in a sentence without its full stop.
     pub said: String,
 }
@@ -234,6 +239,7 @@ impl DesignedSample {
             rule: rule.map_or_else(String::new, cited_rule),
             confidence: design.confidence,
             reason: design.reasons.first().cloned(),
+            beyond_tests: design.beyond_tests(),
             said: answer.said,
         };
         Self { d15f_max_mm: answer.d15f_max_mm, no_band, design: Some(of), ..self }
@@ -294,9 +300,11 @@ impl DesignedSample {
             .digits("no_erosion_d15f_mm", 4, move |row| design(row)?.no_erosion_d15f_mm)
             .number("No erosion by walk up to, mm", move |row| {
                 let mm = design(row).and_then(|of| of.no_erosion_d15f_mm).map(|mm| unit.greatest(mm));
-                mm.unwrap_or_default().shown().below(why_not(row))
+                let no_guide = design(row).and_then(|of| of.beyond_tests).map(|_| "no guide".to_owned());
+                mm.unwrap_or_default().shown().below(why_not(row).or(no_guide))
             })
             .digits("no_erosion_d15f_over_d85b", 3, move |row| design(row)?.no_erosion_d15f_over_d85b)
+            .digits("walk_over_centre_of_tests", 2, move |row| design(row)?.beyond_tests)
             .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
             .number("D15F up to, mm", move |row| {
                 let is_unserved = row.d15f_max_mm.is_some() && !row.no_band.is_empty();

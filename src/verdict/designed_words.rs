@@ -1,15 +1,16 @@
 //! How coarse a filter for many samples may be, in sentences.
 
 use super::designed_samples::{DesignedSample, DesignedSamples};
-use super::specification::{DESIGN_EACH_AGAIN, least_of_band, no_band_between};
+use super::specification::{least_of_band, no_band_between};
 use super::words::capital;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{Confidence, IfDispersive};
 use crate::outcome::rules::WIDEST_BAND;
 
 /// What a specification warns of a base, and how it begins where it is said of several.
-const CAUTIONS: [(&str, &str); 4] = [
+const CAUTIONS: [(&str, &str); 5] = [
     ("unstable_base", "Not internally stable by Kenney and Lau"),
+    ("unstable_side", "With a side of its own band that is not internally stable"),
     ("broad_base", "Broadly graded, so that the finer part may move between the coarse grains"),
     ("gap_of_base", "Gap-graded by this program's own check"),
     ("flat_base", "A curve that is flat somewhere, to be looked at for a gap"),
@@ -138,8 +139,9 @@ impl DesignedSamples {
     }
 
     /// Which samples govern, what sets their limits, how far they can be relied on and which are open:
-    /// sentences without their ends.
-    pub fn in_words(&self) -> Vec<String> {
+    /// sentences without their ends; `again` is what to do where a sample is dispersive, as
+    /// [`DESIGN_EACH_AGAIN`](super::DESIGN_EACH_AGAIN).
+    pub fn in_words(&self, again: &str) -> Vec<String> {
         let mut said = vec![self.for_all_in_words()];
         for (at, row) in self.governing().into_iter().enumerate() {
             let what = if at == 0 { "Governing sample" } else { "Then" };
@@ -156,10 +158,11 @@ impl DesignedSamples {
         }
         said.extend(self.still_to_set());
         said.extend(self.cautions());
-        said.extend(self.dispersion_in_words());
+        said.extend(self.dispersion_in_words(again));
         let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
         if walked > 0 {
             said.extend(self.set_in_words());
+            said.extend(self.beyond_tests_in_words(walked));
         }
         for confidence in self.confidences() {
             let is_so =
@@ -181,7 +184,7 @@ impl DesignedSamples {
 
     /// How many samples may be dispersive, and what practice allows the strictest of those for which it then
     /// allows less.
-    fn dispersion_in_words(&self) -> Option<String> {
+    fn dispersion_in_words(&self, again: &str) -> Option<String> {
         let open: Vec<_> = self.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
         let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
             of.beside(row.bound().unwrap_or(f64::INFINITY)).is_some()
@@ -191,7 +194,7 @@ impl DesignedSamples {
         let (row, of) = strictest?;
         Some(format!(
             "{} with 15 % fines or more may be dispersive, which is not stated. If {} is, {}. {} then not \
-             valid: {DESIGN_EACH_AGAIN}",
+             valid: {again}",
             counted(open.len()),
             row.sample,
             of.clause_of_base(),
@@ -237,6 +240,19 @@ impl DesignedSamples {
         (!each.is_empty()).then(|| format!("The maximum D15F is set {}", each.join(", ")))
     }
 
+    /// For how many of the samples that were walked the walk is no guide.
+    fn beyond_tests_in_words(&self, walked: usize) -> Option<String> {
+        let beyond = |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.beyond_tests.is_some());
+        let count = self.rows.iter().filter(beyond).count();
+        (count > 0).then(|| {
+            format!(
+                "The walk is no guide for {count} of {}: its boundary of no erosion lies beyond the range in \
+                 which erosion began in tests on soils with such fines",
+                counted(walked)
+            )
+        })
+    }
+
     /// The confidences below the best, once each.
     fn confidences(&self) -> Vec<Confidence> {
         let mut all: Vec<Confidence> = Vec::new();
@@ -257,6 +273,7 @@ mod tests {
     use crate::outcome::design::Specification;
     use crate::outcome::design::band::SetBy;
     use crate::outcome::numbers::SizeUnit;
+    use crate::verdict::DESIGN_EACH_AGAIN;
     use crate::verdict::SampleDesign;
     use crate::verdict::SpecificationOptions;
 
@@ -276,6 +293,7 @@ mod tests {
             rule: String::new(),
             confidence: Confidence::Outside,
             reason: Some("too small".into()),
+            beyond_tests: None,
             said: "No ratio is known".into(),
         };
         DesignedSample { d15f_max_mm: greatest, design: Some(design), ..row }
@@ -293,7 +311,7 @@ mod tests {
         let limit = sand.limit_mm.unwrap();
         assert!((limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9, "{sand:?}");
         let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
-        let said = by_practice.in_words();
+        let said = by_practice.in_words(DESIGN_EACH_AGAIN);
         assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
         assert!(
             said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
@@ -309,7 +327,7 @@ mod tests {
         let silt = all.rows[2].limit_mm.unwrap();
         assert!(silt < 0.65, "{silt}");
         assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(3), Some(1)]);
-        let said = all.in_words().join("\n");
+        let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
         for words in [
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no maximum D15F is known; practice allows ",
@@ -333,18 +351,38 @@ mod tests {
         );
     }
 
+    /// A boundary of the walk that lies beyond every test is marked where it stands.
+    #[test]
+    fn samples_whose_walk_is_no_guide_are_counted_and_marked() {
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let guide = |beyond_tests| {
+            let of = walked(core.clone(), Some(17.8));
+            let design = of.design.clone().map(|design| SampleDesign { beyond_tests, ..design });
+            DesignedSample { design, ..of }
+        };
+        let all = DesignedSamples::new("s".into(), vec![guide(Some(16.3)), guide(None)]);
+        let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
+        assert!(
+            said.contains("The walk is no guide for 1 of 2 samples: its boundary of no erosion "),
+            "{said}"
+        );
+        let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
+        let at = |line: &str| line.contains(",16.3");
+        assert_eq!(csv.lines().map(at).collect::<Vec<_>>(), [false, true, false], "{csv}");
+    }
+
     /// The table of many samples warns as the specification of each.
     #[test]
     fn samples_that_are_not_stable_themselves_are_named() {
         let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
         let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
-        let said = all.in_words().join("\n");
+        let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
         for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
             assert!(said.contains(&format!("\n{words}: A, B\n")), "{words}: {said}");
         }
         assert!(said.contains("are then not valid: design again for dispersive soils"), "{said}");
-        let said = DesignedSamples::new("s".into(), vec![sand]).in_words().join("\n");
+        let said = DesignedSamples::new("s".into(), vec![sand]).in_words(DESIGN_EACH_AGAIN).join("\n");
         assert!(!said.contains("Kenney") && said.contains("the maximum D90F is still to be set"), "{said}");
     }
 
@@ -368,7 +406,7 @@ mod tests {
             row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
         assert!(!t1.no_band.is_empty() && t1.d15f_max_mm.is_some(), "{t1:?}");
         let why = t1.no_band.clone();
-        let said = DesignedSamples::new("s".into(), vec![t1, t2]).in_words();
+        let said = DesignedSamples::new("s".into(), vec![t1, t2]).in_words(DESIGN_EACH_AGAIN);
         assert!(said[0].starts_with("No filter is known that serves all 2 samples"), "{}", said[0]);
         assert!(said.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))), "{said:?}");
     }
@@ -379,7 +417,7 @@ mod tests {
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let gravel = DesignedSample { limit_mm: None, ..walked(row("g", &[(1.0, 0.0), (9.0, 100.0)]), None) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);
-        let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words();
+        let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words(DESIGN_EACH_AGAIN);
         assert_eq!(
             said[0],
             "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum \

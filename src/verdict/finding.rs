@@ -488,6 +488,11 @@ findings! {
          {finer}, and the limit is 1. That rule is for soils without cohesion. Water may move the finer part \
          through the base, so that the filter meets a soil other than the one sampled: decide whether the \
          filter is to hold that part, or have the pair tested.";
+    /// A side of the band of a specification that is not stable itself.
+    unstable_side(side: Text, broken: Text): Filter, Unsafe, Note;
+        "internal stability of the band", "design.md",
+        "The {side} side of the band is not internally stable {broken}: a delivery along it may lose its \
+         finer part. Judge each delivery by its own gradation.";
     /// A broadly graded base for which a filter is specified.
     broad_base(cu: Text): Base, Unsafe, Note;
         "grading of the base", "design.md",

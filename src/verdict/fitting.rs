@@ -1,31 +1,39 @@
 //! Which standard products fit, in the same words on every face.
 
+use crate::gradation::Gradation;
 use crate::outcome::design::Design;
 use crate::outcome::design::products::Fit;
-use crate::outcome::design::specification::{ProductMargin, Specification};
+use crate::outcome::design::specification::{ProductMargin, SieveLimit, Specification};
+use crate::outcome::digits::percent;
+use crate::outcome::numbers::{significant, trimmed};
 
 /// Said of a product that fits by its D15 and stays within the band.
 pub const FITS: &str = "D15 fits";
 
-/// Said of a product that fits by its D15 while its limits at the sieves leave the band.
-pub const OUTSIDE: &str = "but lies outside this band";
+/// Where a product leaves the band that its D15 fits, at the sieve (mm) at which its limits do so by most.
+pub fn leaves_at(sieve_mm: f64) -> String {
+    format!("leaves the band at {} mm", significant(sieve_mm))
+}
+
+/// Percentage points by which a gradation leaves a limit that is printed in whole percents, and is said to.
+const SEEN: f64 = 0.5;
 
 /// The band that a product whose D15 fits is compared with.
 enum Beside {
     Within,
-    Outside,
+    /// It leaves the band, by most at this sieve (mm).
+    Outside(f64),
     NoBand,
 }
 
-/// What is said of a product whose D15 fits, of walk and practice or of practice alone.
-fn fits_in_words(by_practice: bool, beside: Beside) -> &'static str {
-    match (by_practice, beside) {
-        (false, Beside::Within) => FITS,
-        (false, Beside::Outside) => "D15 fits, but lies outside this band",
-        (false, Beside::NoBand) => "D15 fits; there is no band",
-        (true, Beside::Within) => "D15 fits by practice",
-        (true, Beside::Outside) => "D15 fits by practice, but lies outside this band",
-        (true, Beside::NoBand) => "D15 fits by practice; there is no band",
+/// What is said of a product whose D15 fits, of walk and practice or of practice alone. One that leaves the
+/// band does not fit, though its D15 does.
+fn fits_in_words(by_practice: bool, beside: &Beside) -> String {
+    let by = if by_practice { " by practice" } else { "" };
+    match beside {
+        Beside::Within => format!("{FITS}{by}"),
+        Beside::Outside(sieve) => format!("{}; only its D15 is allowed{by}", leaves_at(*sieve)),
+        Beside::NoBand => format!("{FITS}{by}; there is no band"),
     }
 }
 
@@ -33,18 +41,20 @@ impl Specification {
     fn beside(&self, of: &ProductMargin) -> Beside {
         match of.worst_sieve_mm {
             _ if self.band.is_none() => Beside::NoBand,
-            Some(_) => Beside::Outside,
+            Some(sieve) => Beside::Outside(sieve),
             None => Beside::Within,
         }
     }
 
     /// What is said of a standard product, by practice alone.
-    pub fn product_in_words(&self, of: &ProductMargin) -> &'static str {
+    pub fn product_in_words(&self, of: &ProductMargin) -> String {
         match of.fits() {
-            Some(true) => fits_in_words(false, self.beside(of)),
-            Some(false) => "does not fit",
-            None if self.d15f_min_at_most && of.drains_by.is_none() => "may drain: needs a hydrometer test",
-            None => "no result",
+            Some(true) => fits_in_words(false, &self.beside(of)),
+            Some(false) => "does not fit".into(),
+            None if self.d15f_min_at_most && of.drains_by.is_none() => {
+                "may drain: needs a hydrometer test".into()
+            }
+            None => "no result".into(),
         }
     }
 }
@@ -58,14 +68,46 @@ impl Design {
     }
 
     /// What is said of a product.
-    pub fn product_in_words(&self, fit: &Fit) -> &'static str {
+    pub fn product_in_words(&self, fit: &Fit) -> String {
         let by_practice = !self.may_fit() && self.fits_by_practice();
         match (fit.fits(), self.may_fit() || by_practice) {
-            (true, true) => fits_in_words(by_practice, self.beside(&fit.name)),
-            (true, false) => "in doubt",
-            (false, _) if fit.may_fit() => "not known",
-            (false, _) => "does not fit",
+            (true, true) => fits_in_words(by_practice, &self.beside(&fit.name)),
+            (true, false) => "in doubt".into(),
+            (false, _) if fit.may_fit() => "not known".into(),
+            (false, _) => "does not fit".into(),
         }
+    }
+
+    /// Which filter the rules of practice judge here, and where it leaves the band to specify: sentences.
+    /// `None` where its sizes are not given, or there is no band.
+    pub fn judged_filter_in_words(&self) -> Option<String> {
+        let d15f_mm = self.rules_at * self.base.d85_mm.filter(|_| !self.inverse)?;
+        let specification = self.specification.as_ref().filter(|of| of.band.is_some())?;
+        let points: Vec<(f64, f64)> = self.filter_gradation.iter().map(|of| (of[0], of[1])).collect();
+        let given = Gradation::from_points(&points, None).ok()?;
+        let judged = given.scaled(d15f_mm / self.filter_d15_mm?).ok()?;
+        // What is finer than its finest sieve is not known.
+        let known = specification.limits.iter().filter(|limit| limit.opening_mm >= judged.smallest_mm());
+        let beyond = |limit: &SieveLimit| {
+            let finer = judged.percent_finer_by_mass(limit.opening_mm);
+            let [least, most] = [limit.min_percent_finer, limit.max_percent_finer];
+            let (by, bound) = match finer < least {
+                true => (least - finer, format!("asks for at least {}", trimmed(least))),
+                false => (finer - most, format!("allows at most {}", trimmed(most))),
+            };
+            let said = format!(
+                "It leaves the band at {}: {} are finer there, and the band {bound} %.",
+                limit.sieve,
+                percent(finer / 100.0)
+            );
+            (by >= SEEN).then_some((by, said))
+        };
+        let worst = known.filter_map(beyond).max_by(|a, b| a.0.total_cmp(&b.0));
+        let place = worst.map_or_else(|| "It stays within the band.".into(), |(_, said)| said);
+        Some(format!(
+            "The filter as given is judged, scaled to this D15F. {place} Step 12 checks the sides of the \
+             band for internal stability."
+        ))
     }
 
     /// Which standard products fit, a sentence without its end; `None` where none was compared.
@@ -77,17 +119,19 @@ impl Design {
         if !self.may_fit() && !by_practice {
             return Some("No standard product is said to fit, as the answer is in doubt".into());
         }
-        let named = |fit: &Fit| match self.beside(&fit.name) {
-            Beside::Outside => format!("{} ({OUTSIDE})", fit.name),
-            Beside::Within | Beside::NoBand => fit.name.clone(),
-        };
-        let fitting: Vec<String> = self.products.iter().filter(|fit| fit.fits()).map(named).collect();
+        let (mut fitting, mut leaving): (Vec<&str>, Vec<String>) = (Vec::new(), Vec::new());
+        for fit in self.products.iter().filter(|fit| fit.fits()) {
+            match self.beside(&fit.name) {
+                Beside::Outside(sieve) => leaving.push(format!("{} ({})", fit.name, leaves_at(sieve))),
+                Beside::Within | Beside::NoBand => fitting.push(&fit.name),
+            }
+        }
         let by = if by_practice { " by practice" } else { "" };
         let no_band = match &self.specification {
             Some(of) if of.band.is_none() => ", though there is no band",
             _ => "",
         };
-        Some(match fitting.is_empty() {
+        let fitting = match fitting.is_empty() {
             false => {
                 format!("{FITS}{by}{no_band} (their own shapes were not walked): {}", fitting.join(", "))
             }
@@ -95,6 +139,10 @@ impl Design {
                 "Of the standard products none is known to fit".into()
             }
             true => "None of the standard products fits".into(),
+        };
+        Some(match leaving.is_empty() {
+            true => fitting,
+            false => format!("{fitting}. Only the D15 is allowed{by} of {}", leaving.join(", ")),
         })
     }
 }
@@ -102,7 +150,6 @@ impl Design {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gradation::Gradation;
     use crate::outcome::design::band::SetBy;
     use crate::outcome::design::{Boundary, DesignAnswer, Specification};
     use crate::outcome::record::Confidence;
@@ -127,7 +174,8 @@ mod tests {
             "products_confidence": confidence, "warnings": [], "model_leaves_out": [], "settings": [],
             "seconds": 1.0,
             "answer": DesignAnswer { d15f_max_mm: Some(0.7), d85b_min_mm: None, d15f_over_d85b: Some(1.75),
-                set_by: SetBy::Practice, rule: None, said: String::new() },
+                set_by: SetBy::Practice, rule: None, limit: String::new(), margin: None, walk: None,
+                if_dispersive: None, said: String::new() },
             "specification": of,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": Boundary::of(&[Ok(3.0), Ok(3.0)], Some(0.4)),
@@ -140,13 +188,17 @@ mod tests {
     fn a_product_that_fits_by_its_d15_is_never_said_to_fit_a_band_that_it_leaves() {
         let said = |of: &Design| of.products.iter().map(|fit| of.product_in_words(fit)).collect::<Vec<_>>();
         let by_practice = core(Confidence::Outside);
-        assert_eq!(said(&by_practice), ["D15 fits by practice, but lies outside this band", "does not fit"]);
+        assert_eq!(
+            said(&by_practice),
+            ["leaves the band at 1.18 mm; only its D15 is allowed by practice", "does not fit"]
+        );
         assert_eq!(
             by_practice.products_in_words().unwrap(),
-            "D15 fits by practice (their own shapes were not walked): ASTM C33 fine aggregate (but lies \
-             outside this band)"
+            "None of the standard products fits. Only the D15 is allowed by practice of ASTM C33 fine \
+             aggregate (leaves the band at 1.18 mm)"
         );
-        assert_eq!(said(&core(Confidence::Within))[0], "D15 fits, but lies outside this band");
+        let leaves = "leaves the band at 1.18 mm; only its D15 is allowed";
+        assert_eq!(said(&core(Confidence::Within))[0], leaves);
         let alone = Design { specification: None, ..core(Confidence::Within) };
         assert_eq!(said(&alone)[0], FITS);
         // No band is left that a product could keep.
@@ -154,13 +206,30 @@ mod tests {
         let specification = by_practice.specification.clone().map(none);
         let of_practice = specification.clone().unwrap();
         let words: Vec<_> = of_practice.products.iter().map(|of| of_practice.product_in_words(of)).collect();
-        assert!(words.contains(&"D15 fits; there is no band") && !words.contains(&FITS), "{words:?}");
+        assert!(words.iter().any(|of| of == "D15 fits; there is no band"), "{words:?}");
+        assert!(words.iter().all(|of| of != FITS), "{words:?}");
         let without = Design { specification, ..core(Confidence::Within) };
         assert_eq!(said(&without)[0], "D15 fits; there is no band");
         assert!(without.products_in_words().unwrap().starts_with("D15 fits, though there is no band ("));
         let given = by_practice.specification.as_ref().unwrap();
         let c33 = given.products.iter().find(|of| of.product == "ASTM C33 fine aggregate").unwrap();
-        assert_eq!(given.product_in_words(c33), "D15 fits, but lies outside this band");
+        assert_eq!(given.product_in_words(c33), leaves);
+        // The filter that the rules judge is another, and may leave the band: D100F at 0.7 mm of D15F.
+        let shape = |points: Vec<[f64; 2]>| Design {
+            filter_gradation: points,
+            filter_d15_mm: Some(0.35),
+            ..core(Confidence::Within)
+        };
+        let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 60.0], [6.0, 95.0], [20.0, 100.0]];
+        let judged = shape(long).judged_filter_in_words().unwrap();
+        assert!(
+            judged.starts_with("The filter as given is judged, scaled to this D15F. It leaves the band at ")
+                && judged.contains(" are finer there, and the band asks for at least 100 %. Step 12 checks"),
+            "{judged}"
+        );
+        let within = vec![[0.2, 0.0], [0.35, 15.0], [1.7, 60.0], [6.0, 100.0]];
+        assert!(shape(within).judged_filter_in_words().unwrap().contains(" It stays within the band. "));
+        assert_eq!(core(Confidence::Within).judged_filter_in_words(), None);
         let doubted = core(Confidence::Contradicted);
         assert_eq!(said(&doubted), ["in doubt", "does not fit"]);
         assert!(doubted.products_in_words().unwrap().ends_with("as the answer is in doubt"));

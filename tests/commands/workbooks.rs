@@ -323,7 +323,16 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     assert_eq!(item(first_sheet, "Confidence"), Cell::Empty);
     assert!(limits[0]["Note"].words().contains("between 0.140 and 0.700 mm"));
     assert!(limits[1..].iter().all(|row| row["Note"] == Cell::Empty));
-    assert_eq!(rows(&all["Products"])[0]["D15 fits"], Cell::Truth(true));
+    let sand = &rows(&all["Products"])[0];
+    assert_eq!(sand["D15 fits"], Cell::Truth(true));
+    let result = sand["Result"].words();
+    assert!(
+        result.starts_with("leaves the band at ") && result.ends_with("only its D15 is allowed"),
+        "{result}"
+    );
+    assert!(
+        item(first_sheet, "Margin").words().starts_with("This limit has no margin: it is the lowest D15F")
+    );
     done(&call(root.path(), &["report", "s"]));
     assert_eq!(fs::read(&file).unwrap(), first);
 }

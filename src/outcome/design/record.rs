@@ -117,7 +117,20 @@ pub struct DesignAnswer {
     pub set_by: SetBy,
     /// Name of the rule for programs, where practice set it.
     pub rule: Option<String>,
-    /// The same in a sentence without its full stop.
+    /// The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in
+    /// files of earlier versions, whose text is all in `said`.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub limit: String,
+    /// That a limit of practice has no margin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub margin: Option<String>,
+    /// What the walk is worth beside a limit of practice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walk: Option<String>,
+    /// What holds if the base is dispersive, and what to do then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<String>,
+    /// All of them, without the last full stop.
     pub said: String,
 }
 

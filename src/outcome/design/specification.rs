@@ -39,8 +39,8 @@ pub struct Specification {
     pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
-    /// What a reader must know of the base itself, each of its curve where there are several; empty in files
-    /// of earlier versions.
+    /// What a reader must know of the base itself, each of its curve where there are several, and of a side
+    /// of the band that is not stable; empty in files of earlier versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<DesignFinding>,
     /// Every step, with its numbers.
@@ -114,6 +114,10 @@ pub struct SpecificationStep {
     pub source: String,
 }
 
+/// The size of a band by which a table of the maximum D90F is entered. It is rounded down: a finer D10F
+/// allows no coarser D90F.
+pub const ENTERED_BY: &str = "minimum D10F";
+
 /// A number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -127,8 +131,8 @@ pub struct StepValue {
 }
 
 impl StepValue {
-    /// The number with its unit, a minimum rounded up and a maximum rounded down; `None` where it is not
-    /// known.
+    /// The number with its unit, a minimum rounded up, a maximum and [`ENTERED_BY`] rounded down; `None`
+    /// where it is not known.
     pub fn words(&self) -> Option<String> {
         self.words_in(SizeUnit::Mm)
     }
@@ -137,6 +141,7 @@ impl StepValue {
     pub fn words_in(&self, unit: SizeUnit) -> Option<String> {
         let value = self.value?;
         let (number, beside) = match (self.unit.as_str(), self.name.split(' ').next()) {
+            ("mm", _) if self.name == ENTERED_BY => (rounded_down(value), unit.beside_greatest(value)),
             ("mm", Some("minimum")) => (rounded_up(value), unit.beside_least(value)),
             ("mm", Some("maximum")) => (rounded_down(value), unit.beside_greatest(value)),
             ("mm", _) => (significant(value), unit.beside(value)),
@@ -287,7 +292,9 @@ mod tests {
     fn a_minimum_is_rounded_up_and_a_maximum_down() {
         let of =
             |name: &str, value, unit: &str| StepValue { name: name.into(), value, unit: unit.into() }.words();
-        assert_eq!(of("minimum D10F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        // As the sentence has it that asks for D90F.
+        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191 mm");
         assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
         assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
         assert_eq!(of("category", Some(2.0), "").unwrap(), "2");

@@ -26,7 +26,7 @@ use crate::outcome::record::Confidence;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
-use words::{between, ratio, sentence, shown_in};
+use words::{between, of_walk, ratio, sentence, shown_in};
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
 /// there.
@@ -143,15 +143,6 @@ fn others(rest: &[String]) -> Markup {
     } }
 }
 
-/// The first sentence of a text, and what follows it.
-fn first_sentence(text: &str) -> (&str, Option<&str>) {
-    let begins = |at: &usize| text[at + 2..].starts_with(char::is_uppercase);
-    match text.match_indices(". ").map(|(at, _)| at).find(begins) {
-        Some(at) => (&text[..at], Some(&text[at + 2..])),
-        None => (text, None),
-    }
-}
-
 fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     let (found, said) = (design.least_held(), design.answer());
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
@@ -168,11 +159,11 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
         // only the most is known, or a row has no answer.
         (_, Some(_)) => "doubted",
     };
-    let (limit, beside) = first_sentence(&said.said);
     html! {
         section class=(format!("verdict {class}")) {
-            p.word.long { (clean(limit)) }
-            @if let Some(beside) = beside { p { b { (clean(beside)) } } }
+            p.word.long { (clean(&said.limit)) }
+            @if let Some(margin) = &said.margin { p { (unbroken(margin)) "." } }
+            @if let Some(dispersive) = &said.if_dispersive { p { b { (clean(dispersive)) "." } } }
             @if design.confidence != Confidence::Within {
                 p { b { (capital(design.confidence.words())) } "." }
             }
@@ -183,7 +174,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                      first run) up to D15F/D85B "
                     @match &row.no_erosion {
                         Some(boundary) => {
-                            b { (ratio(boundary.median)) }
+                            (of_walk(design, &ratio(boundary.median)))
                             @if design.replicates == 1 { " on one network: " } @else {
                                 " in the median of " (whole(design.replicates)) " networks, "
                                 (between(boundary.low, boundary.high, ratio)) " in "
@@ -191,7 +182,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                             }
                         },
                         None => {
-                            b { (ratio(*held)) } " on nearly all of " (whole(design.replicates))
+                            (of_walk(design, &ratio(*held))) " on nearly all of " (whole(design.replicates))
                             " networks; "
                             @if row.eroding_networks() > 0 {
                                 (row.eroding_networks()) " of them erode within the search, and the \
@@ -202,6 +193,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                         },
                     }
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
+                    @if let Some(walk) = &said.walk { " " (unbroken(walk)) "." }
                 }
                 @if let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
                 @if design.specification.is_none() && let Some(band) = design.band_of(row) {
@@ -219,6 +211,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     }
                 }
             }
+            @if found.is_none() && let Some(walk) = &said.walk { p { (unbroken(walk)) "." } }
             @if let Some(of) = &design.specification {
                 @match of.band_in_words() {
                     Some(band) => p { b { "Band to specify: " (clean(&band)) } "." },

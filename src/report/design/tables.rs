@@ -2,7 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::words::{in_band, ratio, sentence, shown_in};
+use super::words::{in_band, of_walk, ratio, sentence, shown_in};
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, band_in_words};
@@ -11,7 +11,7 @@ use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, trimmed, whole};
 use crate::report::rules;
-use crate::report::shell::{clean, fact};
+use crate::report::shell::{clean, fact, unbroken};
 use crate::report::table::Table;
 use crate::verdict::fitting::FITS;
 use crate::verdict::words::capital;
@@ -29,7 +29,8 @@ pub(super) fn boundaries(design: &Design) -> Markup {
         html! {
             @match boundary {
                 Some(boundary) => {
-                    b { (ratio(boundary.median)) } (in_band(boundary.low, boundary.high, ratio))
+                    (of_walk(design, &ratio(boundary.median)))
+                    (in_band(boundary.low, boundary.high, ratio))
                     @for range in [&boundary.d15f_mm, &boundary.d85b_mm].into_iter().flatten() {
                         br; (if is_limit { limit(range.median) } else { found(range.median) })
                         (in_band(range.low, range.high, end))
@@ -69,7 +70,8 @@ pub(super) fn boundaries(design: &Design) -> Markup {
         p.small {
             "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
              first run. Continuing: at least as much in the second run, too. Between the two is some \
-             erosion. The thickness matters most: thicker filters hold more."
+             erosion."
+            @if let Some(said) = design.thickness_in_words() { " " (said) "." }
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
                  draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
@@ -161,8 +163,8 @@ pub(super) fn products(design: &Design) -> Markup {
                 })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))
                 .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("Result", |fit| match design.product_in_words(fit) {
-                    said @ FITS => html! { b { (said) } },
+                .number("Result", |fit| match &*design.product_in_words(fit) {
+                    FITS => html! { b { (FITS) } },
                     said => html! { (said) },
                 })
                 .render())
@@ -188,6 +190,7 @@ pub(super) fn practice(design: &Design) -> Markup {
             p {
                 "For a filter with D15F/D85B " (ratio(design.rules_at))
                 (read_at(design)) "."
+                @if let Some(said) = design.judged_filter_in_words() { " " (unbroken(&said)) }
             }
             (rules::table(&rules, shown_in(design, &design.unit)))
         }

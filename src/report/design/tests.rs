@@ -1,13 +1,14 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::design::Boundary;
+use crate::outcome::design::Specification;
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::Fit;
 use crate::outcome::design::{BaseStated, DesignAnswer};
 use crate::outcome::record::{AppliedRule, ModelLimit, SheetCover};
 use crate::outcome::rules::DESIGN;
 use crate::report::numbers::rounded_down;
-use crate::verdict::PairRules;
+use crate::verdict::{PairRules, SpecificationOptions};
 
 fn written(design: &Design, csv: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
@@ -191,6 +192,10 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
         d15f_over_d85b: ratio,
         set_by: SetBy::Practice,
         rule: rule.map(str::to_owned),
+        limit: String::new(),
+        margin: None,
+        walk: None,
+        if_dispersive: None,
         said: "s".into(),
     };
     let inverse = |answer| Design { inverse: true, answer: Some(answer), ..known.clone() };
@@ -200,6 +205,32 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
     assert!(!page.contains(">no erosion<") && page.contains(">beyond practice<"), "{page}");
     let page = written(&inverse(answer(None, None)), &csv);
     assert!(!page.contains(">no erosion<") && page.contains(">practice not known<"), "{page}");
+}
+
+/// A number of the walk stands in bold where the walk decides, and in plain weight below a limit of practice.
+#[test]
+fn a_boundary_that_does_not_decide_is_not_in_bold() {
+    let silt =
+        Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+    let d85 = silt.d(85.0).unwrap();
+    let with = |ratio: f64| {
+        let mut of = design(Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85)), Confidence::Outside);
+        of.base.d85_mm = Some(d85);
+        let filter = Gradation::linear_from_dx(15.0, of.rules_at * d85, 1.5).unwrap();
+        of.rules = PairRules::of(&silt, &filter).rules;
+        let bases = [("silt".to_owned(), silt.clone())];
+        of.specification = Some(Specification::of("silt", &bases, SpecificationOptions::default()));
+        of
+    };
+    let beyond = written(&with(40.0), CSV);
+    assert!(beyond.contains("40.00") && !beyond.contains("<b>40.00</b>"), "{beyond}");
+    let sheet = beyond.split("Other findings").next().unwrap();
+    assert!(sheet.contains("The walk is no guide here: its boundary of no erosion is 8.9 times the centre"));
+    assert!(sheet.contains("This limit has no margin: it is the lowest D15F at which tests showed erosion"));
+    // What the walk decides: 2 D85B are 0.49 mm.
+    let decides = written(&with(2.0), CSV);
+    assert!(decides.contains("<b>2.00</b>") && !decides.contains("no guide"), "{decides}");
+    assert!(!decides.contains("thicker filters hold more"));
 }
 
 /// The limit of practice is 0.8069 mm, the walk holds to 0.8068 mm, and 0.7051 mm drain.

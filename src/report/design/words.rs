@@ -1,6 +1,9 @@
 //! Numbers and notes of a design as its page writes them.
 
+use maud::{Markup, html};
+
 use crate::outcome::design::Design;
+use crate::outcome::design::band::SetBy;
 use crate::report::numbers::SizeUnit;
 use crate::report::shell::clean;
 use crate::verdict::words::capital;
@@ -28,4 +31,12 @@ pub(super) fn between(low: Option<f64>, high: Option<f64>, words: fn(f64) -> Str
 pub(super) fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> String) -> String {
     let is_known = low.is_some() || high.is_some();
     if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
+}
+
+/// A number of the walk, in bold where the walk decides.
+pub(super) fn of_walk(design: &Design, number: &str) -> Markup {
+    match design.answer().set_by {
+        SetBy::Walk => html! { b { (number) } },
+        SetBy::Practice => html! { (number) },
+    }
 }

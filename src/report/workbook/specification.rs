@@ -26,6 +26,8 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     let dispersive = of.if_dispersive.map(|of| of.words_of_base());
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
+    sheet.item("Margin", of.without_margin_in_words(), "");
+    sheet.item("Walk", design.and_then(|design| design.answer().walk), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
@@ -69,6 +71,13 @@ fn band(of: &Specification) -> Sheet {
 
 fn products(of: &Specification, design: Option<&Design>) -> Sheet {
     let fits = |of: &ProductMargin| design.map_or_else(|| of.fits(), |design| design.says_fit(&of.product));
+    let result = |margin: &ProductMargin| match design {
+        None => Some(of.product_in_words(margin)),
+        Some(design) => {
+            let fit = design.products.iter().find(|fit| fit.name == margin.product);
+            fit.map(|fit| design.product_in_words(fit))
+        }
+    };
     let headings = [
         "Product",
         "D15 of the fine side (mm)",
@@ -76,6 +85,7 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
         "D15 of the fine side / minimum D15F (-)",
         "Maximum D15F / D15 of the coarse side (-)",
         "D15 fits",
+        "Result",
         "Leaves the band by most at sieve (mm)",
         "Leaves the band by (percentage points)",
         "Source of its limits",
@@ -89,6 +99,7 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
             product.drains_by.into(),
             product.holds_by.into(),
             fits(product).into(),
+            result(product).into(),
             product.worst_sieve_mm.into(),
             product.leaves_band_by.into(),
             (&product.source).into(),

@@ -18,6 +18,8 @@ mod judged;
 mod options;
 mod plan;
 mod practice;
+#[cfg(test)]
+mod range_tests;
 mod row;
 mod search;
 mod spared;

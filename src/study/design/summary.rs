@@ -134,7 +134,7 @@ pub(super) fn design(
     };
     let answer = design_answer(&design, finest.as_ref());
     let specification = specification(first, &design.base.name, &answer, options);
-    let answer = answer.if_dispersive_too(specification.as_ref());
+    let answer = answer.specified(&design, specification.as_ref());
     let of_authority = of_design(&design.rules, options.authority, &design.unit);
     let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
     Ok(Design { answer: Some(answer), warnings, specification, ..design })

@@ -26,7 +26,7 @@ pub(super) struct ReadCurve {
     pub of: SpecifiedCurve,
     /// As sampled.
     base: Gradation,
-    dispersive: bool,
+    pub dispersive: bool,
     pub soil: BaseSoil,
     pub percent_no_4: f64,
     /// Where it is flattest, which may be a gap.

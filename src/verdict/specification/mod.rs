@@ -1,17 +1,19 @@
 //! The specification of a filter for a base, step by step, with its words.
 
 mod curve;
+mod formula;
+mod sides;
 mod steps;
 #[cfg(test)]
 mod tests;
 
-use crate::gradation::FINES_MM;
+use crate::gradation::{FEW_FINES, FINES_MM};
 use crate::outcome::design::SieveSeries;
 use crate::outcome::design::specification::{SizeBand, Specification, margins};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{SheetCover, commit};
 use crate::outcome::rules::{
-    GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND,
+    GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND, range_of_tests,
 };
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
@@ -81,7 +83,7 @@ impl Specification {
             inputs: Vec::new(),
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
-            findings: curve::findings(&read),
+            findings: curve::findings(&read).into_iter().chain(sides::findings(band.as_ref())).collect(),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
@@ -177,10 +179,39 @@ impl Specification {
     }
 }
 
+/// How near the end of a range of tests a limit is that end, of it.
+const AT_END: f64 = 0.005;
+
 impl Specification {
-    /// What the maximum D15F is if the base is dispersive, and what of the specification does not hold then,
-    /// in a sentence without its end; `None` where it all holds, or somebody has said whether it is.
-    pub fn if_dispersive_in_words(&self) -> Option<String> {
+    /// That the maximum D15F has no margin, where practice sets it and tests of such soils showed erosion at
+    /// it: a sentence without its end.
+    pub fn without_margin_in_words(&self) -> Option<String> {
+        let greatest = self.d15f_max_mm?;
+        let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
+        let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let fines = curve.fines_percent.filter(|_| greatest >= limit)?;
+        let why = match (self.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
+            (true, _) => {
+                "Fell et al. (Table 9.2, note b) give one number for design and for no erosion in tests"
+                    .into()
+            }
+            (false, [low, _]) if limit < low * (1.0 - AT_END) => return None,
+            (false, [low, _]) if limit <= low * (1.0 + AT_END) => {
+                "it is the lowest D15F at which tests showed erosion (Fell et al., Table 9.2)".into()
+            }
+            (false, [low, high]) => format!(
+                "it lies in the range in which erosion began in tests ({} to {} mm; Fell et al., Table 9.2)",
+                rounded_down(low),
+                rounded_up(high)
+            ),
+        };
+        Some(format!("This limit has no margin: {why}"))
+    }
+
+    /// What the maximum D15F is if the base is dispersive, what of the specification does not hold then, and
+    /// what to do, as [`DESIGN_AGAIN`]: a sentence without its end; `None` where it all holds, or somebody
+    /// has said whether it is.
+    pub fn if_dispersive_in_words(&self, again: &str) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
         let band = match self.band {
@@ -188,7 +219,7 @@ impl Specification {
             None => "",
         };
         let limit = of.clause_of_base();
-        Some(format!("If the base is dispersive, which is not stated, {limit}; {band}{DESIGN_AGAIN}"))
+        Some(format!("If the base is dispersive, which is not stated, {limit}; {band}{again}"))
     }
 }
 

@@ -1,9 +1,12 @@
 //! The steps of a specification, with their numbers, words and sources.
 
 use super::curve::ReadCurve;
+use super::formula;
+use super::sides::{LEAST_SHAPE, MOST_KEZDI, Side};
 use crate::gradation::{FINES_MM, GAP_PERCENT, Gap};
-use crate::outcome::design::specification::{BandSize, SizeBand, SpecificationStep, StepValue};
+use crate::outcome::design::specification::{BandSize, ENTERED_BY, SizeBand, SpecificationStep, StepValue};
 use crate::outcome::numbers::significant;
+use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, RULES, WIDEST_BAND};
 use crate::verdict::words::capital;
 
@@ -49,6 +52,7 @@ impl Found<'_> {
             self.ends(),
             self.segregation(band),
             self.sides(band),
+            self.stability(band),
         ];
         let number =
             |(index, step): (usize, SpecificationStep)| SpecificationStep { step: index as u64 + 1, ..step };
@@ -124,7 +128,16 @@ impl Found<'_> {
 
     fn retention(&self) -> SpecificationStep {
         let what = "Find the maximum D15F that retains the base";
-        let rule = self.strictest.and_then(|curve| curve.retention.as_ref());
+        // Both rules, where another is stricter than the limit of design.
+        let rules = |curve: &ReadCurve| {
+            let other = curve.retention.iter().filter(|rule| rule.id != DESIGN).cloned();
+            curve.design.iter().cloned().chain(other).collect::<Vec<AppliedRule>>()
+        };
+        let curve = self.strictest.map(|curve| (curve, rules(curve)));
+        let each = |said: &dyn Fn(&ReadCurve, &AppliedRule) -> String, between: &str| {
+            let all = curve.iter().flat_map(|(curve, rules)| rules.iter().map(|rule| said(curve, rule)));
+            all.collect::<Vec<String>>().join(between)
+        };
         let mut notes: Vec<String> = Vec::new();
         if let (Some(curve), Some(_)) = (self.strictest, self.by_practice) {
             let whose = if self.read.len() > 1 { format!(", for {}", curve.of.curve) } else { String::new() };
@@ -146,10 +159,10 @@ impl Found<'_> {
             notes.push("The smaller of practice and walk counts.".into());
         }
         SpecificationStep {
-            formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
+            formula: each(&|curve, rule| formula::of_base(rule, curve), "; "),
             values,
             note: notes.join(" "),
-            source: rule.map_or_else(String::new, |rule| rule.source.clone()),
+            source: each(&|_, rule| rule.source.clone(), ". "),
             ..step(what)
         }
     }
@@ -254,7 +267,7 @@ impl Found<'_> {
             formula: format!(
                 "minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side"
             ),
-            values: vec![named("minimum D10F", d10, "mm"), named("maximum D90F", None, "mm")],
+            values: vec![named(ENTERED_BY, d10, "mm"), named("maximum D90F", None, "mm")],
             note:
                 "Still to be set: no text with its numbers could be read. The maximum D90F follows from this \
                    minimum D10F by a table of FEMA and NRCS. Take it from there."
@@ -278,6 +291,32 @@ impl Found<'_> {
                     .into(),
             source: "a drawing of this program; no text was read for the sides above 60 % finer".into(),
             ..step("Draw both sides of the band")
+        }
+    }
+
+    fn stability(&self, band: Option<&SizeBand>) -> SpecificationStep {
+        let sides: Vec<Side> = band.map(Side::both).into_iter().flatten().collect();
+        let both = |side: &Side| {
+            let value = |which: &str, value| named(&format!("{which} of the {} side", side.name), value, "");
+            let [kezdi, shape] = [side.kezdi.map(|of| of.value), side.kenney_lau.map(|of| of.value)];
+            [value("greatest D'15/d'85", kezdi), value("least H/F", shape)]
+        };
+        let of = |side: &Side| match side.broken() {
+            broken if !broken.is_empty() => {
+                format!("The {} side is not stable {}.", side.name, broken.join(" and "))
+            }
+            _ if side.is_known() => format!("The {} side keeps both.", side.name),
+            _ => format!("The {} side is nearly of one size.", side.name),
+        };
+        let below = band.map(|_| "The fine side is judged from its D5 up.".to_owned());
+        SpecificationStep {
+            formula: format!(
+                "D'15/d'85 <= {MOST_KEZDI} by Kézdi, H/F >= {LEAST_SHAPE} by Kenney and Lau, as of a filter"
+            ),
+            values: sides.iter().flat_map(both).collect(),
+            note: sides.iter().map(of).chain(below).collect::<Vec<_>>().join(" "),
+            source: source_of("kezdi"),
+            ..step("Check both sides for internal stability")
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gradation::Gradation;
+use crate::outcome::design::DesignFinding;
 use crate::outcome::record::RuleRole;
 use crate::verdict::{PairOptions, PairRules};
 
@@ -34,7 +35,7 @@ fn a_core_with_60_percent_of_fines_by_hand() {
     assert!(near(value(&core, "minimum D10F"), 0.14 / 1.2));
     let sizes = &core.band.as_ref().unwrap().sizes;
     assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0, 90.0, 100.0]);
-    assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=11).collect::<Vec<_>>());
+    assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=12).collect::<Vec<_>>());
     assert!(core.no_band.is_none() && core.nearest_product().is_none());
     assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
 }
@@ -95,16 +96,16 @@ fn what_set_the_answer_and_what_a_delivery_must_keep_is_said() {
     assert_eq!(sand.band_in_words().as_deref(), Some("D15F from 1.00 to 2.00 mm, Cu from 2 to 6"));
 }
 
-/// One band on every page: what is said first is what the last step draws.
+/// One band on every page: what is said first is what is drawn.
 #[test]
-fn the_band_that_is_said_is_the_one_of_the_last_step() {
+fn the_band_that_is_said_is_the_one_that_is_drawn() {
     for points in [
         &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)][..],
         &[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)],
     ] {
         let of = of(points);
-        let last = of.steps.last().unwrap();
-        let said = |name: &str| last.values.iter().find(|of| of.name == name).unwrap().words().unwrap();
+        let sides = &of.steps[10];
+        let said = |name: &str| sides.values.iter().find(|of| of.name == name).unwrap().words().unwrap();
         let [least, greatest] = ["minimum D15F", "maximum D15F"].map(said);
         let band = format!("D15F from {} to {greatest}, Cu", least.trim_end_matches(" mm"));
         assert!(of.band_in_words().unwrap().starts_with(&band), "{band}");
@@ -156,7 +157,10 @@ fn what_is_wrong_with_the_base_itself_is_among_the_findings() {
     let sand = soil(&[(0.1, 0.0), (0.5, 100.0)]);
     let both = [("sand".to_owned(), sand), ("till".to_owned(), soil(&points))];
     let both = Specification::of("site", &both, SpecificationOptions::default());
-    assert!(both.findings.iter().all(|of| of.row.as_deref() == Some("till")) && both.findings.len() == 3);
+    let row = |of: &DesignFinding| of.row.clone().unwrap_or_default();
+    assert_eq!(both.findings.iter().map(row).collect::<Vec<_>>(), ["till", "till", "till", ""]);
+    // That of the band is of all: 0.636 to 0.700 mm, with a fine side that runs far out to its D5.
+    assert_eq!(ids(&both)[3], "unstable_side");
 }
 
 #[test]
@@ -250,7 +254,8 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
 fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
     let said = |points: &[(f64, f64)], options| {
-        Specification::of("silt", &[("silt".into(), soil(points))], options).if_dispersive_in_words()
+        Specification::of("silt", &[("silt".into(), soil(points))], options)
+            .if_dispersive_in_words(DESIGN_AGAIN)
     };
     let nobody = SpecificationOptions::default();
     let silty = said(&silt, nobody).unwrap();
@@ -295,4 +300,103 @@ fn what_is_still_to_be_set_is_said_with_its_size() {
     assert!(said.ends_with("for a minimum D10F of 0.116 mm."), "{said}");
     let none = of(&[(1.0, 0.0), (2.0, 10.0), (4.75, 40.0), (9.5, 60.0), (19.0, 80.0), (37.5, 100.0)]);
     assert_eq!((none.band.is_none(), none.still_to_set()), (true, None), "{none:?}");
+}
+
+/// Each rule for the fines of this base, with its numbers: 37.8 % of fines and a D85B of 1.80 mm.
+#[test]
+fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
+    let formula = |points: &[(f64, f64)]| of(points).steps[4].formula.clone();
+    let till = [(0.075, 28.0), (0.15, 37.0), (0.425, 48.0), (0.85, 55.0), (2.0, 64.0), (4.75, 74.0)];
+    let till: Vec<(f64, f64)> = till.into_iter().chain([(9.5, 82.0), (19.0, 89.0), (37.5, 100.0)]).collect();
+    assert_eq!(
+        formula(&till),
+        "Sherard and Dunnigan's limit of design, category 3, A 15 to 40 %: (40 - A)/25 (4 D85B - 0.7) + 0.7 \
+         mm = (40 - 37.8)/25 (4 x 1.80 - 0.7) + 0.7 mm; Foster and Fell's boundary of no erosion, A 35 to \
+         85 %: 0.7 mm"
+    );
+    let step = &of(&till).steps[4];
+    let [design, fell] = ["Sherard & Dunnigan (1989)", "Fell, MacGregor"].map(|of| step.source.find(of));
+    assert!(design == Some(0) && fell > design, "{}", step.source);
+    let clay = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
+    assert!(
+        formula(&clay).starts_with(
+            "Sherard and Dunnigan's limit of design, category 1, A > 85 %: 9 D85B, not less than 0.2 mm = 9 \
+             x 0.0500, not less than 0.2 mm"
+        ),
+        "{}",
+        formula(&clay)
+    );
+    let sand = formula(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    assert_eq!(sand, "Sherard and Dunnigan's limit of design, category 4, A < 15 %: 4 D85B = 4 x 0.500 mm");
+    let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
+    let dispersive = |points: &[(f64, f64)]| {
+        Specification::of("clay", &[("clay".into(), soil(points))], options).steps[4].formula.clone()
+    };
+    assert!(
+        dispersive(&clay).contains("category 1, A > 85 %, dispersive: 6.4 D85B"),
+        "{}",
+        dispersive(&clay)
+    );
+    // Fines that are not known leave the formula whole.
+    let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
+    assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
+}
+
+/// Straight sides of a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % further up.
+#[test]
+fn both_sides_of_the_band_are_checked_for_internal_stability() {
+    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let last = core.steps.last().unwrap();
+    assert_eq!(last.does, "Check both sides for internal stability");
+    let of_coarse = |name: &str| value(&core, &format!("{name} of the coarse side"));
+    // Percent over ln size: 45 % for a factor of 5.
+    let slope = 45.0 / 5f64.ln();
+    assert!(near(of_coarse("greatest D'15/d'85"), (15.0 / slope).exp()));
+    assert!(near(of_coarse("least H/F"), slope * 4f64.ln() / 20.0));
+    assert!(last.note.starts_with("The fine side keeps both. The coarse side keeps both. "), "{last:?}");
+    assert!(last.source.contains("Internal Instability") && core.findings.is_empty(), "{last:?}");
+    // The walk holds barely more than drains: the fine side runs far out to its D5.
+    let sand = [("sand".to_owned(), soil(&[(0.1, 0.0), (0.14, 15.0), (0.5, 85.0), (1.0, 100.0)]))];
+    let options = SpecificationOptions { walked_mm: Some(0.705), ..Default::default() };
+    let narrow = Specification::of("sand", &sand, options);
+    let said: Vec<String> = narrow.findings.iter().map(|of| of.words()).collect();
+    assert!(
+        said.len() == 1
+            && said[0]
+                .starts_with("The fine side of the band is not internally stable by Kenney and Lau (H/F "),
+        "{said:?} {:?}",
+        narrow.steps.last()
+    );
+    assert!(narrow.steps.last().unwrap().note.starts_with("The fine side is not stable by Kenney and Lau"));
+}
+
+/// A limit within what tests showed, one below it, and those of dispersive soils.
+#[test]
+fn a_limit_without_a_margin_is_said_to_have_none() {
+    let said = |points: &[(f64, f64)], dispersive| {
+        let options = SpecificationOptions { dispersive, ..Default::default() };
+        let of = Specification::of("base", &[("base".into(), soil(points))], options);
+        of.without_margin_in_words().unwrap_or_default()
+    };
+    let (core, clay) = (
+        [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)],
+        [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)],
+    );
+    assert!(said(&core, None).contains("it is the lowest D15F at which tests showed erosion"));
+    // 6.4 to 13.5 D85B, and a limit of 9 D85B.
+    assert!(
+        said(&clay, None).contains("lies in the range in which erosion began in tests (0.320 to 0.675 mm;")
+    );
+    assert!(said(&clay, Some(true)).contains("Table 9.2, note b) give one number for design and for"));
+    assert_eq!(said(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), "");
+    assert_eq!(said(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)], Some(true)), "");
+}
+
+/// One size on the first sheet and in its step: that by which the table of D90F is entered.
+#[test]
+fn the_minimum_d10f_is_one_number() {
+    let till = of(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+    let d10 = till.steps[9].values[0].words().unwrap();
+    assert_eq!(d10, "0.191 mm");
+    assert!(till.still_to_set().unwrap().ends_with(&format!("for a minimum D10F of {d10}.")));
 }

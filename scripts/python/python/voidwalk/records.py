@@ -1413,11 +1413,24 @@ class DesignAnswer(_DesignAnswer, total=False):
         Which of the two is the stricter.
     rule
         Name of the rule for programs, where practice set it.
+    limit
+        The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in files
+        of earlier versions, whose text is all in `said`.
+    margin
+        That a limit of practice has no margin.
+    walk
+        What the walk is worth beside a limit of practice.
+    if_dispersive
+        What holds if the base is dispersive, and what to do then.
     said
-        The same in a sentence without its full stop.
+        All of them, without the last full stop.
     """
 
     d85b_min_mm: Optional[float]
+    limit: str
+    margin: Optional[str]
+    walk: Optional[str]
+    if_dispersive: Optional[str]
 
 
 class Range(TypedDict):
@@ -1986,8 +1999,8 @@ class Specification(_Specification, total=False):
     curves
         The curves of the base, in the order of the file.
     findings
-        What a reader must know of the base itself, each of its curve where there are several; empty in files of
-        earlier versions.
+        What a reader must know of the base itself, each of its curve where there are several, and of a side of
+        the band that is not stable; empty in files of earlier versions.
     steps
         Every step, with its numbers.
     d15f_min_mm

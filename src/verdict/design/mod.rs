@@ -1,0 +1,112 @@
+//! The answer of a design: how coarse the filter may be, which of walk and practice set it, and why.
+//!
+//! The limit of practice is the strictest rule of retention that was made for the base: as a rule Sherard and
+//! Dunnigan's limit of design, and Foster and Fell's boundary of no erosion where that is lower, as for 35 to
+//! 40 % fines. No specification allows a filter with which tests saw erosion.
+
+mod beside_tests;
+mod case;
+mod sizes;
+#[cfg(test)]
+mod tests;
+mod words;
+
+use super::specification::DESIGN_AGAIN;
+use super::words::capital;
+use crate::outcome::design::band::SetBy;
+use crate::outcome::design::{Design, DesignAnswer, Specification};
+use beside_tests::BeyondTests;
+use case::Case;
+pub use case::FinestBase;
+use sizes::Sizes;
+use words::{CaseWords, words};
+
+/// The finding of a design whose base does not grow with the filter.
+const AMOUNT_HELD: &str = "amount_held";
+
+/// The answer of a design whose boundaries and rules are known; `finest` is what practice says for the
+/// inverse, where that was searched.
+pub fn design_answer(design: &Design, finest: Option<&FinestBase>) -> DesignAnswer {
+    let sizes = Sizes::of(design);
+    let case = Case::of(design, &sizes, finest);
+    let ratio = case.ratio();
+    let size = |ratio: f64| sizes.mm(ratio);
+    let CaseWords { limit, walk } = words(&case, design, &sizes);
+    let answer = DesignAnswer {
+        d15f_max_mm: ratio.filter(|_| !design.inverse).and_then(size),
+        d85b_min_mm: ratio.filter(|_| design.inverse).and_then(size),
+        d15f_over_d85b: ratio,
+        set_by: if case.rule().is_some() { SetBy::Practice } else { SetBy::Walk },
+        rule: case.rule().map(|rule| rule.id.clone()),
+        limit,
+        margin: None,
+        walk,
+        if_dispersive: None,
+        said: String::new(),
+    };
+    answer.joined()
+}
+
+impl DesignAnswer {
+    /// The same, with what stands beside it where the specification knows the base: that its limit has no
+    /// margin, what the walk is worth beside tests, and what holds if the base is dispersive.
+    pub fn specified(self, design: &Design, specification: Option<&Specification>) -> Self {
+        let margin = specification.and_then(Specification::without_margin_in_words);
+        let if_dispersive = specification.and_then(|of| of.if_dispersive_in_words(DESIGN_AGAIN));
+        let beyond = BeyondTests::of(design, specification).filter(|_| self.set_by == SetBy::Practice);
+        let walk = beyond.map(|of| of.words()).or(self.walk);
+        Self { margin, walk, if_dispersive, ..self }.joined()
+    }
+
+    fn joined(self) -> Self {
+        let beside = [&self.margin, &self.walk, &self.if_dispersive].into_iter().flatten();
+        let said: Vec<&str> = [&self.limit].into_iter().chain(beside).map(String::as_str).collect();
+        Self { said: said.join(". "), ..self }
+    }
+}
+
+impl Design {
+    /// The answer, of files of earlier versions too, whose text is all in the limit.
+    pub fn answer(&self) -> DesignAnswer {
+        match &self.answer {
+            Some(answer) if answer.limit.is_empty() => {
+                DesignAnswer { limit: answer.said.clone(), ..answer.clone() }
+            }
+            Some(answer) => answer.clone(),
+            None => design_answer(self, None).specified(self, self.specification.as_ref()),
+        }
+    }
+
+    /// How far the answer can be relied on, in a sentence, with the weightiest reason.
+    pub fn confidence_said(&self) -> String {
+        let label = capital(self.confidence.words());
+        match self.reasons.first() {
+            Some(reason) => format!("{label}: {}.", reason.trim_end_matches('.')),
+            None => format!("{label}."),
+        }
+    }
+
+    /// What the walk is worth beside a limit of practice that sets the answer, in short: a sentence.
+    pub fn walk_beside_practice(&self) -> String {
+        match (self.beyond_tests(), self.answer().walk) {
+            (Some(_), _) => "The walk is no guide here.".into(),
+            (None, walk) => walk.map_or_else(String::new, |said| format!("{said}.")),
+        }
+    }
+
+    /// What was varied with the thickness, where several were walked: a sentence without its full stop.
+    pub fn thickness_in_words(&self) -> Option<&'static str> {
+        let first = self.boundaries.first()?;
+        let varies = self.boundaries.iter().any(|row| row.thickness != first.thickness);
+        let is_held = self.findings.iter().any(|of| of.finding.id == AMOUNT_HELD);
+        (varies && !is_held).then_some(
+            "Thickness was varied together with the amount of base (the base is a share of the filter)",
+        )
+    }
+
+    /// The walk's D15F of no erosion over the centre of the range in which erosion began in tests on soils
+    /// with such fines, where it lies beyond that range: the walk is then no guide.
+    pub fn beyond_tests(&self) -> Option<f64> {
+        BeyondTests::of(self, self.specification.as_ref()).map(|of| of.by_centre)
+    }
+}

@@ -1,0 +1,261 @@
+//! Answers of designs, and what stands beside them.
+
+use super::*;
+use crate::gradation::Gradation;
+use crate::outcome::design::band::Band;
+use crate::outcome::design::{Boundary, DesignFinding, DesignRow};
+use crate::outcome::record::{AppliedRule, Evidence, RuleRole};
+use crate::outcome::rules::BaseSoil;
+use crate::verdict::{PairRules, SpecificationOptions, finding};
+
+/// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
+fn design(base: &Gradation, held: Option<f64>) -> Design {
+    let regraded = base.regraded();
+    let d85 = regraded.gradation.d(85.0).unwrap();
+    let filter = Gradation::linear_from_dx(15.0, 4.0 * d85, 1.5).unwrap();
+    let no_erosion = held.and_then(|held| Boundary::of(&[Ok(held), Ok(held)], Some(d85)));
+    let text = serde_json::json!({
+        "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
+        "unit": "mm",
+        "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85, "d95_over_d85": null},
+        "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
+        "confidence": "within checked range", "reasons": [], "rules": PairRules::of(base, &filter).rules,
+        "rules_at": 4.0, "products": [], "warnings": [], "model_leaves_out": [], "settings": [],
+        "seconds": 1.0,
+        "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+            "grains_per_void": 0.6, "no_erosion": no_erosion, "continuing": null, "not_monotone": 0,
+            "networks": [], "band": null}],
+    });
+    serde_json::from_value(text).unwrap()
+}
+
+fn till() -> Gradation {
+    let points = [(0.001, 0.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+    Gradation::from_points(&points, None).unwrap()
+}
+
+fn sand() -> Gradation {
+    Gradation::from_points(&[(0.1, 0.0), (0.5, 100.0)], None).unwrap()
+}
+
+/// The till of the third trial: the walk holds it to 12.6 D85B, here 19.3 mm, and practice to 0.70 mm.
+#[test]
+fn a_till_is_limited_by_practice_and_the_walks_figure_stands_nowhere() {
+    let found = design(&till(), Some(12.6));
+    let answer = found.answer();
+    assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+    assert_eq!((answer.set_by, answer.rule.as_deref()), (SetBy::Practice, Some("foster-fell-no-erosion")));
+    assert!(answer.said.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"), "{}", answer.said);
+    assert!(answer.said.contains("Sherard and Dunnigan's limit of design is 1.1"), "{}", answer.said);
+    assert_eq!(answer.walk.as_deref(), Some("The walk sets no tighter limit, and is no check of it"));
+    assert_eq!(answer.said, format!("{}. {}", answer.limit, answer.walk.as_ref().unwrap()));
+    assert!(!serde_json::to_string(&answer).unwrap().contains("19."), "{answer:?}");
+}
+
+/// The till again: `judge` says of this group that the walk errs on the unsafe side.
+#[test]
+fn a_walk_that_errs_on_the_unsafe_side_is_said_to_be_no_check() {
+    let mut found = design(&till(), Some(12.6));
+    assert!(found.walk_beside_practice().starts_with("The walk sets no tighter limit"));
+    let rules = found.rules.clone();
+    let evidence = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(5.3), None).unwrap();
+    let finding = evidence.against_holding(&rules).unwrap().record(true);
+    assert!(finding.sentence.contains(" real soils of this kind (35 to 55 % fines"), "{finding:?}");
+    found.findings.push(DesignFinding { row: None, finding });
+    let answer = found.answer();
+    assert!(answer.limit.starts_with("D15F up to 0.700 mm, by practice (Foster and Fell"), "{answer:?}");
+    let walk = answer.walk.unwrap();
+    assert_eq!(walk, "The walk is no check of this limit: for such soils it errs on the unsafe side");
+    assert!(!found.walk_beside_practice().contains("tighter"));
+    // Nor is what it holds alone, of a limit of which only the most is known or of none.
+    let unsafe_alone = ", and for such soils it errs on the unsafe side";
+    let mut open = found.clone();
+    let retains = |rule: &&mut AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+    open.rules.iter_mut().find(retains).unwrap().limit_at_most = true;
+    let said = open.answer().said;
+    assert!(said.starts_with("The maximum D15F is not known") && said.ends_with(unsafe_alone), "{said}");
+    open.rules.clear();
+    let said = open.answer().said;
+    assert!(said.contains(&format!(" in the model alone{unsafe_alone}; the limit of practice")), "{said}");
+    open.findings.clear();
+    assert!(!open.answer().said.contains("unsafe"));
+    // Uniform filters have no such group.
+    let uniform = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(1.5), None).unwrap();
+    assert_eq!(uniform.against_holding(&rules), None);
+}
+
+#[test]
+fn a_walk_that_holds_less_than_practice_sets_the_answer() {
+    let base = sand();
+    let (d85, answer) = (base.d(85.0).unwrap(), design(&base, Some(3.0)).answer());
+    assert!((answer.d15f_max_mm.unwrap() - 3.0 * d85).abs() < 1e-9);
+    assert_eq!((answer.set_by, answer.rule), (SetBy::Walk, None));
+    assert!(answer.said.contains("by the walk; practice allows D15F up to"), "{}", answer.said);
+    let answer = design(&base, Some(7.0)).answer();
+    assert!((answer.d15f_max_mm.unwrap() - 4.0 * d85).abs() < 1e-9);
+    assert_eq!(answer.rule.as_deref(), Some("sherard-dunnigan"));
+}
+
+#[test]
+fn what_neither_or_one_of_them_knows_is_said() {
+    let nothing = design(&sand(), None).answer();
+    assert_eq!((nothing.d15f_max_mm, nothing.set_by), (None, SetBy::Walk));
+    // What programs read: null where nothing is known.
+    let json = serde_json::to_value(&nothing).unwrap();
+    assert!(json["d15f_max_mm"].is_null() && json["rule"].is_null() && json["set_by"] == "walk", "{json}");
+    assert!(nothing.said.contains("practice alone allows D15F up to"), "{}", nothing.said);
+    // The minimum D15F that was searched is above the limit of practice: 0.77 against 0.70 mm.
+    let below = design(&till(), None).answer();
+    assert!(below.d15f_max_mm.is_none() && below.said.starts_with("Practice allows D15F up to 0.700 mm"));
+    assert!(below.said.contains("searched from a D15F of 0.765 mm only"), "{}", below.said);
+    // A third of the base may be anything: the walk says nothing against it.
+    let mut open = design(&till(), None);
+    open.base.tail_mass_fraction = 0.38;
+    let answer = open.answer();
+    assert!((answer.d15f_max_mm.unwrap() - 0.7).abs() < 1e-9, "{answer:?}");
+    assert!(answer.said.contains("by practice alone") && answer.said.contains("38.0 %"), "{}", answer.said);
+    let mut scale_free = design(&sand(), Some(5.2));
+    (scale_free.base.d85_mm, scale_free.unit) = (None, "D85B".into());
+    let answer = scale_free.answer();
+    assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b), (None, Some(5.2)));
+    assert!(answer.said.starts_with("D15F up to 5.20 D85B in the model alone"), "{}", answer.said);
+    assert!(answer.said.contains("the limit of practice is not known"), "{}", answer.said);
+    let mut unknown = design(&sand(), Some(5.2));
+    unknown.rules.clear();
+    assert!(unknown.answer().said.ends_with("the limit of practice is not known for this base"));
+}
+
+/// 30 % pass the finest sieve: with as many fines the limit would be less than half of four D85B.
+#[test]
+fn a_limit_that_is_at_most_some_size_is_no_known_limit() {
+    let base =
+        Gradation::from_points(&[(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)], None);
+    let base = base.unwrap();
+    for held in [Some(3.0), None] {
+        let mut open = design(&base, held);
+        open.base.tail_mass_fraction = 0.3;
+        let answer = open.answer();
+        assert_eq!((answer.d15f_max_mm, answer.d15f_over_d85b, &answer.rule), (None, None, &None));
+        assert!(answer.said.starts_with("The maximum D15F is not known: the limit of practice is at most 7"));
+        assert_eq!(
+            answer.said.contains("The walk alone holds D15F up to"),
+            held.is_some(),
+            "{}",
+            answer.said
+        );
+        assert!(Band::new(&open.rules, 4.0, 4.0, "mm").is_none());
+    }
+}
+
+/// A loose filter that erodes at all that was searched is not held by what a dense one holds.
+#[test]
+fn a_row_that_holds_nothing_leaves_the_walk_without_an_answer() {
+    let mut two = design(&sand(), Some(3.0));
+    two.boundaries.push(design(&sand(), None).boundaries.remove(0));
+    let answer = two.answer();
+    assert_eq!((answer.d15f_max_mm, answer.set_by), (None, SetBy::Walk));
+    assert!(answer.said.contains("practice alone allows D15F up to"), "{}", answer.said);
+    // Nor does an open tail leave the answer to practice, where another row says less than it allows.
+    two.base.tail_mass_fraction = 0.08;
+    assert_eq!(two.answer().d15f_max_mm, None);
+}
+
+#[test]
+fn the_inverse_stops_at_the_base_that_practice_allows() {
+    let mut inverse = design(&sand(), Some(7.0));
+    (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
+    let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
+    let finest = FinestBase { ratio: Some(4.0), rule, is_open: false };
+    let answer = design_answer(&inverse, Some(&finest));
+    assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
+    assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
+    let none = design_answer(&inverse, Some(&FinestBase { ratio: None, ..finest.clone() }));
+    assert!(none.d85b_min_mm.is_none() && none.said.starts_with("No base is known that both"));
+    let open = |ratio| design_answer(&inverse, Some(&FinestBase { ratio, is_open: true, ..finest.clone() }));
+    let unknown = open(None);
+    assert_eq!((unknown.d85b_min_mm, unknown.d15f_over_d85b, &unknown.rule), (None, None, &None));
+    assert!(
+        unknown.said.starts_with("The finest D85B is not known: only an upper bound"),
+        "{}",
+        unknown.said
+    );
+    assert!(unknown.said.ends_with(". The walk alone holds D85B down to 0.286 mm"), "{}", unknown.said);
+    assert_eq!(open(Some(4.0)).d85b_min_mm, Some(0.5));
+    assert!(open(Some(4.0)).said.contains("whose limit for a finer base is not known"));
+}
+
+/// With the specification of its base: the walk's 19.3 mm are 17.7 times the centre of 0.7 to 1.7 mm.
+fn specified(base: &Gradation, held: Option<f64>) -> Design {
+    let of = Specification::of("b", &[("b".into(), base.clone())], SpecificationOptions::default());
+    Design { specification: Some(of), ..design(base, held) }
+}
+
+/// What a sheet must not leave to the reader: a boundary of the walk that no test comes near.
+#[test]
+fn a_walk_beyond_every_test_is_said_to_be_no_guide() {
+    let mut found = specified(&till(), Some(12.6));
+    let no_guide = "The walk is no guide here: its boundary of no erosion is 18 times the centre of the \
+                    range in which erosion began in tests on soils with such fines (0.700 to 1.70 mm; Fell \
+                    et al., Table 9.2)";
+    assert_eq!(found.answer().walk.as_deref(), Some(no_guide));
+    assert!((found.beyond_tests().unwrap() - 17.7).abs() < 0.1, "{:?}", found.beyond_tests());
+    assert_eq!(found.walk_beside_practice(), "The walk is no guide here.");
+    // With the soils of its kind: nine in ten lie below 10.4.
+    let evidence = Evidence::of(&BaseSoil::of(&till(), false), 0.7, Some(5.3), None).unwrap();
+    let finding = evidence.against_holding(&found.rules).unwrap().record(true);
+    found.findings.push(DesignFinding { row: None, finding });
+    let of_soils = format!("{no_guide}, beyond that of nine in ten of {} soils of this kind", evidence.soils);
+    assert_eq!(found.answer().walk, Some(of_soils));
+    // 4 mm are nearer than that of many soils, and 1.5 mm lie within the range.
+    let at = |d15f_mm: f64| {
+        let ratio = d15f_mm / found.base.d85_mm.unwrap();
+        let of = design(&till(), Some(ratio));
+        Design { boundaries: of.boundaries, ..found.clone() }.answer().walk.unwrap()
+    };
+    assert!(at(4.0).contains(" is 3.7 times the centre ") && at(4.0).ends_with("Table 9.2)"), "{}", at(4.0));
+    assert!(at(1.5).starts_with("The walk is no check of this limit"), "{}", at(1.5));
+    // Dispersive soils had other tests.
+    let mut dispersive = found.clone();
+    dispersive.specification.as_mut().unwrap().dispersive = true;
+    assert_eq!(dispersive.beyond_tests(), None);
+}
+
+/// 0.7 mm is the lowest D15F at which tests of bases with 35 to 85 % fines showed erosion.
+#[test]
+fn an_answer_has_its_parts_and_their_text() {
+    let answer = specified(&till(), Some(12.6)).answer();
+    let margin = answer.margin.as_deref().unwrap();
+    assert_eq!(
+        margin,
+        "This limit has no margin: it is the lowest D15F at which tests showed erosion (Fell et al., \
+         Table 9.2)"
+    );
+    let dispersive = answer.if_dispersive.as_deref().unwrap();
+    assert!(dispersive.ends_with(": design again for a dispersive base"), "{dispersive}");
+    let walk = answer.walk.as_deref().unwrap();
+    assert_eq!(answer.said, [answer.limit.as_str(), margin, walk, dispersive].join(". "));
+    // 4 D85B of a clean sand lies below what tests showed.
+    let sand = specified(&sand(), Some(7.0)).answer();
+    assert_eq!((sand.margin, sand.if_dispersive), (None, None));
+    // A file of an earlier version has one text.
+    let mut earlier = serde_json::to_value(&answer).unwrap();
+    for part in ["limit", "margin", "walk", "if_dispersive"] {
+        earlier.as_object_mut().unwrap().remove(part);
+    }
+    let earlier = Design { answer: serde_json::from_value(earlier).unwrap(), ..specified(&till(), None) };
+    assert_eq!((earlier.answer().limit, earlier.answer().walk), (answer.said, None));
+}
+
+/// The base is a share of the filter, and grows with it.
+#[test]
+fn a_thickness_is_said_to_be_varied_with_the_amount_of_base() {
+    let mut found = design(&sand(), Some(3.0));
+    assert_eq!(found.thickness_in_words(), None);
+    let thick = DesignRow { thickness: "90 layers".into(), ..found.boundaries[0].clone() };
+    found.boundaries.push(thick);
+    let said = found.thickness_in_words().unwrap();
+    assert!(said.starts_with("Thickness was varied together with the amount of base"), "{said}");
+    let finding = finding::amount_held(3000).record(true);
+    found.findings.push(DesignFinding { row: None, finding });
+    assert_eq!(found.thickness_in_words(), None);
+}

@@ -1,0 +1,62 @@
+//! Internal stability of both sides of a band, as of a filter.
+
+use crate::gradation::{Gradation, ShapeIndex, SoilSplit};
+use crate::outcome::design::DesignFinding;
+use crate::outcome::design::specification::SizeBand;
+use crate::outcome::digits::percent;
+use crate::outcome::numbers::significant;
+use crate::verdict::finding;
+
+/// The greatest D'15/d'85 of a stable soil by Kezdi.
+pub(super) const MOST_KEZDI: f64 = 4.0;
+
+/// The least H/F of a stable soil by Kenney and Lau.
+pub(super) const LEAST_SHAPE: f64 = 1.0;
+
+/// A side of a band as a soil.
+pub(super) struct Side {
+    /// `fine` or `coarse`.
+    pub name: &'static str,
+    pub kezdi: Option<SoilSplit>,
+    pub kenney_lau: Option<ShapeIndex>,
+}
+
+impl Side {
+    /// Both sides; an index is `None` where a side is of one size. What is drawn below D5 of the fine side is
+    /// a limit of fines, and no part of a gradation.
+    pub fn both(band: &SizeBand) -> [Self; 2] {
+        [("fine", &band.fine_side), ("coarse", &band.coarse_side)].map(|(name, points)| {
+            let points: Vec<(f64, f64)> = points.iter().map(|of| (of[0], of[1])).collect();
+            let soil = Gradation::from_points(&points, None).ok();
+            let kezdi = soil.as_ref().and_then(Gradation::kezdi);
+            Self { name, kezdi, kenney_lau: soil.as_ref().and_then(Gradation::kenney_lau) }
+        })
+    }
+
+    /// Which rules it does not keep, with their numbers; empty where it keeps both.
+    pub fn broken(&self) -> Vec<String> {
+        let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|of| {
+            format!("by Kézdi (D'15/d'85 {}, and the limit is {MOST_KEZDI})", significant(of.value))
+        });
+        let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|of| {
+            let (value, at) = (significant(of.value), percent(of.percent / 100.0));
+            format!("by Kenney and Lau (H/F {value} at F = {at}, and the limit is {LEAST_SHAPE})")
+        });
+        kezdi.into_iter().chain(shape).collect()
+    }
+
+    /// Whether both indices are known.
+    pub fn is_known(&self) -> bool {
+        self.kezdi.is_some() && self.kenney_lau.is_some()
+    }
+}
+
+/// What a reader must know of the sides of a band.
+pub(super) fn findings(band: Option<&SizeBand>) -> Vec<DesignFinding> {
+    let of = |side: &Side| {
+        let broken = side.broken().join(" and ");
+        let finding = finding::unstable_side(side.name, &broken).record(false);
+        (!broken.is_empty()).then_some(DesignFinding { row: None, finding })
+    };
+    band.map(|band| Side::both(band).iter().filter_map(of).collect()).unwrap_or_default()
+}
