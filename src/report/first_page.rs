@@ -115,9 +115,9 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
 /// A part of the filter that the mass eroded does not know of.
 pub(super) const NOT_COUNTED: &str = "pan_of_filter";
 
-/// What is said of the thickness, which stands below the rules.
-const OF_THICKNESS: [&str; 4] =
-    ["modelled_thickness", "stays_with_thickness", "moves_with_thickness", "open_with_thickness"];
+/// What is said of the thickness below the rules: how much was walked, and whether the verdict moves with it.
+const OF_THICKNESS: [&str; 2] = ["modelled_thickness", MOVES_WITH_THICKNESS];
+const MOVES_WITH_THICKNESS: &str = "moves_with_thickness";
 
 /// All findings in the order of a reader, but those that stand elsewhere on the first sheet.
 pub(super) fn findings(outcome: &Outcome) -> Vec<FindingRecord> {
@@ -248,14 +248,8 @@ fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
                     (size(outcome.inputs.filter.d50_by_number_mm, outcome.inputs.scale_free))
                 }
                 ". "
-                @if let Some(sentence) = thickness_moves(outcome) { (unbroken(&sentence)) }
+                @if let Some(sentence) = outcome.sentence_of(MOVES_WITH_THICKNESS) { (unbroken(&sentence)) }
             }
         }
     }
-}
-
-/// How the verdict moves with the thickness.
-fn thickness_moves(outcome: &Outcome) -> Option<String> {
-    let ids = ["stays_with_thickness", "moves_with_thickness", "open_with_thickness"];
-    ids.into_iter().find_map(|id| outcome.sentence_of(id))
 }
