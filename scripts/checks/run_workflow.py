@@ -111,7 +111,9 @@ def main():
     parser.add_argument("--instead", nargs="*", default=[], metavar="NAME=COMMAND", help="runs a command in the place of an action or a step")
     parser.add_argument("--ref", default="v0.0.0-trial", help="name of the tag or branch (v0.0.0-trial)")
     parser.add_argument("--target", type=Path, help="a folder for what cargo builds, with this machine's CARGO_HOME, to save time")
-    parser.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
+    where.add_argument("--within", type=Path, help="goes on in a clone that was kept, as it stands, with what was compiled there")
     args = parser.parse_args()
     workflow = yaml.safe_load(args.workflow.read_text(encoding="utf-8"))
     job = workflow["jobs"].get(args.job) or fail(f"no job {args.job}; there are: {', '.join(workflow['jobs'])}")
@@ -121,11 +123,11 @@ def main():
     matrix = combination(job, pairs(args.matrix))
 
     work = Path(tempfile.mkdtemp(prefix="workflow-"))
-    clone = args.keep or work / "clone"
+    clone = (args.within or args.keep or work / "clone").resolve()
     try:
-        subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
-        clone = clone.resolve()
-        if args.target:
+        if not args.within:
+            subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
+        if args.target and not args.within:
             args.target.mkdir(parents=True, exist_ok=True)
             (clone / "target").symlink_to(args.target.resolve())
             dated(clone)
@@ -224,7 +226,7 @@ class Runner:
 def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
     runner = Runner(workflow, job, matrix, work, clone, args.ref)
-    if args.target:
+    if (clone / "target").is_symlink():
         runner.share_crates()
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()
