@@ -88,7 +88,9 @@ fn is_of(kind: &str, value: &Value) -> bool {
 
 fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
     let Some(rules) = schema.as_object() else {
-        assert_eq!(schema, &Value::Bool(true), "{at}");
+        if schema != &Value::Bool(true) {
+            found.push(format!("{at} is not in the schema"));
+        }
         return;
     };
     for (rule, says) in rules {
