@@ -8,6 +8,7 @@ The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a 
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
 thrown away, but this machine's toolchains are everybody's. `cargo +VERSION` takes a Rust that is there. Steps that `use` an action are named and skipped, for they need GitHub:
 `--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
+A job that failed goes on with what was compiled, and with what was mended in its clone: `--keep FOLDER`, then `--within FOLDER`.
 Ends with the exit code of the first step that fails.
 """
 
