@@ -8,6 +8,7 @@ The job works in a clean clone of the last commit, with a HOME, a CARGO_HOME, a 
 machine it has the Rust that is in use and the crates that cargo has fetched. `rustup` only says what it was asked for: a runner is
 thrown away, but this machine's toolchains are everybody's. `cargo +VERSION` takes a Rust that is there. Steps that `use` an action are named and skipped, for they need GitHub:
 `--instead 'PyO3/maturin-action=maturin build ...'` runs a command in the place of one, or of a step by its name. Every step is timed.
+A job that failed goes on with what was compiled, and with what was mended in its clone: `--keep FOLDER`, then `--within FOLDER`.
 Ends with the exit code of the first step that fails.
 """
 
@@ -111,7 +112,9 @@ def main():
     parser.add_argument("--instead", nargs="*", default=[], metavar="NAME=COMMAND", help="runs a command in the place of an action or a step")
     parser.add_argument("--ref", default="v0.0.0-trial", help="name of the tag or branch (v0.0.0-trial)")
     parser.add_argument("--target", type=Path, help="a folder for what cargo builds, with this machine's CARGO_HOME, to save time")
-    parser.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--keep", type=Path, help="keeps the clone in this folder, which must not exist")
+    where.add_argument("--within", type=Path, help="goes on in a clone that was kept, as it stands, with what was compiled there")
     args = parser.parse_args()
     workflow = yaml.safe_load(args.workflow.read_text(encoding="utf-8"))
     job = workflow["jobs"].get(args.job) or fail(f"no job {args.job}; there are: {', '.join(workflow['jobs'])}")
@@ -121,11 +124,11 @@ def main():
     matrix = combination(job, pairs(args.matrix))
 
     work = Path(tempfile.mkdtemp(prefix="workflow-"))
-    clone = args.keep or work / "clone"
+    clone = (args.within or args.keep or work / "clone").resolve()
     try:
-        subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
-        clone = clone.resolve()
-        if args.target:
+        if not args.within:
+            subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
+        if args.target and not args.within:
             args.target.mkdir(parents=True, exist_ok=True)
             (clone / "target").symlink_to(args.target.resolve())
             dated(clone)
@@ -224,7 +227,7 @@ class Runner:
 def run(workflow, job, args, matrix, instead, work, clone):
     """Runs the steps of a job: the exit code of the first that fails."""
     runner = Runner(workflow, job, matrix, work, clone, args.ref)
-    if args.target:
+    if (clone / "target").is_symlink():
         runner.share_crates()
     print(f"{args.workflow.name}, {args.job}, {matrix or 'no matrix'}: in {clone}", flush=True)
     begun = time.monotonic()

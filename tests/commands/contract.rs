@@ -2,53 +2,27 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Output;
 
 use serde_json::Value;
-use voidwalk::store::format::Format;
 
 use crate::judge::{SMALL, soils};
 use crate::program::{call, done, refused, voidwalk};
-use crate::schemas::problems;
+use crate::schemas::{beginning, json_files, keep_to_schema, problems, schema_of};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Form and version, with which a record begins.
-fn beginning(text: &str) -> (String, String) {
-    let value: Value = serde_json::from_str(text).unwrap();
-    let names: Vec<&String> = value.as_object().unwrap().keys().take(2).collect();
-    assert_eq!(names, ["format", "voidwalk"], "{text:.200}");
-    let [format, version] = ["format", "voidwalk"].map(|name| value[name].as_str().unwrap().to_owned());
-    (format, version)
-}
-
-/// A record says all that its schema requires, and nothing that this does not know; without any one of the
-/// required fields it does not.
+/// A record keeps to its schema; without any one of the required fields it does not.
 fn keeps_to_its_schema(text: &str) {
-    let (form, _) = beginning(text);
-    let name = form.trim_start_matches("voidwalk-").split('/').next().unwrap();
-    let schema: Value = serde_json::from_str(Format::named(name).unwrap().schema).unwrap();
-    let record: Value = serde_json::from_str(text).unwrap();
-    assert_eq!(problems(&schema, &record), [""; 0], "{form}");
+    keep_to_schema(text, "");
+    let (schema, record) = (schema_of(text), serde_json::from_str::<Value>(text).unwrap());
     for field in schema["required"].as_array().unwrap() {
         let mut less = record.clone();
         less.as_object_mut().unwrap().remove(field.as_str().unwrap());
-        assert_eq!(problems(&schema, &less), [format!(": {field} is missing")], "{form}");
-    }
-}
-
-/// The JSON files in a folder and those below, but for the names of inputs, which are the program's own.
-fn json_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            json_files(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "json") && !path.ends_with("names.json") {
-            found.push(path);
-        }
+        assert_eq!(problems(&schema, &less), [format!(": {field} is missing")]);
     }
 }
 
@@ -61,7 +35,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
     let filter = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 300\nstiffness_ratio = 0.01\n";
     fs::write(at.join("filter.toml"), filter).unwrap();
     let small = |args: &[&'static str]| [args, &SMALL].concat();
-    let commands: [(Vec<&str>, &str); 13] = [
+    let commands: [(Vec<&str>, &str); 14] = [
         (small(&["judge", "base.csv", "fine.csv", "--quick", "--json"]), "outcome"),
         (small(&["run", "--set", "replicates=2", "--set", "record.sensitivity=[]", "--json"]), "outcome"),
         (
@@ -80,6 +54,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
         (vec!["pack", "filter.toml", "--out", "packing", "--json"], "packing"),
         (vec!["constrictions", "packing/grains.csv", "--json"], "constrictions"),
         (vec!["reproduce", "voidwalk-run", "--json"], "reproduced"),
+        (vec!["check", "plan.toml", "--json"], "plan-check"),
         (vec!["campaign", "plan.toml"], ""),
     ];
     for (args, form) in commands {
@@ -91,9 +66,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
             keeps_to_its_schema(&text(&output.stdout));
         }
     }
-    let mut files = Vec::new();
-    json_files(&at, &mut files);
-    let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let texts: Vec<String> = json_files(&at).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     texts.iter().for_each(|text| keeps_to_its_schema(text));
     let forms: BTreeSet<String> = texts.iter().map(|text| beginning(text).0).collect();
     let expected = ["campaign", "case", "comparison", "constrictions", "design", "manifest", "outcome"];

@@ -2,35 +2,15 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
 use voidwalk::run::FolderKind;
 
-use super::program::figures_are_listed;
+use super::program::{call, done, figures_are_listed, refused, voidwalk};
 
 const FILTER: &str =
     "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 600\nstiffness_ratio = 0.01\n";
-
-fn voidwalk(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
-    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn call(folder: &Path, args: &[&str]) -> Output {
-    voidwalk(folder).args(args).output().unwrap()
-}
-
-fn done(output: &Output) {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-fn refused(output: &Output, message: &str) {
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(stderr.contains(message), "{stderr:?} lacks {message:?}");
-}
 
 fn with_filter(text: &str) -> (tempfile::TempDir, PathBuf) {
     let root = tempfile::tempdir().unwrap();
@@ -94,8 +74,7 @@ fn a_packing_goes_on_after_stops_and_kills_with_the_same_bits() {
     let (_root, at) = with_filter(FILTER);
     done(&call(&at, &["pack", "filter.toml", "--out", "whole"]));
     let start = || {
-        voidwalk(&at)
-            .args(["pack", "filter.toml", "--out", "broken", "--checkpoint-every", "1ms"])
+        voidwalk(&at, &["pack", "filter.toml", "--out", "broken", "--checkpoint-every", "1ms"])
             .spawn()
             .unwrap()
     };
@@ -146,10 +125,12 @@ fn an_unfinished_packing_of_another_recipe_is_left_alone() {
 #[test]
 fn a_stopped_packing_does_not_become_that_of_another_gradation() {
     let (_root, at) = with_filter(&FILTER.replace("grains = 600", "grains = 3000"));
-    let child = voidwalk(&at)
-        .args(["pack", "filter.toml", "--out", "out", "--checkpoint-every", "1ms", "--threads", "1"])
-        .spawn()
-        .unwrap();
+    let child = voidwalk(
+        &at,
+        &["pack", "filter.toml", "--out", "out", "--checkpoint-every", "1ms", "--threads", "1"],
+    )
+    .spawn()
+    .unwrap();
     while !at.join("out/compression.1").exists() {
         std::thread::sleep(Duration::from_millis(2));
     }

@@ -4,22 +4,13 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use voidwalk::run::FolderKind;
 
-use super::program::figures_are_listed;
+use super::program::{call, done, figures_are_listed};
 
 /// A narrow scene, so that a replicate takes milliseconds.
 const SMALL: [&str; 6] = ["--set", "network.nx=8", "--set", "network.ny=8", "--set", "network.nz=10"];
-
-fn call(folder: &Path, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_voidwalk")).current_dir(folder).args(args).output().unwrap()
-}
-
-fn done(output: &Output) {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
 
 fn refused(folder: &Path, args: &[&str], message: &str) {
     let output = call(folder, args);

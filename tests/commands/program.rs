@@ -2,8 +2,11 @@
 
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::time::SystemTime;
 
 use voidwalk::run::FolderKind;
+
+use crate::schemas::records_since;
 
 pub fn voidwalk(folder: &Path, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_voidwalk"));
@@ -11,8 +14,14 @@ pub fn voidwalk(folder: &Path, args: &[&str]) -> Command {
     command
 }
 
+/// What it wrote, if it has done what was asked, keeps to its schemas.
 pub fn call(folder: &Path, args: &[&str]) -> Output {
-    voidwalk(folder, args).output().unwrap()
+    let begun = SystemTime::now();
+    let output = voidwalk(folder, args).output().unwrap();
+    if output.status.success() {
+        records_since(folder, begun);
+    }
+    output
 }
 
 pub fn done(output: &Output) {

@@ -296,6 +296,34 @@ fn a_resumed_run_follows_no_link_to_packings() {
     done(&call(&at, &["resume", "r", "-q"]));
 }
 
+/// Kills a precision study in `p` when its first tier is kept, then stops it when its second is; whether both came in time.
+fn is_broken_off_twice(at: &Path, args: &[&str]) -> bool {
+    let kept = |slot: &str| at.join("p").join(slot).exists();
+    let until = |slot: &str| {
+        let mut child = voidwalk(at, args).spawn().unwrap();
+        while !kept(slot) && child.try_wait().unwrap().is_none() {}
+        child
+    };
+    let mut child = until("study.1");
+    let _ = child.kill();
+    if child.wait().unwrap().success() || kept("study.0") {
+        return false;
+    }
+    let child = until("study.0");
+    let id = child.id().to_string();
+    let _ = std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(!stderr.contains("sampling: the scatter"), "{stderr}");
+    if output.status.success() {
+        return false;
+    }
+    assert_eq!(output.status.code(), Some(3), "{stderr}");
+    let message = "after 2 of 3 tiers, which are kept in p; continue with the same command";
+    assert!(stderr.contains(message), "{stderr}");
+    true
+}
+
 /// But for what a clock says, the tables of a study that was killed and stopped are those of one that was not.
 #[test]
 fn a_precision_study_that_is_killed_goes_on_with_the_tier_it_was_at() {
@@ -308,26 +336,12 @@ fn a_precision_study_that_is_killed_goes_on_with_the_tier_it_was_at() {
         args
     };
     done(&call(&at, &args("whole")));
-    // Killed when its first tier is kept, then stopped when its second is.
-    for (slot, kill) in [("study.1", true), ("study.0", false)] {
-        let mut child = voidwalk(&at, &args("p")).spawn().unwrap();
-        while !at.join("p").join(slot).exists() {
-            assert!(child.try_wait().unwrap().is_none(), "it is too short to be killed");
-        }
-        if kill {
-            let _ = child.kill();
-            let _ = child.wait();
-            continue;
-        }
-        let id = child.id().to_string();
-        assert!(std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{stderr}");
-        assert!(!stderr.contains("sampling: the scatter"), "{stderr}");
-        let message = "after 2 of 3 tiers, which are kept in p; continue with the same command";
-        assert!(stderr.contains(message), "{stderr}");
-    }
+    // On a busy machine it may be done before it is looked at.
+    let is_broken = (0..20).any(|_| {
+        let _ = fs::remove_dir_all(at.join("p"));
+        is_broken_off_twice(&at, &args("p"))
+    });
+    assert!(is_broken, "it is too short to be killed");
     let other = [&args("p")[..], &["--seed", "9"]].concat();
     refused(&call(&at, &other), "the unfinished precision study there cannot be continued");
     refused(&call(&at, &["percolation", "--sizes", "3", "--out", "p"]), "holds a precision study");

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use crate::judge::{BASE, FINE};
 use crate::program::voidwalk;
+use crate::schemas::keep_to_schema;
 
 /// A server in a folder of its own.
 pub struct Served {
@@ -42,6 +43,9 @@ pub fn serve_in(at: tempfile::TempDir) -> Served {
         assert_eq!(out.read(&mut byte).unwrap(), 1, "it has ended: {text}");
         text.push(char::from(byte[0]));
     }
+    // Written before it says its address.
+    let record = at.path().join("served/serve.json");
+    keep_to_schema(&fs::read_to_string(&record).unwrap(), "serve.json");
     let address = text.trim().strip_prefix("open http://127.0.0.1:").unwrap();
     let (port, path) = address.split_once('/').unwrap();
     Served { port: port.parse().unwrap(), path: format!("/{path}"), child, at }

@@ -258,7 +258,9 @@ fn a_task_whose_program_is_killed_is_begun_again_a_few_times() {
     // A program that dies as one does that is out of memory.
     let array = fs::read_to_string(place.at.join("out/slurm/array.sh")).unwrap();
     place.command("dies", "kill -KILL $$");
-    let dying = array.replace(&format!("'{}'", env!("CARGO_BIN_EXE_voidwalk")), "dies");
+    // The program names itself by its place, where the folder of what is compiled may be a link.
+    let program = fs::canonicalize(env!("CARGO_BIN_EXE_voidwalk")).unwrap();
+    let dying = array.replace(&format!("'{}'", program.display()), "dies");
     assert_ne!(array, dying);
     fs::write(place.at.join("out/slurm/array.sh"), dying).unwrap();
     for (restarts, requeues) in [("0", 1), ("4", 2), ("5", 2)] {
