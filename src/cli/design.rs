@@ -7,7 +7,7 @@ use super::progress::followed;
 use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, Range, band_in_words};
+use crate::outcome::design::{Boundary, Design, DesignRow, Range, over_networks};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
@@ -124,13 +124,14 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
         false => ["no erosion up to", "continuing erosion from"],
         true => ["no erosion down to", "continuing erosion below"],
     };
-    let boundaries = [(&row.no_erosion, &row.no_erosion_note), (&row.continuing, &row.continuing_note)];
+    let boundaries = row.shown().into_iter().zip([&row.no_erosion_note, &row.continuing_note]);
+    let networks = row.networks.len() as u64;
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     // The boundary of no erosion is stated as a limit.
     let limit: fn(f64) -> String = if design.inverse { rounded_up } else { rounded_down };
     let sizes = [limit, |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
-        let said = boundary.as_ref().map(|boundary| ratio(boundary, design, size));
+        let said = boundary.map(|boundary| ratio(&boundary, networks, design.inverse, size));
         lines.push(match (said, note) {
             (Some(said), Some(note)) => format!("  {what} {said}. {}", capital(note)),
             (Some(said), None) => format!("  {what} {said}"),
@@ -161,13 +162,10 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     lines
 }
 
-fn ratio(boundary: &Boundary, design: &Design, mm: fn(f64) -> String) -> String {
+fn ratio(boundary: &Boundary, networks: u64, inverse: bool, mm: fn(f64) -> String) -> String {
     let between = |low: Option<f64>, high: Option<f64>, words: fn(f64) -> String| {
-        if design.replicates == 1 {
-            return "of one network".to_owned();
-        }
         let end = |value: Option<f64>| value.map_or("unknown".into(), words);
-        format!("{} of networks: {} to {}", band_in_words(design.replicates), end(low), end(high))
+        over_networks(&format!("{} to {}", end(low), end(high)), networks)
     };
     let Boundary { median, low, high, .. } = boundary;
     let of_networks = |low: Option<f64>, high: Option<f64>, words| match low.or(high) {
@@ -179,7 +177,7 @@ fn ratio(boundary: &Boundary, design: &Design, mm: fn(f64) -> String) -> String 
     };
     let size = match (&boundary.d15f_mm, &boundary.d85b_mm) {
         (Some(range), _) => size("D15F", range),
-        (None, Some(range)) if design.inverse => size("D85B", range),
+        (None, Some(range)) if inverse => size("D85B", range),
         _ => String::new(),
     };
     format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high, |ratio| format!("{ratio:.3}")))

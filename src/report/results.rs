@@ -5,7 +5,7 @@ use maud::{Markup, Render, html};
 use super::numbers::{known, percent, percent_interval, significant, size, size_unit, trimmed, whole};
 use super::run_figures::run_name;
 use super::table::Table;
-use super::varied::{HELD, STOPPED_WHEN_CLEAR, classes_of_points};
+use super::varied::{STOPPED_WHEN_CLEAR, classes_of_points, held};
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic};
 use crate::verdict::words::capital;
@@ -177,7 +177,7 @@ pub(super) fn thickness(outcome: &Outcome) -> Markup {
         @if !outcome.thickness.is_empty() { details {
             summary { "Filters of other thicknesses, in numbers" }
             (table.text("Verdict", |row| row.walked.verdict.words()))
-            @if outcome.thickness.iter().any(is_held) { p.small { "* " (HELD) } }
+            @if outcome.thickness.iter().any(is_held) { p.small { "* " (held()) } }
             (below(outcome, outcome.thickness.iter().any(|row| row.walked.stopped_when_clear)))
         } }
     }

@@ -7,7 +7,7 @@ use super::run_figures::{eroded_axis, run_look, run_name, threshold_rule, upper,
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome};
-use crate::verdict::thickness::WITH_AMOUNT;
+use crate::verdict::thickness::{OTHER_BASE, WITH_AMOUNT};
 
 /// What is said where points of a study stopped early.
 pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two replicates if its erosion \
@@ -15,8 +15,11 @@ pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two repl
     or its own if that is wider, because so few replicates do not show theirs.";
 
 /// What is said where not every thickness has its base.
-pub(super) const HELD: &str = "The number of base particles is fixed or capped (marked * in the table), so a \
-    thicker filter is not offered base in proportion. It seems to hold better than it would.";
+pub(super) fn held() -> String {
+    format!(
+        "{OTHER_BASE}. A thicker filter is then offered too little base, and seems to hold better than it would."
+    )
+}
 
 /// What is said of the classes of a study where the verdict is undecided and its other points know nothing of
 /// what leaves it so.
@@ -79,7 +82,7 @@ pub(super) fn thickness(folder: &RunFolder) -> Option<Drawn> {
     let outcome = &folder.outcome;
     let varied = match outcome.thickness.iter().all(|row| outcome.has_its_base(row)) {
         true => format!("{WITH_AMOUNT}."),
-        false => HELD.to_owned(),
+        false => held(),
     };
     let caption = format!(
         "{varied} ×1 is this filter, {} layers of voids. Bars: 95 % intervals. {behind}",

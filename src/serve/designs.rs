@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::sheets::Sheets;
 use crate::constrictions;
 use crate::outcome::design::band::Band;
-use crate::outcome::design::{Design, DesignFinding, band_in_words};
+use crate::outcome::design::{Design, DesignFinding, share_of_networks};
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
 
@@ -175,6 +175,9 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
     let rows = boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut);
     for (row, of) in rows.zip(&design.boundaries) {
         row.shift_remove("networks");
+        for (name, shown) in ["no_erosion", "continuing"].into_iter().zip(of.shown()) {
+            row.insert(name.into(), serde_json::to_value(shown)?);
+        }
         // A limit is rounded inward, which no script of the page does.
         let practice = of.band.as_ref().and_then(Band::practice_in_words);
         row.insert("practice".into(), practice.into());
@@ -186,7 +189,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "d85b": design.base.size().map(|base| base.words()),
         "filter": design.filter,
         "boundaries": boundaries,
-        "band_of_networks": band_in_words(design.replicates),
+        "share_of_networks": share_of_networks(design.replicates),
         "replicates": design.replicates,
         "confidence": design.confidence.words(),
         "reasons": design.reasons,
@@ -201,8 +204,8 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::Specification;
     use crate::outcome::design::band::SetBy;
+    use crate::outcome::design::{Boundary, Specification};
     use crate::verdict::SpecificationOptions;
 
     /// The limit of practice is 0.8069 mm, and its base is not stable itself.
@@ -248,6 +251,32 @@ mod tests {
         // Without a specification the warning stays where it was.
         let alone = Design { specification: None, ..design };
         assert_eq!(of_design(&alone).unwrap()["warnings"].as_array().unwrap().len(), 2);
+    }
+
+    /// Five networks: the ends on the page are the least and the most of them.
+    #[test]
+    fn of_few_networks_the_page_has_least_and_most() {
+        let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
+        let boundary = Boundary::of(&ratios.map(Ok), Some(0.5)).unwrap();
+        let networks = ratios.map(|ratio| json!({"network": 1, "no_erosion": ratio, "continuing": null}));
+        let text = json!({
+            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
+            "unit": "mm",
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.5, "d95_over_d85": null},
+            "threshold": 0.075, "replicates": 5, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
+            "confidence": "within checked range", "reasons": [], "rules": [], "rules_at": 1.75,
+            "products": [], "warnings": [], "findings": [],
+            "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
+            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+                "grains_per_void": 0.6, "no_erosion": boundary, "continuing": null, "not_monotone": 0,
+                "networks": networks, "band": null}],
+        });
+        let shown = of_design(&serde_json::from_value(text).unwrap()).unwrap();
+        let no_erosion = &shown["boundaries"][0]["no_erosion"];
+        assert_eq!((&no_erosion["low"], &no_erosion["high"]), (&json!(4.0), &json!(6.0)));
+        assert_eq!(no_erosion["d15f_mm"]["high"], 3.0);
+        assert!(shown["boundaries"][0]["continuing"].is_null());
+        assert_eq!(shown["share_of_networks"], "least and most");
     }
 
     fn asked(filter: &str, shape: &str) -> AskedDesign {

@@ -579,7 +579,8 @@ function soFar(job) {
   return parts;
 }
 
-const between = (range) => (range.low === null && range.high === null ? "band not known"
+/** Nothing of one network, nor where both ends lie beyond the search. */
+const between = (range) => (range.low === null && range.high === null ? ""
   : `${number(range.low)} to ${number(range.high)}`);
 
 /** A boundary over networks, or why there is none; in bold where the walk decides. */
@@ -605,7 +606,7 @@ function boundariesOf(job) {
   return [done.answer ? el("p", { class: "word" }, `${said.limit}.`) : null,
     said.margin ? el("p", {}, `${said.margin}.`) : null,
     said.if_dispersive ? el("p", {}, el("b", {}, `${said.if_dispersive}.`)) : null,
-    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; median of ${done.replicates} networks, below it ${done.band_of_networks} of them.`),
+    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
     said.walk ? el("p", {}, `${said.walk}.`) : null,
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
     el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),

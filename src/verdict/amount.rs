@@ -4,17 +4,20 @@ use super::entry::Finding;
 use super::finding as found;
 use super::practice::severity;
 use super::study_points::{classes, reach, times, walked_in_words};
+use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{Outcome, Sensitivity, Verdict};
 
 /// The eroded mass is about the same where its least and greatest lie within this factor.
 const ABOUT_THE_SAME: f64 = 1.5;
 
+/// Digits of the mass of the base in percent of the filter's.
+const DIGITS: u8 = 3;
+
 /// Amounts must lie this far apart before the eroded mass is compared.
 const FAR_APART: f64 = 4.0;
 
 /// What the walk does with the amounts, where the same mass erodes of each.
-const SAME_MASS: &str =
-    "About the same mass erodes however much base is offered, so the class follows from the amount";
+const SAME_MASS: &str = "About the same mass erodes however much base is offered";
 
 /// How the verdict moves with the amount of base; `None` without another amount.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
@@ -28,7 +31,7 @@ pub(super) fn worse_in_words(outcome: &Outcome) -> Option<String> {
     let worse = amounts.worse()?;
     let own = amounts.ratio().map_or_else(
         || "this amount of base".to_owned(),
-        |ratio| format!("base of {} % of the filter's mass", times(100.0 * ratio)),
+        |ratio| format!("base of {} % of the filter's mass", in_digits(100.0 * ratio, DIGITS)),
     );
     let (class, other) = (amounts.verdict.words(), worse.walked.verdict.words());
     Some(format!("{class} with {own}, {other} with {}", part_of_it(worse.factor)))
@@ -105,16 +108,30 @@ impl<'a> Amounts<'a> {
         let points: Vec<(f64, Verdict)> = others.chain([(1.0, self.as_others)]).collect();
         let each = match self.ratio() {
             Some(ratio) => classes(&points, |ends, is_first| {
-                let share = reach(ends.map(|factor| 100.0 * ratio * factor));
+                let share =
+                    reach(ends.map(|factor| 100.0 * ratio * factor), |share| in_digits(share, DIGITS));
                 let of = if is_first { " of the filter's mass" } else { "" };
                 format!("with {}{share} %{of}", if is_first { "base of " } else { "" })
             }),
-            None => classes(&points, |ends, _| format!("with {} times the base", reach(ends))),
+            None => classes(&points, |ends, _| format!("with {} times the base", reach(ends, times))),
         };
         let ends = "; the ends of its range were not walked with other amounts";
         match self.points {
             Some(points) => format!("{each} ({points}{})", if self.is_range { ends } else { "" }),
             None => each,
+        }
+    }
+
+    /// What follows for the class where the same mass erodes of each amount. One class of all that were
+    /// walked is no steadier for it: of less base a greater share erodes.
+    fn follows(&self, is_one: bool) -> &'static str {
+        match self.as_others {
+            _ if !is_one => ", so the class follows from the amount",
+            Verdict::None => ", so that still less base would give a worse class; walked",
+            Verdict::Some | Verdict::Continuing => {
+                ", so that still more base would give a better class; walked"
+            }
+            Verdict::Undecided => "; walked",
         }
     }
 
@@ -129,9 +146,9 @@ impl<'a> Amounts<'a> {
         let classes = self.classes();
         let is_one = self.others().all(|row| row.walked.verdict == self.as_others);
         let why = match is_one {
-            _ if self.is_same_mass() => SAME_MASS,
+            _ if self.is_same_mass() => &format!("{SAME_MASS}{}", self.follows(is_one)),
             _ if self.verdict == Verdict::Undecided => {
-                "The verdict is undecided. By the amount of base it is"
+                "The verdict is undecided. The class by amount of base"
             }
             true => "The class does not change with the amount of base",
             false => "The class depends on the amount of base",
@@ -149,7 +166,7 @@ impl<'a> Amounts<'a> {
                 let widen = |[least, most]: [f64; 2], of: f64| [least.min(of), most.max(of)];
                 let factors = self.others().map(|row| row.factor);
                 let ends = factors.fold([f64::INFINITY, f64::NEG_INFINITY], widen);
-                found::stays_with_amount(why, &classes, &format!("{} times the base", reach(ends)))
+                found::stays_with_amount(why, &classes, &format!("{} times the base", reach(ends, times)))
             }
             None => found::moves_with_amount(why, &classes, &each),
         })
@@ -202,8 +219,17 @@ mod tests {
         assert!(moves.id() == "moves_with_amount" && !moves.is_against(Verdict::Some));
         let open = of(&rows, Verdict::Undecided).sentence();
         assert!(
-            open.starts_with("The verdict is undecided. By the amount of base it is: undecided"),
+            open.starts_with(
+                "The verdict is undecided. The class by amount of base: undecided with base of 5"
+            ),
             "{open}"
+        );
+        let mut odd = rows.clone();
+        odd.iter_mut().for_each(|row| row.mass_ratio = Some(0.052345 * row.factor));
+        let said = of(&odd, Verdict::None).sentence();
+        assert!(
+            said.contains("base of 5.23 to 20.9 % of the filter's mass, some erosion with 1.31 %"),
+            "{said}"
         );
         let mut unknown = rows.clone();
         unknown.iter_mut().for_each(|row| row.mass_ratio = None);
@@ -227,8 +253,8 @@ mod tests {
         assert_eq!(
             worse.sentence(),
             format!(
-                "{SAME_MASS}: no erosion with base of 2.5 to 20 % of the filter's mass, some erosion \
-                     with 1.25 %."
+                "{SAME_MASS}, so the class follows from the amount: no erosion with base of 2.5 to 20 % of \
+                     the filter's mass, some erosion with 1.25 %."
             )
         );
         // A class that is the same for all is no sturdier for it, and the ends of a range are not covered.
@@ -242,8 +268,9 @@ mod tests {
             (
                 "stays_with_amount",
                 format!(
-                    "{SAME_MASS}: no erosion with base of 1.25 to 20 % of the filter's mass (by the curve \
-                 itself; the ends of its range were not walked with other amounts)."
+                    "{SAME_MASS}, so that still less base would give a worse class; walked: no erosion with \
+                     base of 1.25 to 20 % of the filter's mass (by the curve itself; the ends of its range \
+                     were not walked with other amounts)."
                 )
             )
         );
@@ -253,6 +280,11 @@ mod tests {
             open.starts_with(SAME_MASS) && open.ends_with("with 1.25 % (by the curve itself)."),
             "{open}"
         );
+        let erodes = rows
+            .clone()
+            .map(|row| Sensitivity { walked: Classed { verdict: Verdict::Some, ..row.walked }, ..row });
+        let some = of(&erodes, Verdict::Some).sentence();
+        assert!(some.contains(", so that still more base would give a better class; walked: some"), "{some}");
         // Amounts that lie close together show nothing.
         assert!(!amounts(&rows[1..3], Verdict::None).is_same_mass());
     }

@@ -67,13 +67,14 @@ impl Outcome {
         self.findings.iter().any(errs)
     }
 
-    /// That a pair that holds in the walk lies beyond the boundary of no erosion that the paper found with
-    /// the same model.
+    /// That a pair that holds in the walk lies beyond the boundary of no erosion that the authors of the
+    /// model found with it.
     fn beyond_its_own_boundary(&self) -> Option<String> {
         let rule = self.rules.iter().find(|rule| rule.id == PAPER_NO_EROSION && rule.met == Some(false));
         let [value, limit] = against(rule.filter(|_| self.verdict == Verdict::None)?, 3);
         Some(format!(
-            "beyond the boundary of no erosion of the paper's own network (D15F/D85B {value} > {limit})"
+            "beyond the boundary of no erosion of the network with which the model was published (Shire & \
+             O'Sullivan: D15F/D85B {value} > {limit})"
         ))
     }
 

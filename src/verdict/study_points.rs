@@ -44,9 +44,9 @@ pub(super) fn classes(points: &[(f64, Verdict)], said: impl Fn([f64; 2], bool) -
     each.collect::<Vec<_>>().join(", ")
 }
 
-/// From one number to another, without digits that say nothing.
-pub(super) fn reach([least, most]: [f64; 2]) -> String {
-    if least == most { times(least) } else { format!("{} to {}", times(least), times(most)) }
+/// From one number to another in these words, or the one that both are.
+pub(super) fn reach([least, most]: [f64; 2], words: impl Fn(f64) -> String) -> String {
+    if least == most { words(least) } else { format!("{} to {}", words(least), words(most)) }
 }
 
 /// A multiple, without digits that say nothing.
@@ -84,8 +84,9 @@ mod tests {
     #[test]
     fn neighbours_of_one_class_stand_together_and_the_scene_itself_first() {
         use Verdict::{None, Some, Undecided};
-        let said =
-            |ends: [f64; 2], first: bool| format!("{}{}", reach(ends), if first { " times" } else { "" });
+        let said = |ends: [f64; 2], first: bool| {
+            format!("{}{}", reach(ends, times), if first { " times" } else { "" })
+        };
         let points = [(0.25, Some), (4.0, None), (0.5, Undecided), (1.0, None), (2.0, None)];
         let words = classes(&points, said);
         assert_eq!(words, "no erosion 1 to 4 times, some erosion 0.25, undecided 0.5");

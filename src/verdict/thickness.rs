@@ -53,7 +53,7 @@ pub const WITH_AMOUNT: &str =
     "Thickness was varied together with the amount of base (the base is a share of the filter)";
 
 /// How it was varied where a cap or a number of the scene holds the base.
-const OTHER_BASE: &str =
+pub const OTHER_BASE: &str =
     "Thickness was varied, and the base not in proportion (its particles are fixed or capped)";
 
 /// The thicknesses that were walked, beside a verdict.
@@ -90,7 +90,7 @@ impl Points<'_> {
         let why = if is_held { OTHER_BASE } else { WITH_AMOUNT };
         let others = self.others().map(|row| (row.factor, row.walked.verdict));
         let points: Vec<(f64, Verdict)> = others.chain([(1.0, self.as_others)]).collect();
-        let mut said = classes(&points, |ends, _| format!("at {} times the thickness", reach(ends)));
+        let mut said = classes(&points, |ends, _| format!("at {} times the thickness", reach(ends, times)));
         if let Some(points) = self.points {
             said += &format!(" ({points})");
         }

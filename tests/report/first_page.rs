@@ -436,7 +436,8 @@ fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
         (rule.id, rule.unit, rule.at_least) = ("paper-no-erosion".into(), String::new(), false);
         (rule.met, rule.value, rule.limit) = (Some(false), Some(5.58), Some(5.0));
     });
-    let said = "; beyond the boundary of no erosion of the paper's own network (D15F/D85B 5.58 > 5.00)";
+    let said = "; beyond the boundary of no erosion of the network with which the model was published \
+                (Shire & O'Sullivan: D15F/D85B 5.58 > 5.00)";
     assert!(beyond.contains(said), "{beyond}");
     let finding = |verdict: Verdict| {
         walk(&|outcome| {

@@ -6,7 +6,7 @@ use super::band::{Band, SetBy};
 use super::finding::DesignFinding;
 use super::products::Fit;
 use super::specification::Specification;
-use super::spread::{Beyond, spread};
+use super::spread::{Beyond, are_few, spread};
 use crate::outcome::BaseSize;
 use crate::outcome::record::{AppliedRule, Confidence, InputFile, ModelLimit, SheetCover};
 use crate::walk::Engine;
@@ -238,6 +238,16 @@ impl DesignRow {
         self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
 
+    /// Its boundaries of no and of continuing erosion with the ends that are shown of them: of few networks
+    /// the least and the most, as their percentiles lie between two of them.
+    pub fn shown(&self) -> [Option<Boundary>; 2] {
+        let each =
+            |of: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(of).collect::<Vec<_>>();
+        let both =
+            [(&self.no_erosion, each(|of| of.no_erosion)), (&self.continuing, each(|of| of.continuing))];
+        both.map(|(boundary, networks)| Some(boundary.as_ref()?.with_shown_ends(&networks)))
+    }
+
     /// Networks that were found to erode at some ratio of the search.
     pub fn eroding_networks(&self) -> usize {
         self.networks.iter().filter(|of| of.no_erosion.is_some()).count()
@@ -385,6 +395,28 @@ impl Boundary {
         Self { d15f_mm: None, d85b_mm: d15f_mm.map(mm), ..self }
     }
 
+    /// The same with the least and the most of these networks, where they are few. An end that hangs on
+    /// networks beyond the search stays unknown.
+    fn with_shown_ends(&self, networks: &[Option<f64>]) -> Self {
+        if !are_few(networks.len() as u64) {
+            return self.clone();
+        }
+        let end = |end: Option<f64>, outer: fn(f64, f64) -> f64| {
+            end.map(|end| networks.iter().flatten().copied().fold(end, outer))
+        };
+        let (low, high) = (end(self.low, f64::min), end(self.high, f64::max));
+        let [d15f_mm, d85b_mm] = [self.d15f_mm, self.d85b_mm];
+        let d15f_mm = d15f_mm.map(|of| {
+            let d85 = of.median / self.median;
+            Range { low: low.map(|ratio| ratio * d85), high: high.map(|ratio| ratio * d85), ..of }
+        });
+        let d85b_mm = d85b_mm.map(|of| {
+            let d15 = of.median * self.median;
+            Range { low: high.map(|ratio| d15 / ratio), high: low.map(|ratio| d15 / ratio), ..of }
+        });
+        Self { low, high, d15f_mm, d85b_mm, ..self.clone() }
+    }
+
     /// The ratio that all but a few networks hold: the 5 percentile, or the median where there is one network
     /// only; `None` where more than a few erode at every ratio that was searched, so that none is known.
     pub fn cautious(&self) -> Option<f64> {
@@ -423,6 +455,33 @@ mod tests {
         let d85 = boundary.d85b_mm.unwrap();
         assert!(d85.low.unwrap() < d85.median && d85.median < d85.high.unwrap());
         assert!((d85.median - 1.0 / 4.5).abs() < 1e-12 && boundary.d15f_mm.is_none());
+    }
+
+    #[test]
+    fn of_few_networks_least_and_most_are_shown() {
+        let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
+        let over =
+            |n: usize| -> Vec<Result<f64, Beyond>> { ratios.into_iter().cycle().take(n).map(Ok).collect() };
+        let known = |of: &[Result<f64, Beyond>]| of.iter().map(|one| one.ok()).collect::<Vec<_>>();
+        let few = over(5);
+        let boundary = Boundary::of(&few, Some(0.5)).unwrap();
+        assert!(boundary.low.unwrap() > 4.0 && boundary.high.unwrap() < 6.0);
+        let shown = boundary.with_shown_ends(&known(&few));
+        assert_eq!((shown.low, shown.high, shown.median), (Some(4.0), Some(6.0), 4.8));
+        let mm = shown.d15f_mm.unwrap();
+        let is = |value: Option<f64>, by_hand: f64| (value.unwrap() - by_hand).abs() < 1e-12;
+        assert!(is(mm.low, 2.0) && is(mm.high, 3.0), "{mm:?}");
+        let inverse = boundary.clone().inverted(Some(2.4)).with_shown_ends(&known(&few)).d85b_mm.unwrap();
+        assert!(is(inverse.low, 0.4) && is(inverse.high, 0.6) && inverse.median == 0.5, "{inverse:?}");
+        // What the walk holds is still read from the percentile.
+        assert!(boundary.cautious().unwrap() > 4.0);
+        let many = Boundary::of(&over(20), Some(0.5)).unwrap();
+        assert_eq!(many.with_shown_ends(&known(&over(20))), many);
+        let beyond = [Ok(4.0), Ok(4.4), Err(Beyond::Above)];
+        let shown = Boundary::of(&beyond, None).unwrap().with_shown_ends(&known(&beyond));
+        assert_eq!((shown.low, shown.high), (Some(4.0), None));
+        let alone = Boundary::of(&[Ok(4.0)], None).unwrap().with_shown_ends(&[Some(4.0)]);
+        assert_eq!((alone.low, alone.high), (None, None));
     }
 
     #[test]

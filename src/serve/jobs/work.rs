@@ -170,6 +170,5 @@ pub fn of_run(outcome: &Outcome) -> Value {
         "findings": outcome.ordered().iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
-        "range": outcome.curve_range.as_ref().map(|range| range.eroded_mass_fraction.clone()),
     })
 }
