@@ -427,7 +427,7 @@ mod tests {
         };
         let (coarse, fine) = (of(1.0), of(0.2));
         assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
-        let note = "may lose its finer part, too coarse without its finest 17.6 %";
+        let note = "may lose its finer part, too coarse without its finest 19.4 %";
         assert!(coarse.note.starts_with(note), "{coarse:?}");
         assert_eq!((fine.met, fine.may_lose_fines), (Some(true), true));
         assert!(

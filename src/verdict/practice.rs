@@ -35,7 +35,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     if !unstable.is_empty() {
         all.push(finding::loses_fines(&list(&unstable, |rule| {
             let [value, limit] = against(rule, 3);
-            format!("{} ({} {value}, limit {limit})", authority(rule), rule.quantity)
+            format!("{} ({} {}, limit {limit})", authority(rule), rule.quantity, bounded(rule, &value))
         })));
     }
     all.extend(drainage(rules));

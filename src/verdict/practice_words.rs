@@ -273,7 +273,7 @@ mod tests {
             ),
             "{line}"
         );
-        assert!(line.ends_with("is 2.52 mm, beyond both limits; the filter may segregate"), "{line}");
+        assert!(line.ends_with("is 2.83 mm, beyond both limits; the filter may segregate"), "{line}");
         // What is left of a finer one retains the till: met, with the warning.
         let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
         let rules = of(&finer, &REGRADED_TILL, false);
