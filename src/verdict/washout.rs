@@ -30,6 +30,40 @@ pub(super) struct Washout<'r> {
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
 /// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+    let unstable = unstable(rules);
+    let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
+    let limits = limits(rules, d15f.unwrap_or(1.0));
+    let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
+    let least = limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min);
+    let left = lost(&unstable, least)?;
+    let beyond = limits.iter().filter(|(_, limit)| is_beyond(&left, *limit));
+    Some(Washout {
+        left,
+        beyond: beyond.map(|(rule, _)| rule.id.as_str()).collect(),
+        least,
+        unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
+        unstable,
+        is_one_limit: without_margin(rules).is_some(),
+    })
+}
+
+/// What is left of a filter that is not internally stable, where it is beyond a limit of D15F.
+pub(super) fn lost_beyond(rules: &[AppliedRule], limit: f64) -> Option<WithoutFiner> {
+    lost(&unstable(rules), limit)
+}
+
+fn lost(unstable: &[&AppliedRule], limit: f64) -> Option<WithoutFiner> {
+    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
+    let beyond = parts.filter(|left| is_beyond(left, limit));
+    beyond.min_by_key(|left| left.percent > WIDE_LOOSE_PERCENT * (1.0 + 1e-9))
+}
+
+fn is_beyond(left: &WithoutFiner, limit: f64) -> bool {
+    left.d15f > limit * (1.0 + 1e-9)
+}
+
+/// The criteria of internal stability that are not met, where they make a filter unstable.
+fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
     let is_unstable = |of: &&AppliedRule| of.is_broken() && of.role == RuleRole::Stability;
     let unstable: Vec<&AppliedRule> = rules.iter().filter(is_unstable).collect();
     let is_unstable = match met_of(rules, LI_FANNIN) {
@@ -39,27 +73,7 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
             both.contains(&Some(false)) && !both.contains(&Some(true))
         }
     };
-    if !is_unstable {
-        return None;
-    }
-    let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
-    let limits = limits(rules, d15f.unwrap_or(1.0));
-    let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
-    let beyond = |left: &WithoutFiner| {
-        let broken = limits.iter().filter(|(_, limit)| left.d15f > limit * (1.0 + 1e-9));
-        broken.map(|(rule, _)| rule.id.as_str()).collect::<Vec<_>>()
-    };
-    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
-    let enough = parts.filter(|left| !beyond(left).is_empty());
-    let left = enough.min_by_key(|left| left.percent > WIDE_LOOSE_PERCENT * (1.0 + 1e-9))?;
-    Some(Washout {
-        left,
-        beyond: beyond(&left),
-        least: limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min),
-        unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
-        unstable,
-        is_one_limit: without_margin(rules).is_some(),
-    })
+    if is_unstable { unstable } else { Vec::new() }
 }
 
 impl Washout<'_> {
