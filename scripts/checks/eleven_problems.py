@@ -74,10 +74,12 @@ def is_unstable(soil):
 
 
 def without_finest(soil):
-    """D15F without the part finer than Kezdi's split, where the filter is not internally stable; else None."""
+    """D15F without the part finer than Kezdi's greatest split above 4 up to 20 % (that of the greatest ratio where none is), where the filter is not internally stable; else None."""
     if not is_unstable(soil):
         return None
-    split = max((d(soil, at / 10 + 15) / d(soil, at / 10), at / 8.5) for at in range(150, 551) if d(soil, at / 10))[1]
+    ratios = [(d(soil, at / 100 + 15) / d(soil, at / 100), at / 85) for at in range(1500, 5501) if d(soil, at / 100)]
+    above = [split for ratio, split in ratios if ratio > 4 and split <= 20]
+    split = above[-1] if above else max(ratios)[1]
     return d(soil, split + 0.15 * (100 - split))
 
 
@@ -102,7 +104,7 @@ def faults_of_practice(line, hand):
         yield "met or not"
     if line.startswith("not met: as placed ") and f"its D15F is {washed_out:.3g} mm" not in line:
         yield f"D15F after washout is {washed_out:.3g} mm"
-    sizes = re.match(r"(?:met|met, without a margin in the limit|not met): (?:as placed )?D15F ([\d.]+) mm is (?:within|more than) the ([\d.]+) mm", line)
+    sizes = re.match(r"(?:met|met, without a margin in the limit|met unless the base is dispersive|not met): (?:as placed )?D15F ([\d.]+) mm is (?:within|more than) the ([\d.]+) mm", line)
     if not sizes:
         yield "no D15F beside a limit"
         return

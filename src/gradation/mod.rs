@@ -54,7 +54,7 @@ pub(crate) use soil::file_and_soil;
 pub use soil::{
     Soil, SoilSample, SoilSummary, curves_in_file, notes_in_file, samples_in, soils_in_file, us_sieve,
 };
-pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit};
+pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};
 pub(crate) use table::{Direction, Row, Table, bytes_of, check_size, rising};
 pub use table::{FILE_LIMIT_BYTES, SIZE_MAX_MM, SIZE_MIN_MM};

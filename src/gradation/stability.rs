@@ -25,7 +25,7 @@ use super::Gradation;
 const NARROW_CU: f64 = 3.0;
 
 /// Percent finer up to which grains of a widely graded soil may be loose.
-const WIDE_LOOSE_PERCENT: f64 = 20.0;
+pub const WIDE_LOOSE_PERCENT: f64 = 20.0;
 
 /// Percent finer than d'85 over which Kezdi's ratio is judged.
 pub const KEZDI_RANGE: [f64; 2] = [15.0, 55.0];
@@ -40,6 +40,9 @@ pub struct ShapeIndex {
     pub value: f64,
     /// Percent finer where it is: F of Kenney and Lau.
     pub percent: f64,
+    /// The greatest percent finer, among those looked at, at which the index is less than 1: so much of the
+    /// soil may be lost. `None` where it is nowhere less.
+    pub lost_percent: Option<f64>,
 }
 
 /// A split of a soil in two, with Terzaghi's ratio of the coarser part over the finer.
@@ -110,13 +113,14 @@ impl Gradation {
             let finer = self.percent_finer_by_mass(d);
             let next = self.percent_finer_by_mass(4.0 * d) - finer;
             let of = over(finer);
-            (finer > 0.0 && finer <= limit * (1.0 + 1e-9))
-                .then_some(ShapeIndex { value: next / of, percent: finer })
+            (finer > 0.0 && finer <= limit * (1.0 + 1e-9)).then_some((next / of, finer))
         };
-        candidates
-            .filter(|d| (self.smallest_mm()..=last).contains(d))
-            .filter_map(index)
-            .min_by(|a, b| a.value.total_cmp(&b.value))
+        let sizes: Vec<f64> = candidates.filter(|d| (self.smallest_mm()..=last).contains(d)).collect();
+        let indices = sizes.iter().filter_map(|&d| index(d));
+        let (value, percent) = indices.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let is_lost = |d: f64| index(d).is_some_and(|(value, _)| value < 1.0);
+        let lost_percent = greatest(&sizes, is_lost).map(|d| self.percent_finer_by_mass(d));
+        Some(ShapeIndex { value, percent, lost_percent })
     }
 
     /// Kezdi: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
@@ -133,21 +137,32 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn kezdi(&self) -> Option<SoilSplit> {
-        // A split at n % has d'85 at 0.85 n % and D'15 at 15 % more of the whole mass.
-        if self.size_mm.len() < 2 {
-            return None;
-        }
-        let [low, high] = [KEZDI_RANGE[0].max(self.percent[0]), KEZDI_RANGE[1]];
+        let splits = self.splits(KEZDI_RANGE[1]);
+        splits.filter_map(|finer| self.split(finer)).max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// Kezdi: the greatest split at up to so many percent with a D'15 / d'85 above this limit; `None` where
+    /// there is none.
+    pub fn greatest_split_above(&self, limit: f64, most_percent: f64) -> Option<SoilSplit> {
+        let splits: Vec<f64> = self.splits(0.85 * most_percent).collect();
+        let is_above = |finer: f64| self.split(finer).is_some_and(|split| split.value > limit);
+        self.split(greatest(&splits, is_above)?)
+    }
+
+    /// Percents finer than d'85 at which the ratio may be extreme, in any order, up to `high`.
+    fn splits(&self, high: f64) -> impl Iterator<Item = f64> {
+        let low = KEZDI_RANGE[0].max(self.percent[0]);
         let candidates = self.percent.iter().flat_map(|&p| [p, p - BETWEEN]).chain([low, high]);
-        let index = |finer: f64| {
-            let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
-            let percent = finer / 0.85;
-            Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
-        };
-        candidates
-            .filter(|&finer| (low..=high).contains(&finer))
-            .filter_map(index)
-            .max_by(|a, b| a.value.total_cmp(&b.value))
+        let is_split = self.size_mm.len() > 1;
+        candidates.filter(move |finer| is_split && (low..=high).contains(finer))
+    }
+
+    /// The split with d'85 at so many percent: it is at 1/0.85 of them, and D'15 at 15 % more of the whole
+    /// mass.
+    fn split(&self, finer: f64) -> Option<SoilSplit> {
+        let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
+        let percent = finer / 0.85;
+        Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
     }
 
     /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives
@@ -159,6 +174,18 @@ impl Gradation {
             _ => self.d(percent),
         }
     }
+}
+
+/// The greatest place at which something holds that changes at most once between two neighbours of these.
+fn greatest(places: &[f64], holds: impl Fn(f64) -> bool) -> Option<f64> {
+    let last = places.iter().copied().filter(|&at| holds(at)).max_by(f64::total_cmp)?;
+    let next = places.iter().copied().filter(|&at| at > last).min_by(f64::total_cmp);
+    let (mut low, mut high) = (last, next.unwrap_or(last));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    Some(low)
 }
 
 #[cfg(test)]

@@ -62,8 +62,8 @@ pub struct AppliedRule {
     pub formula: String,
     /// Where the rule is published.
     pub source: String,
-    /// What is left of the filter without the part that is finer than where a rule of internal stability has
-    /// its value; `None` of other rules, and in files of earlier versions.
+    /// What is left of the filter without the greatest part that it may lose by a rule of internal stability;
+    /// `None` of other rules, and in files of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_finer: Option<WithoutFiner>,
     /// Which verdicts it speaks against where it is not kept.

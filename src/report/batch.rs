@@ -18,7 +18,8 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::batch::{counts_in_words, governs_drainage, open_in_words};
+use crate::verdict::batch::open_in_words;
+use crate::verdict::batch_counts::{counts_in_words, governs_drainage};
 use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 

@@ -19,6 +19,7 @@ mod job_file;
 mod jobs;
 mod live;
 mod routes;
+mod rules_of_pair;
 mod samples;
 mod sheets;
 

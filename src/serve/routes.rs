@@ -15,12 +15,12 @@ use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
 use super::jobs::{JobQueue, Work, of_cases};
+use super::rules_of_pair::rules_of_pair;
 use super::samples::SampleTable;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{Gradation, curves_in_file, soils_in_file};
-use crate::outcome::numbers::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
@@ -31,8 +31,6 @@ use crate::study::batch::BatchPlan;
 use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
-use crate::verdict::by_authority::listed;
-use crate::verdict::rule_words::{limit_begins, result_of, value_begins};
 use crate::verdict::{PairOptions, PairRules};
 
 const PAGE: &str = include_str!("page.html");
@@ -336,26 +334,7 @@ impl Routes {
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
-        // The page shows value and limit as every sheet does, and works nothing out.
-        let rules = &pair.rules;
-        let listed = listed(rules);
-        // What a sheet lists once is no row of its own.
-        let names: Vec<_> = rules
-            .iter()
-            .map(|rule| listed.iter().find(|of| of.id == rule.id).map(|of| [&of.name, &of.source]))
-            .map(|of| json!(of))
-            .collect();
-        let shown: Vec<_> = rules.iter().map(|rule| report::value_and_limit(rule, SizeUnit::Mm)).collect();
-        let results: Vec<_> = rules.iter().map(|rule| result_of(rule).words()).collect();
-        let begins: Vec<_> = rules.iter().map(limit_begins).collect();
-        let values: Vec<_> = rules.iter().map(value_begins).collect();
-        let mut value = serde_json::to_value(pair).map_err(wrong)?;
-        value["listed"] = json!(names);
-        value["value_begins"] = json!(values);
-        value["shown"] = json!(shown);
-        value["results"] = json!(results);
-        value["limit_begins"] = json!(begins);
-        Ok(Answer::json(200, &value))
+        Ok(Answer::json(200, &rules_of_pair(pair).map_err(wrong)?))
     }
 
     /// The rules of practice on every sample of a sheet.

@@ -1,14 +1,16 @@
 //! Many samples of a base against filters: what practice says of each pair, in a row, and which samples
 //! govern.
 
-use super::pair::{Mistake, PairOptions, PairRules};
+use super::mistake::Mistake;
+use super::pair::{PairOptions, PairRules};
 use super::practice::{DRAINAGE_UNKNOWN, broken};
+use super::practice_words::MET_UNLESS_DISPERSIVE;
 use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::retention;
-use crate::outcome::numbers::{SizeUnit, rounded_up};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY};
 use crate::outcome::table::Columns;
@@ -65,6 +67,9 @@ pub struct BatchRow {
     /// Whether the filter may lose its own fines.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub may_lose_fines: bool,
+    /// Whether the limit is met, and is broken if the base is dispersive, which is not stated.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub breaks_if_dispersive: bool,
     /// Whether the two look exchanged, and nothing was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_refused: bool,
@@ -130,6 +135,7 @@ impl BatchRow {
             d15f_min_at_most: false,
             note: String::new(),
             may_lose_fines: false,
+            breaks_if_dispersive: false,
             is_refused: false,
         };
         let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
@@ -166,7 +172,8 @@ impl BatchRow {
         let open = (drainage.is_some() && drains.is_none()).then_some(DRAINAGE_UNKNOWN);
         let also: Vec<&str> = also.map(|(_, what)| what).chain(open).collect();
         let also = also.join(", ");
-        let notes = [doubt, Some(also).filter(|said| !said.is_empty()), joint(rules)];
+        let beyond = pair.if_dispersive.and_then(|of| of.beyond_in_words(rules, pair.filter.d15_mm));
+        let notes = [doubt, beyond.clone(), Some(also).filter(|said| !said.is_empty()), joint(rules)];
         let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
             limit_mm: strictest.map(|(_, limit)| limit),
@@ -179,6 +186,7 @@ impl BatchRow {
             d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),
             note,
             may_lose_fines: !broken(rules, RuleRole::Stability).is_empty(),
+            breaks_if_dispersive: met == Some(true) && beyond.is_some(),
             ..row
         }
     }
@@ -186,6 +194,7 @@ impl BatchRow {
     /// The result in words.
     pub fn result(&self) -> &'static str {
         match self.met {
+            Some(true) if self.breaks_if_dispersive => MET_UNLESS_DISPERSIVE,
             Some(true) => "met",
             Some(false) => "not met",
             None => "no result",
@@ -274,35 +283,6 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     rows.iter().filter(is_same).count() - of_named
 }
 
-/// How many samples a filter retains; how many it may not drain, and of how many that is not known, where it
-/// does not drain all.
-pub fn counts_in_words(rows: &[BatchRow], filter: &str) -> String {
-    let of_filter = || rows.iter().filter(|row| row.filter == filter);
-    let samples = of_filter().count();
-    let one_or_more = if samples == 1 { "sample" } else { "samples" };
-    let [met, not_met, none] =
-        [Some(true), Some(false), None].map(|met| of_filter().filter(|row| row.met == met).count());
-    let dry = of_filter().filter(|row| row.drains == Some(false)).count();
-    let open = of_filter().filter(|row| row.drains.is_none() && row.d15f_min_mm.is_some()).count();
-    let drainage = [(dry, "may not drain"), (open, DRAINAGE_UNKNOWN)].into_iter();
-    let drainage = drainage.filter(|(count, _)| *count > 0);
-    let drainage: String = drainage.map(|(count, what)| format!("; {count} {what}")).collect();
-    format!("of {samples} {one_or_more} {met} met, {not_met} not met, {none} without a result{drainage}")
-}
-
-/// The sample that asks a filter for the maximum D15F to drain, in words; `None` where it drains all, or
-/// without a limit.
-pub fn governs_drainage(rows: &[BatchRow], filter: &str) -> Option<String> {
-    let of_filter = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
-    let limits = of_filter.filter_map(|row| Some((row.d15f_min_mm?, row)));
-    let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let limit = match row.d15f_min_at_most {
-        true => format!("the minimum D15F is not known, and at most {} mm", rounded_up(least)),
-        false => format!("D15F {} mm or more", rounded_up(least)),
-    };
-    Some(format!("drainage is governed by {}: {limit}", row.sample))
-}
-
 /// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern. Not
 /// those that are named as governing, and not those that look exchanged with the filter.
 pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
@@ -331,6 +311,7 @@ mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::verdict::BatchFilter;
+    use crate::verdict::batch_counts::counts_in_words;
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
         Gradation::from_points(points, None).unwrap()
@@ -416,6 +397,21 @@ mod tests {
         assert!(governing(&rows, "G", 3).is_empty());
     }
 
+    #[test]
+    fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
+        let silt = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
+        let of = |d15f: f64| {
+            let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
+            row("silt", &silt, &vec![("F".to_owned(), filter)], PairOptions::default())
+        };
+        let (beyond, within) = (of(0.61), of(0.45));
+        assert_eq!((beyond.met, beyond.result()), (Some(true), "met unless the base is dispersive"));
+        assert!(beyond.note.contains("if the base is dispersive, the limit is 0.500 mm"), "{beyond:?}");
+        assert_eq!((within.breaks_if_dispersive, within.result()), (false, "met"));
+        let said = counts_in_words(&[beyond], "F");
+        assert!(said.contains("1 met (1 of them unless the base is dispersive), 0 not met"), "{said}");
+    }
+
     /// What is too coarse without its finer part is not met in the table either.
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
@@ -427,7 +423,7 @@ mod tests {
         };
         let (coarse, fine) = (of(1.0), of(0.2));
         assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
-        let note = "may lose its finer part, too coarse without its finest 17.6 %";
+        let note = "may lose its finer part, too coarse without its finest 19.4 %";
         assert!(coarse.note.starts_with(note), "{coarse:?}");
         assert_eq!((fine.met, fine.may_lose_fines), (Some(true), true));
         assert!(

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::{
-    BatchRow, NAMED, counts_in_words, governing, governs_drainage, more_with_that_limit, open_in_words,
-};
+use super::batch::{BatchRow, NAMED, governing, more_with_that_limit, open_in_words};
+use super::batch_counts::{counts_in_words, governs_drainage};
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
 use crate::outcome::numbers::SizeUnit;

@@ -1,6 +1,7 @@
 //! What a sheet says where it lists the rules of one authority alone: its limit, and what is left out.
 
 use super::pair::{PairRules, StatedByAuthority};
+use super::practice_words::MET_UNLESS_DISPERSIVE;
 use super::rule_words::{against, credit, without_margin};
 use super::tested::tested_in_brief;
 use super::washout::washout;
@@ -60,7 +61,13 @@ impl PairRules {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn stated_by(mut self, by: Authority) -> Self {
-        self.by_authority = of_pair(&self.rules, by, self.filter.d15_mm).map(|said| StatedByAuthority {
+        let d15f = self.filter.d15_mm;
+        let beyond = self.if_dispersive.and_then(|of| of.beyond_in_words(&self.rules, d15f));
+        let said = of_pair(&self.rules, by, d15f).map(|said| match beyond {
+            Some(_) => said.replacen(": met: ", &format!(": {MET_UNLESS_DISPERSIVE}: "), 1),
+            None => said,
+        });
+        self.by_authority = said.map(|said| StatedByAuthority {
             authority: by.word().to_owned(),
             rules: all_stated_by(&self.rules, by).into_iter().map(|rule| rule.id).collect(),
             said,
@@ -79,7 +86,7 @@ pub fn of_pair(rules: &[AppliedRule], by: Authority, d15f: Option<f64>) -> Optio
         return None;
     }
     // A D15F that lies in a finest tail has the limits in mm all the same.
-    let governing = match governing(&stated_by(rules, by), d15f.unwrap_or(1.0)) {
+    let governing = match governing(rules, &stated_by(rules, by), d15f.unwrap_or(1.0)) {
         Some((rule, value)) => format!("{value} ({})", credit(&rule)),
         None => "no limit of D15F for this base".into(),
     };
@@ -137,7 +144,7 @@ fn in_mm(rule: &AppliedRule, limit: f64) -> String {
 }
 
 /// The rule with the strictest limit, and value and limit in words.
-fn governing(stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)> {
+fn governing(rules: &[AppliedRule], stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)> {
     let (rule, _) = retention(stated, d15f)?;
     let [value, limit] = against(rule, 3);
     let quantity = &rule.quantity;
@@ -145,6 +152,9 @@ fn governing(stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)>
     let said = match rule.met {
         Some(true) => match washout(stated) {
             Some(of) => format!("not met: {quantity} {value} is within {limit}{}", of.as_placed()),
+            None if washout(rules).is_some() => {
+                format!("met as placed, not by all rules: {quantity} {value} is within {limit}")
+            }
             None => format!("met: {quantity} {value} is within {limit}"),
         },
         Some(false) => format!("not met: {quantity} {value} is more than {limit}{at_most}"),
@@ -227,13 +237,17 @@ mod tests {
         let pair = PairRules::of(&soil(&REGRADED_TILL), &soil(&GRAVEL_0_32));
         let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm).unwrap();
         let corps = said(Authority::Usace);
-        let left = " as placed, but 2.52 mm without its finest 17.6 %, which the filter may lose (Sherard";
+        let left = " as placed, but 2.83 mm without its finest 19.4 %, which the filter may lose (Sherard";
         assert!(
             corps.contains(": not met: D15F 0.610 mm is within 1.26 mm") && corps.contains(left),
             "{corps}"
         );
         let nrcs = said(Authority::Nrcs);
-        assert!(nrcs.starts_with("NRCS: met: ") && nrcs.contains("Kézdi (1979)"), "{nrcs}");
+        assert!(
+            nrcs.starts_with("NRCS: met as placed, not by all rules: D15F 0.610 mm is")
+                && nrcs.contains("Kézdi (1979)"),
+            "{nrcs}"
+        );
     }
 
     /// Whatever is not listed and not met is named.

@@ -21,7 +21,11 @@ pub const FOREMOST: usize = 3;
 impl Outcome {
     /// Whether the filter holds, does not, or nobody can say, in a line.
     pub fn headline(&self) -> String {
-        headline(&self.rules, self.verdict, self.confidence, worse_in_words(self))
+        let said = headline(&self.rules, self.verdict, self.confidence, worse_in_words(self));
+        match self.beyond_if_dispersive() {
+            Some(_) => unless_dispersive(&said),
+            None => said,
+        }
     }
 
     /// The lines that every face begins with, each under its name.
@@ -242,6 +246,15 @@ fn reservation(confidence: Confidence) -> &'static str {
     }
 }
 
+/// The same of a filter that holds on a condition alone.
+fn unless_dispersive(said: &str) -> String {
+    let holds = ["holds by practice", "holds"].into_iter().find(|begin| said.starts_with(begin));
+    holds.map_or_else(
+        || said.to_owned(),
+        |begin| said.replacen(begin, &format!("{begin} unless the base is dispersive"), 1),
+    )
+}
+
 fn breaks(rules: &[AppliedRule], role: RuleRole) -> bool {
     !broken(rules, role).is_empty()
 }
@@ -325,6 +338,20 @@ mod tests {
         let both = ordered(vec![note(), note(), fines(), amount()]);
         assert_eq!(both[1..3], ["cohesive_fines", "worse_with_amount"]);
         assert_eq!(ordered(vec![note(), fines(), note()])[1], "cohesive_fines");
+    }
+
+    #[test]
+    fn what_holds_on_a_condition_alone_is_said_with_it() {
+        for (said, with) in [
+            (
+                "holds by practice; the walk is",
+                "holds by practice unless the base is dispersive; the walk is",
+            ),
+            ("holds: practice and", "holds unless the base is dispersive: practice and"),
+            ("may not hold: the filter", "may not hold: the filter"),
+        ] {
+            assert_eq!(unless_dispersive(said), with);
+        }
     }
 
     /// Nobody reads "holds" alone where practice has something against the filter.

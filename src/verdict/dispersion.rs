@@ -5,12 +5,14 @@
 
 use super::entry::Finding;
 use super::finding;
-use crate::gradation::FEW_FINES;
+use super::quantity::fixed;
+use super::washout::{lost_beyond, washout};
+use crate::gradation::{FEW_FINES, Gradation};
 use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Verdict};
-use crate::outcome::rules::{RuleInputs, apply};
+use crate::outcome::rules::{NamedCurve, RuleInputs, apply};
 
 impl IfDispersive {
     /// Of a pair whose base is taken as dispersive. `None` where it has few fines, or they are not known.
@@ -27,6 +29,14 @@ impl IfDispersive {
         };
         let lacks = open_retention(&rules).map(|_| lack);
         Some(Self { d15f_max_mm, at_most: lacks.is_some(), lacks })
+    }
+
+    /// The strictest of the curves of a base with one filter.
+    pub(super) fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
+        let of = |(_, base): &NamedCurve| {
+            Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
+        };
+        Self::strictest(&bases.iter().filter_map(of).collect::<Vec<_>>())
     }
 
     /// The strictest of several curves of one base; `None` without one.
@@ -92,23 +102,36 @@ impl IfDispersive {
         }
     }
 
-    /// What practice says then of a filter of this D15F (mm), where that is known.
-    pub fn of_filter(&self, d15f_mm: Option<f64>) -> String {
+    /// What practice says then of a filter of this D15F (mm), where that is known, and of these rules.
+    pub fn of_filter(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> String {
         let limit = rounded_down(self.d15f_max_mm);
         match (d15f_mm.map(|d15f| self.is_broken_by(d15f)), self.at_most) {
             (Some(true), _) => format!("practice allows a D15F of {limit} mm, which is not met"),
             (_, true) => self.open(),
-            (Some(false), false) => format!("practice allows a D15F of {limit} mm, which is met"),
+            (Some(false), false) => {
+                let lost = lost_beyond(rules, self.d15f_max_mm).map_or_else(String::new, |left| {
+                    format!(" as placed, but not without the filter's finest {} %", fixed(left.percent, 1))
+                });
+                format!("practice allows a D15F of {limit} mm, which is met{lost}")
+            }
             (None, false) => format!("practice allows a D15F of {limit} mm"),
         }
     }
 
-    /// The limit that a filter of this D15F (mm) breaks then, where it keeps `rules` as they are: what does
-    /// not hold anyway would not hold the more.
+    /// The D15F of a filter beside the limit that it breaks then, as placed or without the finer part that it
+    /// may lose, where it keeps `rules` as they are: what does not hold anyway would not hold the more.
     fn newly_broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<[String; 2]> {
         let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
-        let d15f = d15f_mm.filter(|d15f| self.is_broken_by(*d15f) && is_kept(*d15f))?;
-        Some(value_and_limit(d15f, self.d15f_max_mm, false, 3).map(|size| format!("{size} mm")))
+        if !d15f_mm.is_none_or(is_kept) {
+            return None;
+        }
+        let shown = |d15f| value_and_limit(d15f, self.d15f_max_mm, false, 3).map(|size| format!("{size} mm"));
+        if let Some(d15f) = d15f_mm.filter(|d15f| self.is_broken_by(*d15f)) {
+            return Some(shown(d15f));
+        }
+        let left = lost_beyond(rules, self.d15f_max_mm).filter(|_| washout(rules).is_none())?;
+        let [value, limit] = shown(left.d15f);
+        Some([format!("{value} (without the filter's finest {} %)", fixed(left.percent, 1)), limit])
     }
 
     /// The same in words, as a part of the line of practice.
@@ -139,7 +162,7 @@ pub fn finding(
         Some([value, limit]) => finding::dispersive_would_not_hold(&limit, &value),
         None => {
             let limit = format!("{} mm", rounded_down(if_dispersive.d15f_max_mm));
-            finding::dispersion_not_known(&if_dispersive.of_filter(d15f_mm), &limit)
+            finding::dispersion_not_known(&if_dispersive.of_filter(rules, d15f_mm), &limit)
         }
     })
 }
@@ -202,11 +225,11 @@ mod tests {
                 let found = finding(Verdict::None, d15f, &[], of).unwrap();
                 let said = found.sentence();
                 assert_eq!(found.record(false).numbers["limit"], "0.500 mm");
-                assert!(said.contains(&format!("If it is, {}. ", of.of_filter(d15f))), "{said}");
+                assert!(said.contains(&format!("If it is, {}. ", of.of_filter(&[], d15f))), "{said}");
             }
             let found = finding(Verdict::None, Some(0.6), &[], of).unwrap();
             assert_eq!(found.id(), "dispersive_would_not_hold");
-            assert!(of.of_filter(Some(0.6)).ends_with("0.500 mm, which is not met"));
+            assert!(of.of_filter(&[], Some(0.6)).ends_with("0.500 mm, which is not met"));
         }
         let open = IfDispersive { d15f_max_mm: 0.5, at_most: true, lacks: None };
         assert_eq!(
@@ -255,6 +278,37 @@ mod tests {
         assert_eq!(said(0.61).unwrap(), beyond);
         // Within it, and too coarse in any case.
         assert_eq!([said(0.45), said(0.8)], [None, None]);
+    }
+
+    /// As placed a filter of 0.40 mm is within 0.500 mm, and within 0.700 mm without the part that it may
+    /// lose; then it is beyond 0.500 mm.
+    #[test]
+    fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
+        let base = Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None);
+        let base = base.unwrap();
+        let of_gap = |scale: f64| {
+            let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+            let filter = gap.map(|(size, percent)| (scale * size, percent));
+            let filter = Gradation::from_points(&filter, None).unwrap();
+            let pair = PairRules::of(&base, &filter);
+            (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
+        };
+        let (of, rules, d15f) = of_gap(0.2);
+        let said = of.beyond_in_words(&rules, d15f).unwrap();
+        assert!(
+            said.starts_with("if the base is dispersive, the limit is 0.500 mm, and 0.5")
+                && said.ends_with(" mm (without the filter's finest 17.6 %) is beyond it"),
+            "{said}"
+        );
+        let found = finding(Verdict::None, d15f, &rules, of).unwrap();
+        assert_eq!(found.id(), "dispersive_would_not_hold");
+        // Beyond 0.700 mm it does not hold in any case.
+        let (of, rules, d15f) = of_gap(0.3);
+        assert!(washout(&rules).is_some() && of.beyond_in_words(&rules, d15f).is_none());
+        assert!(of.of_filter(&rules, d15f).contains("met as placed, but not without"));
+        let (of, rules, d15f) = of_gap(0.1);
+        assert!(of.beyond_in_words(&rules, d15f).is_none());
+        assert!(of.of_filter(&rules, d15f).ends_with("which is met"));
     }
 
     #[test]

@@ -34,6 +34,10 @@ impl Outcome {
         };
         match standing(&self.rules) {
             Standing::Fails | Standing::NoMargin => self.of_retention(),
+            // As placed it is too coarse already.
+            Standing::WashedOut if !broken(&self.rules, RuleRole::Retention).is_empty() => {
+                self.of_retention() + "; it must be internally stable"
+            }
             Standing::WashedOut | Standing::Unstable => {
                 let mut whose: Vec<String> = Vec::new();
                 for rule in broken(&self.rules, RuleRole::Stability) {
@@ -230,7 +234,7 @@ impl Outcome {
 
     /// What to find out of a base of which nobody has said whether it is dispersive.
     fn of_dispersion(&self) -> Option<String> {
-        let then = self.if_dispersive?.of_filter(Some(self.inputs.filter.d15_mm));
+        let then = self.if_dispersive?.of_filter(&self.rules, Some(self.inputs.filter.d15_mm));
         Some(match self.beyond_if_dispersive() {
             Some(_) => TEST_OF_DISPERSION.into(),
             None => format!("{TEST_OF_DISPERSION} (if it is dispersive, {then})"),

@@ -2,7 +2,7 @@
 
 use super::entry::Finding;
 use super::finding;
-use super::pair::Mistake;
+use super::mistake::Mistake;
 use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
 
 /// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.

@@ -35,7 +35,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     if !unstable.is_empty() {
         let not_met = list(&unstable, |rule| {
             let [value, limit] = against(rule, 3);
-            format!("{} ({} {value}, limit {limit})", authority(rule), rule.quantity)
+            format!("{} ({} {}, limit {limit})", authority(rule), rule.quantity, bounded(rule, &value))
         });
         // Of a washout the line of practice names the rules.
         let named = match washout(rules) {
@@ -138,10 +138,10 @@ pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
 pub enum Standing {
     /// A rule of retention or of coarser filters is not kept, and no test held either.
     Fails,
+    /// No test speaks against it as placed, and it breaks a limit without the finer part that it may lose.
+    WashedOut,
     /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
     NoMargin,
-    /// It keeps the limits as placed, and breaks one without the finer part that it may lose.
-    WashedOut,
     /// It keeps the limits, but may lose its own fines.
     Unstable,
     /// The limit of design has no result: what is missing.
@@ -184,8 +184,8 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
     let fails = !retention.is_empty() || !broken(rules, RuleRole::Continuation).is_empty();
     match design.met {
         _ if fails => Standing::Fails,
-        Some(false) => Standing::NoMargin,
         _ if washout(rules).is_some() => Standing::WashedOut,
+        Some(false) => Standing::NoMargin,
         _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
         Some(true) => Standing::Met,
         None => {

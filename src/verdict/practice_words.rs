@@ -1,20 +1,18 @@
 //! What practice says of a pair in words: the line that stands below every verdict, whatever it is, and where
 //! walk, rules and tests disagree.
 
-use super::practice::{DRAINAGE_UNKNOWN, broken, severity};
+use super::practice::{DRAINAGE_UNKNOWN, Standing, broken, severity, standing};
 use super::rule_words::{against, first_clause, is_of_dispersive, listed, met_of, without_margin};
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use super::washout::washout;
-use crate::outcome::record::{AppliedRule, Outcome, RuleNote, RuleRole, TestedClass, Verdict};
+use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleNote, RuleRole, TestedClass, Verdict};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION, authority};
 
 impl Outcome {
     /// What practice says of the pair, in a line, with the limit of a dispersive base that the filter breaks
     /// where nobody has said whether the base is one.
     pub fn practice_in_words(&self) -> String {
-        let beyond = self.beyond_if_dispersive();
-        let beyond = beyond.map_or_else(String::new, |said| format!("; {said}"));
-        practice_in_words(&self.rules) + &beyond
+        practice_line(&self.rules, self.if_dispersive, Some(self.inputs.filter.d15_mm))
     }
 
     /// The limit of a dispersive base that the filter breaks, where nobody has said whether the base is one;
@@ -28,6 +26,24 @@ impl Outcome {
         compared_with_tests(self.verdict, &self.rules, self.errs_unsafely())
     }
 }
+
+/// What practice says of a pair, in a line, with the limit that its filter of this D15F (mm) breaks if the
+/// base is dispersive, and on that condition alone where it is met.
+pub(super) fn practice_line(
+    rules: &[AppliedRule],
+    if_dispersive: Option<IfDispersive>,
+    d15f_mm: Option<f64>,
+) -> String {
+    let said = practice_in_words(rules);
+    let Some(beyond) = if_dispersive.and_then(|of| of.beyond_in_words(rules, d15f_mm)) else { return said };
+    match said.strip_prefix("met: ") {
+        Some(why) => format!("{MET_UNLESS_DISPERSIVE}: {why}; {beyond}"),
+        None => format!("{said}; {beyond}"),
+    }
+}
+
+/// Said of a limit that is met, and would be broken by a dispersive base, which is not stated.
+pub(super) const MET_UNLESS_DISPERSIVE: &str = "met unless the base is dispersive";
 
 fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule], errs_unsafely: bool) -> String {
     let said = tested_words(rules);
@@ -90,7 +106,8 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
     let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION);
-    let washout = washout(rules).filter(|_| retention.is_empty());
+    // Of a filter that fails in any case it is no second fault.
+    let washout = washout(rules).filter(|_| retention.is_empty() || standing(rules) == Standing::WashedOut);
     said.push(match design {
         Some(rule) => match beyond_tests.filter(|_| rule.met == Some(true)) {
             Some(tests) => {
@@ -175,7 +192,7 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::comparison::ComparedStanding;
     use crate::verdict::entry::Finding;
-    use crate::verdict::practice::{Standing, findings, record, standing};
+    use crate::verdict::practice::{findings, record};
     use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
     use crate::verdict::{PairOptions, PairRules};
 
@@ -273,7 +290,7 @@ mod tests {
             ),
             "{line}"
         );
-        assert!(line.ends_with("is 2.52 mm, beyond both limits; the filter may segregate"), "{line}");
+        assert!(line.ends_with("is 2.83 mm, beyond both limits; the filter may segregate"), "{line}");
         // What is left of a finer one retains the till: met, with the warning.
         let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
         let rules = of(&finer, &REGRADED_TILL, false);
@@ -287,6 +304,23 @@ mod tests {
         let mut rules = of(&GRAVEL_0_32, &REGRADED_TILL, false);
         rules.iter_mut().for_each(|rule| rule.without_finer = None);
         assert_eq!(standing(&rules), Standing::Unstable);
+    }
+
+    /// A filter between the limit of design and the boundary of no erosion, 4.00 and 7.00 mm, that is beyond
+    /// both without its finer part: tests held such filters, but not what is left of it.
+    #[test]
+    fn a_filter_without_a_margin_that_loses_its_finer_part_does_not_meet_practice() {
+        use crate::verdict::washout::tests::{SAND_OF_1_MM, STEPPED};
+        let coarse = STEPPED.map(|(size, percent)| (2.2 * size, percent));
+        let rules = of(&coarse, &SAND_OF_1_MM, false);
+        assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(false), Some(true)));
+        assert!(standing(&rules) == Standing::WashedOut && standing(&rules).fails());
+        let line = practice_in_words(&rules);
+        assert!(
+            line.starts_with("not met: D15F ") && line.contains("; the filter is not internally stable by "),
+            "{line}"
+        );
+        assert!(line.contains("beyond both limits"), "{line}");
     }
 
     /// Fell et al. give 6.4 D85B for design and for no erosion alike: one number, credited once.

@@ -3,15 +3,16 @@
 //! Retention is judged of such a filter twice, as placed and after washout of its finer part (U.S. Army Corps
 //! of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter Gradation). One of several
 //! published criteria that is not met is a doubt. Li and Fannin's takes the milder of Kenney and Lau's and
-//! Kezdi's at every size: where it is not met, or has no result and none of the others is met, and what is
-//! left breaks a limit of retention, practice is not met.
+//! Kezdi's at every size: where it is not met, or has no result and of these two one is not met and none met,
+//! and what is left breaks a limit of retention, practice is not met.
 
 use super::quantity::fixed;
-use super::rule_words::{against, listed, met_of, with_unit, without_margin};
+use super::rule_words::{against, bounded, listed, met_of, with_unit, without_margin};
+use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::limits;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
-use crate::outcome::rules::{DESIGN, LI_FANNIN, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_NO_EROSION, authority};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
 pub(super) struct Washout<'r> {
@@ -26,45 +27,57 @@ pub(super) struct Washout<'r> {
     is_one_limit: bool,
 }
 
-/// Percent of a broadly graded soil that may lie loose between its coarser grains (Kenney and Lau).
-const LOOSE_PERCENT: f64 = 20.0;
-
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
-/// several parts that of Kezdi's split comes first, whose sizes stand in the table of rules, unless it is
-/// more than what may be loose.
+/// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
-    let judged =
-        || rules.iter().filter(|of| of.role == RuleRole::Stability && of.applies && of.met.is_some());
-    let unstable: Vec<&AppliedRule> = judged().filter(|of| of.met == Some(false)).collect();
-    let is_unstable = match met_of(rules, LI_FANNIN) {
-        Some(met) => !met,
-        None => unstable.len() > 1 && unstable.len() == judged().count(),
-    };
-    if !is_unstable {
-        return None;
-    }
+    let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
     let limits = limits(rules, d15f.unwrap_or(1.0));
     let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
-    let beyond = |left: &WithoutFiner| {
-        let broken = limits.iter().filter(|(_, limit)| left.d15f > limit * (1.0 + 1e-9));
-        broken.map(|(rule, _)| rule.id.as_str()).collect::<Vec<_>>()
-    };
-    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
-    let enough = parts.filter(|left| !beyond(left).is_empty());
-    let left = enough.min_by_key(|left| left.percent > LOOSE_PERCENT)?;
+    let least = limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min);
+    let left = lost(&unstable, least)?;
+    let beyond = limits.iter().filter(|(_, limit)| is_beyond(&left, *limit));
     Some(Washout {
         left,
-        beyond: beyond(&left),
-        least: limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min),
+        beyond: beyond.map(|(rule, _)| rule.id.as_str()).collect(),
+        least,
         unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
         unstable,
         is_one_limit: without_margin(rules).is_some(),
     })
 }
 
+/// What is left of a filter that is not internally stable, where it is beyond a limit of D15F.
+pub(super) fn lost_beyond(rules: &[AppliedRule], limit: f64) -> Option<WithoutFiner> {
+    lost(&unstable(rules), limit)
+}
+
+fn lost(unstable: &[&AppliedRule], limit: f64) -> Option<WithoutFiner> {
+    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
+    let beyond = parts.filter(|left| is_beyond(left, limit));
+    beyond.min_by_key(|left| left.percent > WIDE_LOOSE_PERCENT * (1.0 + 1e-9))
+}
+
+fn is_beyond(left: &WithoutFiner, limit: f64) -> bool {
+    left.d15f > limit * (1.0 + 1e-9)
+}
+
+/// The criteria of internal stability that are not met, where they make a filter unstable.
+fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
+    let is_unstable = |of: &&AppliedRule| of.is_broken() && of.role == RuleRole::Stability;
+    let unstable: Vec<&AppliedRule> = rules.iter().filter(is_unstable).collect();
+    let is_unstable = match met_of(rules, LI_FANNIN) {
+        Some(met) => !met,
+        None => {
+            let both = [KEZDI, KENNEY_LAU].map(|id| met_of(rules, id));
+            both.contains(&Some(false)) && !both.contains(&Some(true))
+        }
+    };
+    if is_unstable { unstable } else { Vec::new() }
+}
+
 impl Washout<'_> {
-    /// Which part it may lose, with its size: "its finest 17.6 %".
+    /// Which part it may lose, with its size: "its finest 19.4 %".
     fn part(&self) -> String {
         format!("its finest {} %", fixed(self.left.percent, 1))
     }
@@ -81,7 +94,7 @@ impl Washout<'_> {
             let [value, limit] = against(rule, 3);
             // The year of a source stands in the table of rules.
             let name = authority(rule).split(" (").next().unwrap_or_default();
-            format!("{name} ({value}, limit {limit})")
+            format!("{name} ({}, limit {limit})", bounded(rule, &value))
         });
         let by = listed(&each.collect::<Vec<_>>());
         let breaks = |id: &str| self.beyond.contains(&id);
@@ -114,6 +127,7 @@ impl Washout<'_> {
 pub(in crate::verdict) mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::outcome::record::ValueBound;
     use crate::verdict::PairRules;
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
@@ -155,12 +169,55 @@ pub(in crate::verdict) mod tests {
         assert_eq!(
             said,
             "the filter is not internally stable by Kézdi (4.13, limit 4.00), Kenney and Lau (0.800, limit \
-             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 17.6 % its D15F is 2.52 mm, \
+             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % its D15F is 2.83 mm, \
              beyond both limits"
         );
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
         assert_eq!(washout(&read).unwrap().in_words(), said);
+    }
+
+    /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
+    /// 14 %, where it is 0.993, much more is lost, and what is left has a D15F beyond 4.00 and 7.00 mm.
+    pub(in crate::verdict) const STEPPED: [(f64, f64); 8] = [
+        (0.1, 0.0),
+        (0.2, 4.0),
+        (0.8, 4.0),
+        (1.0, 4.5),
+        (2.0, 14.0),
+        (8.0, 27.9),
+        (16.0, 60.0),
+        (32.0, 100.0),
+    ];
+    pub(in crate::verdict) const SAND_OF_1_MM: [(f64, f64); 4] =
+        [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];
+
+    #[test]
+    fn the_greatest_part_that_may_be_lost_counts_and_not_where_the_index_is_worst() {
+        let rules = rules(&STEPPED, &SAND_OF_1_MM);
+        let rule = rules.iter().find(|rule| rule.id == LI_FANNIN).unwrap();
+        assert!(rule.value == Some(0.0), "{rule:?}");
+        let left = rule.without_finer.unwrap();
+        // H is below F up to 14 % and a hair more.
+        assert!((14.0..14.6).contains(&left.percent) && (7.2..7.6).contains(&left.d15f), "{left:?}");
+        let said = washout(&rules).unwrap().in_words();
+        assert!(said.ends_with("beyond both limits"), "{said}");
+    }
+
+    /// Where sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than found: that
+    /// neither is met or broken leaves Kezdi's alone to judge.
+    #[test]
+    fn an_index_above_a_pan_is_no_veto() {
+        let filter = [(2.36, 14.0), (2.6, 15.3), (16.0, 32.0), (20.0, 80.0), (31.5, 100.0)];
+        let rules = rules(&filter, &[(0.3, 0.0), (0.6, 50.0), (1.2, 100.0)]);
+        let of = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
+        for id in [LI_FANNIN, KENNEY_LAU] {
+            let rule = of(id);
+            assert!(rule.met != Some(true), "{rule:?}");
+            assert!(rule.value.is_none() || rule.value_bound == Some(ValueBound::AtMost), "{rule:?}");
+        }
+        assert_eq!(of(KEZDI).met, Some(false), "{:?}", of(KEZDI));
+        assert!(washout(&rules).is_some());
     }
 
     #[test]

@@ -35,6 +35,12 @@ pub const PAPER_CONTINUING: &str = "paper-continuing";
 /// Id of Terzaghi's ratio.
 pub const TERZAGHI: &str = "terzaghi";
 
+/// Id of Kezdi's criterion of internal stability.
+pub const KEZDI: &str = "kezdi";
+
+/// Id of Kenney and Lau's.
+pub const KENNEY_LAU: &str = "kenney-lau";
+
 /// Id of Li and Fannin's criterion of internal stability, which takes the milder of Kenney and Lau's and
 /// Kezdi's at every size.
 pub const LI_FANNIN: &str = "li-fannin";
@@ -233,7 +239,7 @@ pub const RULES: &[FilterRule] = &[
         judge: drainage::band,
     },
     FilterRule {
-        id: "kezdi",
+        id: KEZDI,
         authority: "Kézdi (1979)",
         stated_by: &[Usace],
         says: "internal stability of the filter",
@@ -248,7 +254,7 @@ pub const RULES: &[FilterRule] = &[
         judge: stability::kezdi,
     },
     FilterRule {
-        id: "kenney-lau",
+        id: KENNEY_LAU,
         authority: "Kenney and Lau (1986)",
         stated_by: &[Usace],
         says: "internal stability of the filter",

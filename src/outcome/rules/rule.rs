@@ -86,7 +86,7 @@ pub struct Judged {
     pub needs: Option<RuleNote>,
     /// What else a reader must know.
     pub notes: Vec<RuleNote>,
-    /// What is left of the filter without the part that is finer than where the value is.
+    /// What is left of the filter without the greatest part that it may lose by this rule.
     pub without_finer: Option<WithoutFiner>,
     /// Whether nobody asked for it: it is not listed.
     pub is_left_out: bool,

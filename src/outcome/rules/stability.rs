@@ -1,8 +1,14 @@
 //! Rules by which the filter holds its own fines.
 
 use super::rule::{Judged, RuleInputs};
-use crate::gradation::{FINES_MM, Gradation, KEZDI_RANGE, ShapeIndex};
+use crate::gradation::{FINES_MM, Gradation, KEZDI_RANGE, ShapeIndex, WIDE_LOOSE_PERCENT};
 use crate::outcome::record::{RuleNote, ValueBound, WithoutFiner};
+
+/// Limit of Kezdi's ratio.
+const KEZDI: f64 = 4.0;
+
+/// Percent below the finest sieve from which an index of the rest of the curve is only a bound.
+const MOST_HIDDEN_PERCENT: f64 = 5.0;
 
 /// Kezdi's ratio over sensible splits.
 pub fn kezdi(inputs: &RuleInputs) -> Judged {
@@ -15,8 +21,11 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
         let hidden = (tail > KEZDI_RANGE[0]).then_some(RuleNote::KezdiHidden(tail));
         [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
     });
-    let judged = index(inputs, 4.0, found.map(|split| split.value), notes.unwrap_or_default());
-    let left = found.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
+    let judged = index(inputs, KEZDI, found.map(|split| split.value), notes.unwrap_or_default());
+    // What may be lost is the greatest part that the rest does not hold, not that of the worst ratio; where
+    // none may lie loose, that of the worst ratio.
+    let lost = found.map(|worst| filter.greatest_split_above(KEZDI, WIDE_LOOSE_PERCENT).unwrap_or(worst));
+    let left = lost.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
     let judged = Judged { without_finer: left, ..judged };
     // What is hidden may have a greater ratio.
     if tail > KEZDI_RANGE[0] { judged.bound(ValueBound::AtLeast) } else { judged }
@@ -40,7 +49,11 @@ fn shape(inputs: &RuleInputs, of: fn(&Gradation) -> Option<ShapeIndex>) -> Judge
         pan => RuleNote::ShapeAbovePan(found.percent, pan, most),
     };
     let judged = index(inputs, 1.0, found.map(|found| found.value), found.map(at_f).into_iter().collect());
-    Judged { without_finer: found.and_then(|found| without(filter, found.percent)), ..judged }
+    let left = found.and_then(|found| without(filter, found.lost_percent?));
+    let judged = Judged { without_finer: left, ..judged };
+    // Below the finest sieve the index may be less.
+    let is_hidden = 100.0 * filter.pan_fraction() > MOST_HIDDEN_PERCENT;
+    if is_hidden { judged.bound(ValueBound::AtMost) } else { judged }
 }
 
 /// What is left of a filter without its part that is finer than so many percent.

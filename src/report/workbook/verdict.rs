@@ -34,7 +34,7 @@ fn verdict(outcome: &Outcome) -> Sheet {
     let practice = outcome.practice.as_ref().map(|practice| &practice.design);
     sheet.item("Limit of design of D15F", practice.and_then(|design| design.limit_mm), unit(outcome));
     sheet.item("D15F", practice.and_then(|design| design.value_mm), unit(outcome));
-    sheet.item("Limit of design met", practice.and_then(|design| design.met), "");
+    sheet.item("Limit of design met, as placed", practice.and_then(|design| design.met), "");
     sheet.item("D15F/D85B", outcome.ratios.d15f_over_d85b, "-");
     sheet.item("D15F/D95B", outcome.ratios.d15f_over_d95b, "-");
     sheet.item("Mass eroded from which a run erodes", outcome.threshold, "fraction of the base");

@@ -1,0 +1,32 @@
+//! The rules of practice on two sheets as the page shows them.
+
+use serde_json::{Value, json};
+
+use crate::outcome::numbers::SizeUnit;
+use crate::report::value_and_limit;
+use crate::verdict::PairRules;
+use crate::verdict::by_authority::listed;
+use crate::verdict::rule_words::{limit_begins, result_of, value_begins};
+
+/// Every rule with its words: the page shows value and limit as every sheet does, and works nothing out.
+pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
+    let rules = &pair.rules;
+    let listed = listed(rules);
+    // What a sheet lists once is no row of its own.
+    let names: Vec<_> = rules
+        .iter()
+        .map(|rule| listed.iter().find(|of| of.id == rule.id).map(|of| [&of.name, &of.source]))
+        .map(|of| json!(of))
+        .collect();
+    let shown: Vec<_> = rules.iter().map(|rule| value_and_limit(rule, SizeUnit::Mm)).collect();
+    let results: Vec<_> = rules.iter().map(|rule| result_of(rule).words()).collect();
+    let begins: Vec<_> = rules.iter().map(limit_begins).collect();
+    let values: Vec<_> = rules.iter().map(value_begins).collect();
+    let mut value = serde_json::to_value(&pair)?;
+    value["listed"] = json!(names);
+    value["value_begins"] = json!(values);
+    value["shown"] = json!(shown);
+    value["results"] = json!(results);
+    value["limit_begins"] = json!(begins);
+    Ok(value)
+}
