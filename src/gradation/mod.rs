@@ -44,7 +44,7 @@ pub use burenkova::UniformityFactors;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use group::{FINES_MM, GRAVEL_MM};
-pub use regrade::{FEW_FINES, RegradeCause, RegradeReason, Regraded};
+pub use regrade::{BROAD_CU, FEW_FINES, RegradeCause, RegradeReason, Regraded};
 pub(crate) use sampler::SizeGuide;
 pub use sampler::{SizeRange, SizeSampler};
 pub(crate) use shape::GAP_PERCENT;

@@ -7,6 +7,9 @@ use super::shape::Gap;
 /// Percent of fines below which a base has few.
 pub const FEW_FINES: f64 = 15.0;
 
+/// Cu from which a soil counts as broadly graded: that of well-graded sands by ASTM D2487.
+pub const BROAD_CU: f64 = 6.0;
+
 /// A base soil regraded as filter practice does, or left as it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regraded {

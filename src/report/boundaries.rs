@@ -5,6 +5,7 @@ use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, PUR
 use super::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{Outcome, RuleQuantity};
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
+use crate::verdict::rule_words::without_margin;
 use crate::verdict::tested::is_beyond_unclear;
 
 /// Half the height of a line, in percent finer.
@@ -50,10 +51,12 @@ pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
 }
 
 /// What the caption says of them; nothing where there are none.
-pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
+pub(super) fn caption(outcome: &Outcome, boundaries: &[Boundary], unit: SizeUnit) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
+    // Design and no erosion are one number, which neither Sherard and Dunnigan nor Foster and Fell give.
+    let is_one = without_margin(&outcome.rules).is_some();
     let one = |(place, limit, at_most): &Boundary| {
         let at_most = if *at_most { " or less" } else { "" };
         // As in the table of rules: no more than the limit.
@@ -61,11 +64,15 @@ pub(super) fn caption(boundaries: &[Boundary], unit: SizeUnit) -> String {
             SizeUnit::D0f => format!("{}\u{202f}D0F", rounded_down(*limit)),
             _ => format!("{}\u{202f}mm{}", rounded_down(*limit), unit.beside_greatest(*limit)),
         };
-        format!("{} {size}{at_most}", LIMITS[*place].3)
+        let name = match LIMITS[*place] {
+            (DESIGN, ..) if is_one => "design and of no erosion (NE) of a dispersive base (Fell et al.)",
+            (TESTS_CONTINUING, ..) if is_one => "continuing erosion (CE, Foster and Fell)",
+            (.., name) => name,
+        };
+        format!("{name} {size}{at_most}")
     };
-    let all: Vec<String> = boundaries.iter().map(one).collect();
-    format!(
-        " Short lines at the 15 % row: D15F of {} (boundaries of erosion: Foster and Fell).",
-        all.join(", ")
-    )
+    let is_said = |(place, ..): &&Boundary| is_one && LIMITS[*place].0 == TESTS_NO_EROSION;
+    let all: Vec<String> = boundaries.iter().filter(|of| !is_said(of)).map(one).collect();
+    let whose = if is_one { "" } else { " (boundaries of erosion: Foster and Fell)" };
+    format!(" Short lines at the 15 % row: D15F of {}{whose}.", all.join(", "))
 }

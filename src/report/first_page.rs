@@ -97,6 +97,9 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
             p.word { (clean(&capital(&headline))) "." }
             @for (name, said) in &lines {
                 p.practice { b { (name) } ": " (unbroken(said)) "." }
+                @if *name == "Practice" && let Some(alone) = outcome.judged_alone() {
+                    p.counted { (alone) }
+                }
                 // Beside the mass that is counted.
                 @if let Some(not_counted) = outcome.sentence_of(NOT_COUNTED).filter(|_| *name == "Walk") {
                     p.counted { (unbroken(&not_counted)) }

@@ -144,7 +144,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         significant(folder.outcome.ratios.d15f_over_d85b),
         inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
         significant(folder.outcome.ratios.d15f_over_d95b),
-        boundaries::caption(&limits, unit),
+        boundaries::caption(&folder.outcome, &limits, unit),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)

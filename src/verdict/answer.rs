@@ -249,16 +249,9 @@ mod tests {
         assert_eq!(found.confidence, Confidence::Unstable, "{found:?}");
         let said = |words: &str| found.reasons().iter().filter(|reason| reason.contains(words)).count();
         assert_eq!(said("lose its finer part"), 1, "{found:?}");
-        // It is too coarse without its finer part, so that the line of practice names the rules.
-        assert!(found.reasons()[0].ends_with("the constrictions that were walked."), "{found:?}");
         for author in ["Kézdi (1979)", "Kenney and Lau (1986)", "Li and Fannin (2008)", "Burenkova (1993)"] {
-            let named = found.findings[0].numbers["rules"].as_str().unwrap();
-            assert!(named.contains(author), "{author}: {found:?}");
+            assert!(found.reasons()[0].contains(author), "{author}: {found:?}");
         }
-        use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
-        let fine = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
-        let found = judge(Verdict::None, &rules(&fine, &REGRADED_TILL), Vec::new());
-        assert!(found.reasons()[0].contains(" Rules that are not met: Kézdi (1979) ("), "{found:?}");
     }
 
     /// D15F/D85B of 5.9: tests put the end of no erosion at 7, the network near 5.

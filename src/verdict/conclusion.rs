@@ -3,12 +3,13 @@
 
 use super::amount::worse_in_words;
 use super::beside::is_evidence;
-use super::entry::{COHESIVE_FINES, DISPERSIVE_WOULD_NOT_HOLD, EVIDENCE_UNSAFE};
+use super::entry::{BROAD_BASE, COHESIVE_FINES, DISPERSIVE_WOULD_NOT_HOLD, EVIDENCE_UNSAFE, LOSES_FINES};
 use super::practice::{Standing, broken, standing};
 use super::probability::{beside_range, stated};
 use super::rule_words::against;
 use super::study_points::beside_ends;
 use super::tested::is_beyond_tests;
+use super::washout::washout;
 use crate::outcome::digits::{percent, percent_span};
 use crate::outcome::record::{
     AppliedRule, Confidence, Direction, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
@@ -138,12 +139,16 @@ impl Outcome {
     /// the rest.
     pub fn ordered(&self) -> Vec<FindingRecord> {
         let all = self.against().into_iter().chain(self.besides());
-        // The limit of a dispersive base that the filter breaks stands in the line of practice.
-        let is_said = |finding: &FindingRecord| {
-            finding.id == DISPERSIVE_WOULD_NOT_HOLD && self.beyond_if_dispersive().is_some()
+        // The line of practice has the limit of a dispersive base that the filter breaks, and what a filter
+        // that is too coarse without its finer part may lose.
+        let is_said = |finding: &FindingRecord| match finding.id.as_str() {
+            DISPERSIVE_WOULD_NOT_HOLD => self.beyond_if_dispersive().is_some(),
+            LOSES_FINES => washout(&self.rules).is_some(),
+            _ => false,
         };
         let all = all.filter(|finding| !is_evidence(finding) && !is_said(finding));
         let mut all: Vec<FindingRecord> = all.collect();
+        keep(&mut all, FOREMOST - 1, |finding| finding.id == BROAD_BASE);
         if self.verdict == Verdict::None {
             unfold(&mut all);
         }
@@ -157,13 +162,15 @@ const ERRS_UNSAFELY: [&str; 3] = [EVIDENCE_UNSAFE, "broadly_graded", "not_regrad
 /// Keeps among the foremost what "no erosion" hangs on: fines whose cohesion the walk ignores though the
 /// class stands, and that it does not with less base.
 fn unfold(all: &mut [FindingRecord]) {
-    let mut keep = |place: usize, is_kept: &dyn Fn(&FindingRecord) -> bool| {
-        if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
-            all[place..=at].rotate_right(1);
-        }
-    };
-    keep(FOREMOST - 2, &|finding| !finding.against && finding.id == COHESIVE_FINES);
-    keep(FOREMOST - 1, &|finding| finding.against && finding.id == "worse_with_amount");
+    keep(all, FOREMOST - 2, |finding| !finding.against && finding.id == COHESIVE_FINES);
+    keep(all, FOREMOST - 1, |finding| finding.against && finding.id == "worse_with_amount");
+}
+
+/// Brings the first finding of a kind forward to this place, if it stands behind it.
+fn keep(all: &mut [FindingRecord], place: usize, is_kept: impl Fn(&FindingRecord) -> bool) {
+    if let Some(at) = all.iter().position(is_kept).filter(|at| *at > place) {
+        all[place..=at].rotate_right(1);
+    }
 }
 
 /// Beyond the limit of design, and within the boundary of no erosion.

@@ -9,6 +9,12 @@ use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdic
 /// The name of the finding of fines that may be cohesive.
 pub const COHESIVE_FINES: &str = "cohesive_fines";
 
+/// The name of the finding that the base is broadly graded.
+pub const BROAD_BASE: &str = "broad_base";
+
+/// The name of the finding that the filter is not internally stable.
+pub const LOSES_FINES: &str = "loses_fines";
+
 /// Id of the limit that a filter breaks if its base is dispersive.
 pub const DISPERSIVE_WOULD_NOT_HOLD: &str = "dispersive_would_not_hold";
 

@@ -59,10 +59,11 @@ findings! {
         Practice, Unsafe, Limits, sets Contradicted, against HELD_OR_SEALED;
         "continuation", "rules.md",
         "Practice allows {quantity} up to {limit}, this is {value} ({author}).";
-    /// An unstable filter; which rules say so, where the line of practice does not name them.
-    loses_fines(rules: Text, named: Text): Practice, Unsafe, Limits, sets Unstable, unshown rules;
+    /// An unstable filter.
+    loses_fines(rules: Text): Practice, Unsafe, Limits, sets Unstable;
         "finer part", "rules.md",
-        "The filter may lose its finer part, and with it the constrictions that were walked.{named}";
+        "The filter may lose its finer part, and with it the constrictions that were walked. Rules that are \
+         not met: {rules}.";
     /// A filter too fine to drain.
     too_fine_to_drain(value: Text, asked: Text): Practice, Open, Limits, sets MayNotDrain, against HELD;
         "drainage", "rules.md",

@@ -6,7 +6,7 @@ use super::beside::is_evidence;
 use super::entry::{COHESIVE_FINES, EVIDENCE_UNSAFE};
 use super::practice::{Standing, broken, standing};
 use super::quantity::FindingValue;
-use super::rule_words::listed;
+use super::rule_words::{against, listed};
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{rounded_down, rounded_up};
@@ -47,8 +47,20 @@ impl Outcome {
                     }
                 }
                 let rules = listed(&whose);
+                let placing = broken(&self.rules, RuleRole::Placing);
+                if placing.is_empty() {
+                    return format!(
+                        "take a filter that is stable by {rules}, or have its internal stability tested{test}"
+                    );
+                }
+                let placing = placing.into_iter().map(|rule| {
+                    let [value, limit] = against(rule, 3);
+                    format!("{} {value}, limit {limit}", rule.quantity)
+                });
                 format!(
-                    "take a filter that is stable by {rules}, or have its internal stability tested{test}"
+                    "take a filter that is stable by {rules} and does not segregate ({}): a test of internal \
+                     stability would not settle that{test}",
+                    listed(&placing.collect::<Vec<_>>())
                 )
             }
             Standing::Unknown(needs) => format!("get {needs}{test}"),

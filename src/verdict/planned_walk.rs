@@ -1,9 +1,10 @@
 //! What is found about soils and network before they are walked, with a scene or without one.
 
+use super::base_cautions::broad_base;
 use super::entry::Finding;
 use super::finding;
 use super::mistake::Mistake;
-use crate::gradation::{FEW_FINES, FINES_MM, Gradation};
+use crate::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
 
 /// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
 const FEW_REPLICATES: u64 = 5;
@@ -11,9 +12,6 @@ const FEW_REPLICATES: u64 = 5;
 /// Ranges of Cu that the model was checked for, of filter and base.
 const FILTER_CU: [f64; 2] = [1.2, 6.0];
 const BASE_CU: [f64; 2] = [1.2, 4.5];
-
-/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
-const BROAD_CU: f64 = 6.0;
 
 /// A lattice narrower than this many voids has few ways beside each other: on one pair of soils one void
 /// across eroded 3.3 %, forty 13.3 %.
@@ -90,10 +88,13 @@ impl PlannedWalk<'_> {
         })
     }
 
-    /// A base that is broadly graded and walked as it is.
+    /// A base that is broadly graded, walked as practice cuts it or as it is.
     fn broad_base(&self) -> Option<Finding> {
-        if self.regraded_from.is_some() || self.scale_free {
+        if self.scale_free {
             return None;
+        }
+        if let Some(sampled) = self.regraded_from {
+            return broad_base(sampled);
         }
         let regraded = self.base.regraded();
         match regraded.at_mm {
@@ -234,7 +235,7 @@ mod tests {
         }
         assert_eq!(
             ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
-            ["unstable_base"]
+            ["broad_base", "unstable_base"]
         );
         let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
         assert_eq!(ids(&exchanged), ["doubtful_tables"]);

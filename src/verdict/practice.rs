@@ -33,16 +33,10 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     };
     let unstable = broken(rules, RuleRole::Stability);
     if !unstable.is_empty() {
-        let not_met = list(&unstable, |rule| {
+        all.push(finding::loses_fines(&list(&unstable, |rule| {
             let [value, limit] = against(rule, 3);
             format!("{} ({} {}, limit {limit})", authority(rule), rule.quantity, bounded(rule, &value))
-        });
-        // Of a washout the line of practice names the rules.
-        let named = match washout(rules) {
-            Some(_) => String::new(),
-            None => format!(" Rules that are not met: {not_met}."),
-        };
-        all.push(finding::loses_fines(&not_met, &named));
+        })));
     }
     all.extend(drainage(rules));
     let placing = broken(rules, RuleRole::Placing);

@@ -21,6 +21,15 @@ impl Outcome {
         self.if_dispersive?.beyond_in_words(&self.rules, Some(self.inputs.filter.d15_mm))
     }
 
+    /// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
+    pub fn judged_alone(&self) -> Option<&'static str> {
+        let is_envelope = self.findings.iter().any(|finding| finding.id == "envelope");
+        (standing(&self.rules) == Standing::Met && !is_envelope).then_some(
+            "Judged for these two gradations alone: the limit holds for the coarsest filter and the finest \
+             base that the works allow.",
+        )
+    }
+
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
         compared_with_tests(self.verdict, &self.rules, self.errs_unsafely())

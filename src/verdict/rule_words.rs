@@ -104,7 +104,7 @@ pub(super) fn is_of_dispersive(rule: &AppliedRule) -> bool {
 }
 
 /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
-pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+pub(crate) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
     let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
     (design.limit == tests.limit).then_some(design)

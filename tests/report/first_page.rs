@@ -9,7 +9,7 @@ use voidwalk::outcome::record::{
 };
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
-use voidwalk::verdict::PairRules;
+use voidwalk::verdict::{PairOptions, PairRules};
 
 use super::folder::Plan;
 use super::{made, words};
@@ -123,6 +123,61 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
     let (text, figure) = gradations(&plan);
     assert!(!figure.contains(">NE</text>") && !figure.contains(">CE</text>"));
     assert!(!text.contains("Short lines at the 15 % row"));
+
+    // One number of Fell et al. is both limits of a dispersive base.
+    let soil = |points: &[(f64, f64)]| vec![("soil".into(), Gradation::from_points(points, None).unwrap())];
+    let clay = soil(&[(0.002, 30.0), (0.02, 62.0), (0.075, 88.0), (0.425, 98.0), (2.0, 100.0)]);
+    let options = PairOptions { dispersive: true, ..PairOptions::default() };
+    plan.outcome.rules =
+        PairRules::of_envelopes(&clay, &soil(&[(0.2, 0.0), (0.3, 15.0), (2.0, 100.0)]), options).rules;
+    let text = gradations(&plan).0;
+    let said = "D15F of design and of no erosion (NE) of a dispersive base (Fell et al.) 0.";
+    assert!(text.contains(said) && !text.contains("Dunnigan) 0."), "{text}");
+    assert!(text.contains(" mm, continuing erosion (CE, Foster and Fell) "), "{text}");
+}
+
+/// A rule that one curve of each soil meets says nothing of the coarsest filter and the finest base of a works.
+#[test]
+fn a_rule_that_is_met_was_judged_for_these_gradations_alone() {
+    let mut plan = Plan::usual();
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
+    let said = |plan: &Plan| words(&made(plan).0).matches("Judged for these two gradations alone: ").count();
+    for (filter, times) in [([(1.0, 0.0), (3.0, 100.0)], 1), ([(8.0, 0.0), (16.0, 100.0)], 0)] {
+        plan.outcome.rules = PairRules::of(&sand, &soil(&filter)).rules;
+        assert_eq!(said(&plan), times, "{filter:?}");
+    }
+}
+
+/// What a filter loses that is then too coarse stands in the line of practice, and that the base is broadly
+/// graded among the first findings.
+#[test]
+fn a_washout_is_said_once_and_a_broad_base_among_the_first() {
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let gap = soil(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)]);
+    let mut plan = Plan::usual();
+    plan.outcome.rules = PairRules::of(&soil(&[(0.2, 0.0), (0.6, 100.0)]), &gap).rules;
+    let found = |id: &str, weight: Weight, against: bool| FindingRecord {
+        id: id.into(),
+        about: Topic::Base,
+        label: String::new(),
+        direction: Direction::Unsafe,
+        weight,
+        against,
+        numbers: serde_json::Map::new(),
+        sentence: format!("Found: {id}."),
+        to_do: String::new(),
+    };
+    let more = ["one", "two", "three"].map(|id| found(id, Weight::Limits, true));
+    plan.outcome.findings = more.to_vec();
+    plan.outcome.findings.insert(0, found("loses_fines", Weight::Limits, true));
+    plan.outcome.findings.push(found("broad_base", Weight::Note, false));
+    let (foremost, more) = plan.outcome.foremost();
+    let ids: Vec<&str> = foremost.iter().map(|finding| &*finding.id).collect();
+    assert_eq!((ids, more), (vec!["one", "two", "broad_base"], 1));
+    let next = plan.outcome.next_in_words();
+    assert!(next.contains(" and does not segregate (Cu of the filter "), "{next}");
+    assert!(next.contains("a test of internal stability would not settle that"), "{next}");
 }
 
 #[test]
@@ -191,6 +246,8 @@ fn thickness_and_what_is_not_counted_are_said_once() {
     for said in ["The walk models 296 mm of", "The verdict stays with thickness.", "is not counted."] {
         assert_eq!(text.matches(said).count(), 1, "{said}: {text}");
     }
+    // What does not move the verdict is no matter of the first sheet.
+    assert!(text.find("The verdict stays").unwrap() > text.rfind("Other findings").unwrap(), "{text}");
     assert!(!text.contains("296.0 mm") && !text.contains("filter thickness: "), "{text}");
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}"));
     assert!(place("Walk: ") < place("is not counted.") && place("is not counted.") < place("Next: "));

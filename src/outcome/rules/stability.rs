@@ -1,7 +1,7 @@
 //! Rules by which the filter holds its own fines.
 
 use super::rule::{Judged, RuleInputs};
-use crate::gradation::{FINES_MM, Gradation, KEZDI_RANGE, ShapeIndex, WIDE_LOOSE_PERCENT};
+use crate::gradation::{BROAD_CU, FINES_MM, Gradation, KEZDI_RANGE, ShapeIndex, WIDE_LOOSE_PERCENT};
 use crate::outcome::record::{RuleNote, ValueBound, WithoutFiner};
 
 /// Limit of Kezdi's ratio.
@@ -72,9 +72,6 @@ fn index(inputs: &RuleInputs, limit: f64, value: Option<f64>, notes: Vec<RuleNot
         None => lacking(RuleNote::NeedsFinestPartOfFilter),
     }
 }
-
-/// Cu from which a filter counts as broadly graded here: that of well-graded sands by ASTM D2487.
-const BROAD_CU: f64 = 6.0;
 
 /// Whether a filter is neither broadly graded nor gap-graded.
 fn is_uniform(filter: &Gradation) -> bool {

@@ -7,6 +7,7 @@ use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::numbers::{rounded_down, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive};
 use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply};
+use crate::verdict::base_cautions::broad_base;
 use crate::verdict::entry::Finding;
 use crate::verdict::finding;
 use crate::verdict::rule_words::cited_rule;
@@ -17,9 +18,6 @@ const ANY_D15F: f64 = 1.0;
 /// A curve is flat, and worth a look, where less of the mass than this (%) lies between D and 4 D: twice what
 /// counts as a gap.
 const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
-
-/// Cu from which a base counts as broadly graded: that of well-graded sands by ASTM D2487.
-const BROAD_CU: f64 = 6.0;
 
 /// A curve of the base as the rules read it.
 pub(super) struct ReadCurve {
@@ -79,19 +77,8 @@ impl ReadCurve {
     fn findings(&self) -> Vec<Finding> {
         let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
         let unstable = unstable.map(|of| finding::unstable_base(of.value, of.percent));
-        unstable.into_iter().chain(self.broad()).chain(self.flat()).collect()
-    }
-
-    /// A base so broad that practice looks at its finer part alone.
-    fn broad(&self) -> Option<Finding> {
-        self.of.regraded_at_mm?;
-        let least =
-            || Some(format!("more than {}", rounded_down(self.base.d(60.0)? / self.base.smallest_mm())));
-        let cu = match self.base.cu() {
-            Some(cu) => (cu >= BROAD_CU).then(|| significant(cu))?,
-            None => (self.base.d(60.0)? >= BROAD_CU * self.base.smallest_mm()).then(least)??,
-        };
-        Some(finding::broad_base(&cu))
+        let broad = self.of.regraded_at_mm.and_then(|_| broad_base(&self.base));
+        unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
 
     /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
