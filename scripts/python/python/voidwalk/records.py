@@ -827,8 +827,8 @@ class AppliedRule(_AppliedRule, total=False):
     source
         Where the rule is published.
     without_finer
-        What is left of the filter without the part that is finer than where a rule of internal stability has
-        its value; `None` of other rules, and in files of earlier versions.
+        What is left of the filter without the greatest part that it may lose by a rule of internal stability;
+        `None` of other rules, and in files of earlier versions.
     speaks_against
         Which verdicts it speaks against where it is not kept.
     filter_curve
@@ -2612,12 +2612,15 @@ class PairRules(_PairRules, total=False):
         Every rule.
     practice
         What they say together, in a line, as it stands on every page: whether practice is met, and why.
+    if_dispersive
+        The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     warnings
         What may be wrong with the two tables, and what was taken for what.
     by_authority
         What one authority states of them, where one is asked for; `rules` has all of them all the same.
     """
 
+    if_dispersive: Optional[IfDispersive]
     by_authority: Optional[StatedByAuthority]
 
 
