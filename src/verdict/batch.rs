@@ -172,7 +172,8 @@ impl BatchRow {
         let open = (drainage.is_some() && drains.is_none()).then_some(DRAINAGE_UNKNOWN);
         let also: Vec<&str> = also.map(|(_, what)| what).chain(open).collect();
         let also = also.join(", ");
-        let beyond = pair.if_dispersive.and_then(|of| of.beyond_in_words(rules, pair.filter.d15_mm));
+        let if_dispersive = pair.if_dispersive.filter(|_| met == Some(true));
+        let beyond = if_dispersive.and_then(|of| of.beyond_in_words(rules, pair.filter.d15_mm));
         let notes = [doubt, beyond.clone(), Some(also).filter(|said| !said.is_empty()), joint(rules)];
         let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
@@ -186,7 +187,7 @@ impl BatchRow {
             d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),
             note,
             may_lose_fines: !broken(rules, RuleRole::Stability).is_empty(),
-            breaks_if_dispersive: met == Some(true) && beyond.is_some(),
+            breaks_if_dispersive: beyond.is_some(),
             ..row
         }
     }

@@ -21,9 +21,8 @@ pub fn counts_in_words(rows: &[BatchRow], filter: &str) -> String {
         0 => String::new(),
         count => format!(" ({count} of them unless the base is dispersive)"),
     };
-    format!(
-        "of {samples} {one_or_more} {met} met{on_condition}, {not_met} not met, {none} without a result{drainage}"
-    )
+    let others = format!("{not_met} not met, {none} without a result{drainage}");
+    format!("of {samples} {one_or_more} {met} met{on_condition}, {others}")
 }
 
 /// The sample that asks a filter for the maximum D15F to drain, in words; `None` where it drains all, or

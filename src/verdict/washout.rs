@@ -204,8 +204,8 @@ pub(in crate::verdict) mod tests {
         assert!(said.ends_with("beyond both limits"), "{said}");
     }
 
-    /// Where sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than found: that
-    /// neither is met or broken leaves Kezdi's alone to judge.
+    /// Where sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than found.
+    /// Where neither has a result Kezdi's alone judges.
     #[test]
     fn an_index_above_a_pan_is_no_veto() {
         let filter = [(2.36, 14.0), (2.6, 15.3), (16.0, 32.0), (20.0, 80.0), (31.5, 100.0)];
