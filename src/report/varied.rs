@@ -17,7 +17,8 @@ pub(super) const STOPPED_WHEN_CLEAR: &str = "A point stops after one or two repl
 /// What is said where not every thickness has its base.
 pub(super) fn held() -> String {
     format!(
-        "{OTHER_BASE}. A thicker filter is then offered too little base, and seems to hold better than it would."
+        "{OTHER_BASE}. A thicker filter is then offered too little base, and seems to hold better than it \
+         would."
     )
 }
 

@@ -476,7 +476,7 @@ fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
         plan.outcome.walk_in_words()
     };
     let said = walk(&|_| ());
-    for doubt in ["open path", "paper's own", "unsafe side"] {
+    for doubt in ["open path", "beyond the boundary", "unsafe side"] {
         assert!(!said.contains(doubt), "{doubt}: {said}");
     }
     let closed = walk(&|outcome| {
