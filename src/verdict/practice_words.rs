@@ -2,7 +2,9 @@
 //! walk, rules and tests disagree.
 
 use super::practice::{DRAINAGE_UNKNOWN, broken, severity};
-use super::rule_words::{against, first_clause, is_of_dispersive, listed, met_of, without_margin};
+use super::rule_words::{
+    NoMargin, against, first_clause, is_of_dispersive, listed, met_of, no_margin, without_margin,
+};
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use super::washout::washout;
 use crate::outcome::record::{AppliedRule, Outcome, RuleNote, RuleRole, TestedClass, Verdict};
@@ -131,12 +133,12 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     if drainage.is_some() && broken(rules, RuleRole::Drainage).is_empty() {
         said.push(DRAINAGE_UNKNOWN.into());
     }
+    let is_met = format!("{}: ", no_margin(rules).map_or("met", NoMargin::met));
     let result = match design.and_then(|rule| rule.met) {
         _ if !retention.is_empty() => "not met: ",
         Some(true) if washout.is_some() => "not met: as placed ",
         _ if washout.is_some() => "not met: ",
-        Some(true) if is_one_limit => "met, without a margin in the limit: ",
-        Some(_) => "met: ",
+        Some(_) => &is_met,
         None => "no result: ",
     };
     result.to_owned() + &said.join("; ")
