@@ -320,7 +320,11 @@ mod tests {
             let of = Outcome { verdict, ..walked.clone() };
             let (practice, next) = (of.practice_in_words(), of.next_in_words());
             let beyond = "; if the base is dispersive, the limit is 0.500 mm, and 0.";
-            assert!(practice.starts_with("met: D15F ") && practice.contains(beyond), "{practice}");
+            assert!(
+                practice.starts_with("met, without a margin in the limit: D15F ")
+                    && practice.contains(beyond),
+                "{practice}"
+            );
             assert!(next.contains(test) && !next.contains("0.500"), "{next}");
             assert_eq!(next.starts_with(test), verdict == Verdict::None, "{next}");
             assert!(of.ordered().iter().all(|finding| finding.id != "dispersive_would_not_hold"));

@@ -282,7 +282,8 @@ mod tests {
         assert_eq!(standing(&rules), Standing::Unstable);
         let line = practice_in_words(&rules);
         assert!(
-            line.starts_with("met: D15F ") && line.contains("the filter may lose its finer part"),
+            line.starts_with("met, without a margin in the strictest limit: D15F ")
+                && line.contains("the filter may lose its finer part"),
             "{line}"
         );
         // Without the record of what is left, as in files of earlier versions, it is the warning alone.

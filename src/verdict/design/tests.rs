@@ -212,7 +212,7 @@ fn a_filter_that_washes_out_is_said_to_be_beyond_the_limit_of_its_design() {
         assert!(answer.said.starts_with(&format!("{}. {}. The walk", answer.limit, answer.washout.unwrap())));
     }
     // Where the walk allows so little that what is left retains the base.
-    let held = Design { boundaries: design(&till, Some(0.09)).boundaries, ..of(1.0) };
+    let held = Design { boundaries: design(&till, Some(0.05)).boundaries, ..of(1.0) };
     assert_eq!((held.answer().set_by, held.answer().washout), (SetBy::Walk, None));
     assert_eq!(design(&till, Some(12.6)).answer().washout, None);
     // The finest base for this filter: what is left of it counts.
