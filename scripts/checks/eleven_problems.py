@@ -104,7 +104,7 @@ def faults_of_practice(line, hand):
         yield "met or not"
     if line.startswith("not met: as placed ") and f"its D15F is {washed_out:.3g} mm" not in line:
         yield f"D15F after washout is {washed_out:.3g} mm"
-    sizes = re.match(r"(?:met|met, without a margin in the limit|met unless the base is dispersive|not met): (?:as placed )?D15F ([\d.]+) mm is (?:within|more than) the ([\d.]+) mm", line)
+    sizes = re.match(r"(?:met(?: unless the base is dispersive)?(?:, without a margin in the (?:strictest )?limit)?|not met): (?:as placed )?D15F ([\d.]+) mm is (?:within|more than) the ([\d.]+) mm", line)
     if not sizes:
         yield "no D15F beside a limit"
         return

@@ -90,7 +90,7 @@ fn words(design: &Design) -> String {
     let dispersive = of_base.and_then(|of| of.if_dispersive_in_words(&by_option(DESIGN_AGAIN)));
     lines.push(answer.limit);
     lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
-    let beside = [answer.margin, answer.walk, dispersive].into_iter().flatten();
+    let beside = [answer.washout, answer.margin, answer.walk, dispersive].into_iter().flatten();
     lines.extend(beside.map(|said| format!("  {said}.")));
     for row in &design.boundaries {
         lines.extend(of_row(row, design));

@@ -116,8 +116,8 @@ fn words(of: &Specification) -> String {
     if let Some(said) = to_be_checked(sources) {
         line(&said);
     }
-    if let Some(nearest) = of.nearest_product() {
-        line(&format!("no standard product fits; {} comes closest", nearest.product));
+    if of.nearest_product().is_some() {
+        line(&of.products_in_words());
     }
     text
 }

@@ -21,7 +21,7 @@ use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
 use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::fitting::{FITS, leaves_at};
+use crate::verdict::fitting::FITS;
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -99,7 +99,7 @@ fn answer(of: &Specification) -> Markup {
             (cautions(&of.findings))
             @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
-            p { (clean(&products_in_short(of))) }
+            p { (clean(&of.products_in_words())) "." }
         }
     }
 }
@@ -143,36 +143,6 @@ pub(super) fn to_specify(of: &Specification) -> Markup {
     html! {
         @if let Some(raised) = of.raised_in_words() { p { (clean(&raised)) "." } }
         (table)
-    }
-}
-
-/// Which standard products fit, or which comes closest.
-fn products_in_short(of: &Specification) -> String {
-    let named = |of: &ProductMargin| match of.worst_sieve_mm {
-        Some(sieve) => format!("{} ({})", of.product, leaves_at(sieve)),
-        None => of.product.clone(),
-    };
-    let fitting: Vec<String> = of.products.iter().filter(|of| of.fits() == Some(true)).map(named).collect();
-    let other = if of.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
-    match (fitting.is_empty(), of.nearest_product()) {
-        (false, _) => {
-            let no_band = if of.band.is_none() { "; there is no band" } else { "" };
-            format!("D15 of both sides drains and retains: {}{no_band}.", fitting.join(", "))
-        }
-        (true, Some(nearest)) => {
-            format!(
-                "Of no standard product does D15 of both sides drain and retain. {} comes closest.",
-                nearest.product
-            )
-        }
-        (true, None) if of.d15f_min_at_most => {
-            "Whether a standard product fits is not known: D15B is finer than the finest sieve. A hydrometer \
-             test of the base would tell whether it drains."
-                .into()
-        }
-        (true, None) => {
-            format!("No {other} product is known to fit: a limit of D15F is not known.")
-        }
     }
 }
 
@@ -281,7 +251,7 @@ mod tests {
     fn products_are_said_to_fit_as_far_as_is_known() {
         let base = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
-        let said = products_in_short(&core);
+        let said = core.products_in_words();
         assert!(said.contains("ASTM C33 fine aggregate (leaves the band at "), "{said}");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
         // The greatest is not known, and the least alone refuses the finest product.
@@ -290,9 +260,9 @@ mod tests {
             products: margins((Some(0.2), false), None, None),
             ..core.clone()
         };
-        assert!(products_in_short(&unknown).starts_with("No other product is known to fit"));
+        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
         let unknown = Specification { products: margins((Some(0.1), false), None, None), ..unknown };
-        assert!(products_in_short(&unknown).starts_with("No standard product is known to fit"));
+        assert!(unknown.products_in_words().starts_with("No standard product is known to fit"));
         let page = products(&core, true).into_string();
         assert!(
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),

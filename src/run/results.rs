@@ -320,7 +320,8 @@ mod tests {
             let of = Outcome { verdict, ..walked.clone() };
             let (practice, next) = (of.practice_in_words(), of.next_in_words());
             let beyond = "; if the base is dispersive, the limit is 0.500 mm, and 0.";
-            assert!(practice.starts_with("met unless the base is dispersive: D15F "), "{practice}");
+            let begin = "met unless the base is dispersive, without a margin in the limit: D15F ";
+            assert!(practice.starts_with(begin), "{practice}");
             assert!(practice.contains(beyond), "{practice}");
             let headline = of.headline();
             assert!(headline.starts_with("holds by practice unless the base is dispersive; "), "{headline}");

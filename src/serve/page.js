@@ -597,13 +597,14 @@ function boundary(of, note, decides) {
 function boundariesOf(job) {
   const done = job.result;
   const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
-  const decides = !done.answer || done.answer.set_by !== "practice";
+  const decides = !done.answer || (done.answer.set_by !== "practice" && done.answer.d15f_over_d85b !== null);
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
     el("td", {}, boundary(row.no_erosion, row.no_erosion_note, decides)), el("td", {}, boundary(row.continuing, row.continuing_note, decides)),
     el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
   const said = done.answer || {};
   return [done.answer ? el("p", { class: "word" }, `${said.limit}.`) : null,
+    said.washout ? el("p", {}, el("b", {}, `${said.washout}.`)) : null,
     said.margin ? el("p", {}, `${said.margin}.`) : null,
     said.if_dispersive ? el("p", {}, el("b", {}, `${said.if_dispersive}.`)) : null,
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),

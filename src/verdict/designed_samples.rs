@@ -189,6 +189,9 @@ pub struct SampleDesign {
     /// earlier versions, too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond_tests: Option<f64>,
+    /// That the filter as given is too coarse without the finer part that it may lose, as a design has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub washout: Option<String>,
     /// The answer in a sentence without its full stop.
     pub said: String,
 }
@@ -240,6 +243,7 @@ impl DesignedSample {
             confidence: design.confidence,
             reason: design.reasons.first().cloned(),
             beyond_tests: design.beyond_tests(),
+            washout: answer.washout,
             said: answer.said,
         };
         Self { d15f_max_mm: answer.d15f_max_mm, no_band, design: Some(of), ..self }

@@ -162,6 +162,7 @@ impl DesignedSamples {
         let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
         if walked > 0 {
             said.extend(self.set_in_words());
+            said.extend(self.washout_in_words(walked));
             said.extend(self.beyond_tests_in_words(walked));
         }
         for confidence in self.confidences() {
@@ -240,6 +241,19 @@ impl DesignedSamples {
         (!each.is_empty()).then(|| format!("The maximum D15F is set {}", each.join(", ")))
     }
 
+    /// For how many of them the filter as given is too coarse without the finer part that it may lose.
+    fn washout_in_words(&self, walked: usize) -> Option<String> {
+        let is_so = |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.washout.is_some());
+        let count = self.rows.iter().filter(is_so).count();
+        (count > 0).then(|| {
+            format!(
+                "The filter as given is not internally stable, and for {count} of {} too coarse without the \
+                 finer part that it may lose",
+                counted(walked)
+            )
+        })
+    }
+
     /// For how many of the samples that were walked the walk is no guide.
     fn beyond_tests_in_words(&self, walked: usize) -> Option<String> {
         let beyond = |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.beyond_tests.is_some());
@@ -294,6 +308,7 @@ mod tests {
             confidence: Confidence::Outside,
             reason: Some("too small".into()),
             beyond_tests: None,
+            washout: None,
             said: "No ratio is known".into(),
         };
         DesignedSample { d15f_max_mm: greatest, design: Some(design), ..row }
@@ -369,6 +384,21 @@ mod tests {
         let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
         let at = |line: &str| line.contains(",16.3");
         assert_eq!(csv.lines().map(at).collect::<Vec<_>>(), [false, true, false], "{csv}");
+    }
+
+    #[test]
+    fn samples_for_which_the_filter_as_given_washes_out_are_counted() {
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let of = |washout: Option<&str>| {
+            let of = walked(core.clone(), Some(0.7));
+            let washout = washout.map(str::to_owned);
+            let design = of.design.clone().map(|design| SampleDesign { washout, ..design });
+            DesignedSample { design, ..of }
+        };
+        let said = |all| DesignedSamples::new("s".into(), all).in_words(DESIGN_EACH_AGAIN).join("\n");
+        let some = said(vec![of(Some("w")), of(None)]);
+        assert!(some.contains("not internally stable, and for 1 of 2 samples too coarse without"), "{some}");
+        assert!(!said(vec![of(None)]).contains("too coarse without"));
     }
 
     /// The table of many samples warns as the specification of each.

@@ -37,6 +37,39 @@ fn fits_in_words(by_practice: bool, beside: &Beside) -> String {
     }
 }
 
+/// Products whose D15 fits: those that stay within the band, and those that leave it.
+#[derive(Default)]
+struct Fitting {
+    within: Vec<String>,
+    /// Each with the sieve at which it leaves the band.
+    leaving: Vec<String>,
+}
+
+impl Fitting {
+    fn of<'a>(products: impl Iterator<Item = (&'a str, Beside)>) -> Self {
+        let mut all = Self::default();
+        for (name, beside) in products {
+            match beside {
+                Beside::Outside(sieve) => all.leaving.push(format!("{name} ({})", leaves_at(sieve))),
+                Beside::Within | Beside::NoBand => all.within.push(name.into()),
+            }
+        }
+        all
+    }
+
+    /// Behind what is said of those within the band: of which the D15 alone is allowed, `by` practice or by
+    /// both.
+    fn with_leaving(&self, within: String, by: &str) -> String {
+        match self.leaving.is_empty() {
+            true => within,
+            false => format!("{within}. Only the D15 is allowed{by} of {}", self.leaving.join(", ")),
+        }
+    }
+}
+
+/// Said where no product fits.
+const NONE_FITS: &str = "None of the standard products fits";
+
 impl Specification {
     fn beside(&self, of: &ProductMargin) -> Beside {
         match of.worst_sieve_mm {
@@ -55,6 +88,30 @@ impl Specification {
                 "may drain: needs a hydrometer test".into()
             }
             None => "no result".into(),
+        }
+    }
+
+    /// Which standard products fit by practice alone, or which comes closest: sentences without the last end.
+    pub fn products_in_words(&self) -> String {
+        let fitting = self.products.iter().filter(|of| of.fits() == Some(true));
+        let fitting = Fitting::of(fitting.map(|of| (of.product.as_str(), self.beside(of))));
+        if !fitting.within.is_empty() {
+            let no_band = if self.band.is_none() { ", though there is no band" } else { "" };
+            return fitting.with_leaving(format!("{FITS}{no_band}: {}", fitting.within.join(", ")), "");
+        }
+        if !fitting.leaving.is_empty() {
+            return fitting.with_leaving(NONE_FITS.into(), "");
+        }
+        let other =
+            if self.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
+        match self.nearest_product() {
+            Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
+            None if self.d15f_min_at_most => {
+                "Whether a standard product fits is not known: D15B is finer than the finest sieve. A \
+                 hydrometer test of the base would tell whether it drains"
+                    .into()
+            }
+            None => format!("No {other} product is known to fit: a limit of D15F is not known"),
         }
     }
 }
@@ -119,31 +176,24 @@ impl Design {
         if !self.may_fit() && !by_practice {
             return Some("No standard product is said to fit, as the answer is in doubt".into());
         }
-        let (mut fitting, mut leaving): (Vec<&str>, Vec<String>) = (Vec::new(), Vec::new());
-        for fit in self.products.iter().filter(|fit| fit.fits()) {
-            match self.beside(&fit.name) {
-                Beside::Outside(sieve) => leaving.push(format!("{} ({})", fit.name, leaves_at(sieve))),
-                Beside::Within | Beside::NoBand => fitting.push(&fit.name),
-            }
-        }
+        let fitting = self.products.iter().filter(|fit| fit.fits());
+        let fitting = Fitting::of(fitting.map(|fit| (fit.name.as_str(), self.beside(&fit.name))));
         let by = if by_practice { " by practice" } else { "" };
         let no_band = match &self.specification {
             Some(of) if of.band.is_none() => ", though there is no band",
             _ => "",
         };
-        let fitting = match fitting.is_empty() {
+        let within = match fitting.within.is_empty() {
             false => {
-                format!("{FITS}{by}{no_band} (their own shapes were not walked): {}", fitting.join(", "))
+                let names = fitting.within.join(", ");
+                format!("{FITS}{by}{no_band} (their own shapes were not walked): {names}")
             }
             true if self.products.iter().any(Fit::may_fit) => {
                 "Of the standard products none is known to fit".into()
             }
-            true => "None of the standard products fits".into(),
+            true => NONE_FITS.into(),
         };
-        Some(match leaving.is_empty() {
-            true => fitting,
-            false => format!("{fitting}. Only the D15 is allowed{by} of {}", leaving.join(", ")),
-        })
+        Some(fitting.with_leaving(within, by))
     }
 }
 
@@ -175,7 +225,7 @@ mod tests {
             "seconds": 1.0,
             "answer": DesignAnswer { d15f_max_mm: Some(0.7), d85b_min_mm: None, d15f_over_d85b: Some(1.75),
                 set_by: SetBy::Practice, rule: None, limit: String::new(), margin: None, walk: None,
-                if_dispersive: None, said: String::new() },
+                washout: None, if_dispersive: None, said: String::new() },
             "specification": of,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": Boundary::of(&[Ok(3.0), Ok(3.0)], Some(0.4)),
@@ -214,6 +264,13 @@ mod tests {
         let given = by_practice.specification.as_ref().unwrap();
         let c33 = given.products.iter().find(|of| of.product == "ASTM C33 fine aggregate").unwrap();
         assert_eq!(given.product_in_words(c33), leaves);
+        // The specification says it as the design does.
+        assert_eq!(
+            given.products_in_words(),
+            "None of the standard products fits. Only the D15 is allowed of ASTM C33 fine aggregate (leaves \
+             the band at 1.18 mm)"
+        );
+        assert!(of_practice.products_in_words().starts_with("D15 fits, though there is no band: ASTM C33 f"));
         // The filter that the rules judge is another, and may leave the band: D100F at 0.7 mm of D15F.
         let shape = |points: Vec<[f64; 2]>| Design {
             filter_gradation: points,

@@ -271,18 +271,18 @@ mod tests {
         };
         let pair = said(0.61, false);
         assert!(
-            pair.practice
-                .starts_with("met unless the base is dispersive: D15F 0.610 mm is within the 0.700 mm")
-                && pair.practice.ends_with(
-                    "; if the base is dispersive, the limit is 0.500 mm, and 0.610 mm is beyond it"
-                ),
+            pair.practice.starts_with(
+                "met unless the base is dispersive, without a margin in the limit: D15F 0.610 mm"
+            ) && pair
+                .practice
+                .ends_with("; if the base is dispersive, the limit is 0.500 mm, and 0.610 mm is beyond it"),
             "{}",
             pair.practice
         );
         assert_eq!(pair.if_dispersive.map(|of| of.d15f_max_mm), Some(0.5));
         let stated = pair.clone().stated_by(Authority::Nrcs).by_authority.unwrap().said;
         assert!(stated.starts_with("NRCS: met unless the base is dispersive: D15F "), "{stated}");
-        assert!(said(0.45, false).practice.starts_with("met: "));
+        assert!(said(0.45, false).practice.starts_with("met, without a margin in the limit: "));
         let stated = said(0.61, true);
         assert!(stated.practice.starts_with("not met: ") && stated.if_dispersive.is_none());
     }

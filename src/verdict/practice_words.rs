@@ -2,7 +2,9 @@
 //! walk, rules and tests disagree.
 
 use super::practice::{DRAINAGE_UNKNOWN, Standing, broken, severity, standing};
-use super::rule_words::{against, first_clause, is_of_dispersive, listed, met_of, without_margin};
+use super::rule_words::{
+    NoMargin, against, first_clause, is_of_dispersive, listed, met_of, no_margin, without_margin,
+};
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use super::washout::washout;
 use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleNote, RuleRole, TestedClass, Verdict};
@@ -45,8 +47,8 @@ pub(super) fn practice_line(
 ) -> String {
     let said = practice_in_words(rules);
     let Some(beyond) = if_dispersive.and_then(|of| of.beyond_in_words(rules, d15f_mm)) else { return said };
-    match said.strip_prefix("met: ") {
-        Some(why) => format!("{MET_UNLESS_DISPERSIVE}: {why}; {beyond}"),
+    match said.strip_prefix("met").and_then(|said| said.split_once(": ")) {
+        Some((margin, why)) => format!("{MET_UNLESS_DISPERSIVE}{margin}: {why}; {beyond}"),
         None => format!("{said}; {beyond}"),
     }
 }
@@ -157,12 +159,12 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     if drainage.is_some() && broken(rules, RuleRole::Drainage).is_empty() {
         said.push(DRAINAGE_UNKNOWN.into());
     }
+    let is_met = format!("{}: ", no_margin(rules).map_or("met", NoMargin::met));
     let result = match design.and_then(|rule| rule.met) {
         _ if !retention.is_empty() => "not met: ",
         Some(true) if washout.is_some() => "not met: as placed ",
         _ if washout.is_some() => "not met: ",
-        Some(true) if is_one_limit => "met, without a margin in the limit: ",
-        Some(_) => "met: ",
+        Some(_) => &is_met,
         None => "no result: ",
     };
     result.to_owned() + &said.join("; ")
@@ -306,7 +308,8 @@ mod tests {
         assert_eq!(standing(&rules), Standing::Unstable);
         let line = practice_in_words(&rules);
         assert!(
-            line.starts_with("met: D15F ") && line.contains("the filter may lose its finer part"),
+            line.starts_with("met, without a margin in the strictest limit: D15F ")
+                && line.contains("the filter may lose its finer part"),
             "{line}"
         );
         // Without the record of what is left, as in files of earlier versions, it is the warning alone.

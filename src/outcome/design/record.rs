@@ -121,6 +121,10 @@ pub struct DesignAnswer {
     /// files of earlier versions, whose text is all in `said`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub limit: String,
+    /// That the filter as given is not internally stable, and too coarse without the finer part that it may
+    /// lose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub washout: Option<String>,
     /// That a limit of practice has no margin.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<String>,

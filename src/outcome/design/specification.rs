@@ -92,6 +92,10 @@ pub struct SpecifiedCurve {
     pub d15f_max_mm: Option<f64>,
     /// The rule that sets it.
     pub d15f_max_rule: String,
+    /// Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
+    /// it. `false` in files of earlier versions.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub without_margin: bool,
     /// Minimum D15F (mm) that drains it.
     pub d15f_min_mm: Option<f64>,
 }

@@ -162,6 +162,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     html! {
         section class=(format!("verdict {class}")) {
             p.word.long { (clean(&said.limit)) }
+            @if let Some(washout) = &said.washout { p { b { (unbroken(washout)) "." } } }
             @if let Some(margin) = &said.margin { p { (unbroken(margin)) "." } }
             @if let Some(dispersive) = &said.if_dispersive { p { b { (clean(dispersive)) "." } } }
             @if design.confidence != Confidence::Within {

@@ -5,7 +5,7 @@ use crate::outcome::design::Specification;
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::Fit;
 use crate::outcome::design::{BaseStated, DesignAnswer};
-use crate::outcome::record::{AppliedRule, ModelLimit, SheetCover};
+use crate::outcome::record::{AppliedRule, ModelLimit, RuleRole, SheetCover};
 use crate::outcome::rules::DESIGN;
 use crate::report::numbers::rounded_down;
 use crate::verdict::{PairRules, SpecificationOptions};
@@ -193,6 +193,7 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
         set_by: SetBy::Practice,
         rule: rule.map(str::to_owned),
         limit: String::new(),
+        washout: None,
         margin: None,
         walk: None,
         if_dispersive: None,
@@ -231,6 +232,14 @@ fn a_boundary_that_does_not_decide_is_not_in_bold() {
     let decides = written(&with(2.0), CSV);
     assert!(decides.contains("<b>2.00</b>") && !decides.contains("no guide"), "{decides}");
     assert!(!decides.contains("thicker filters hold more"));
+    // Nobody decides where the limit of practice is known only as the most that it can be.
+    let mut open = with(40.0);
+    let retains = |rule: &&mut AppliedRule| rule.role == RuleRole::Retention && rule.applies;
+    open.rules.iter_mut().find(retains).unwrap().limit_at_most = true;
+    open.specification = None;
+    assert_eq!((open.answer().set_by, open.answer().d15f_over_d85b), (SetBy::Walk, None));
+    let page = written(&open, CSV);
+    assert!(page.contains("40.00") && !page.contains("<b>40.00</b>"), "{page}");
 }
 
 /// The limit of practice is 0.8069 mm, the walk holds to 0.8068 mm, and 0.7051 mm drain.

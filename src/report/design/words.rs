@@ -33,10 +33,11 @@ pub(super) fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> Str
     if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
 }
 
-/// A number of the walk, in bold where the walk decides.
+/// A number of the walk, in bold where the walk decides: it sets an answer that is known.
 pub(super) fn of_walk(design: &Design, number: &str) -> Markup {
-    match design.answer().set_by {
-        SetBy::Walk => html! { b { (number) } },
-        SetBy::Practice => html! { (number) },
+    let answer = design.answer();
+    match answer.set_by == SetBy::Walk && answer.d15f_over_d85b.is_some() {
+        true => html! { b { (number) } },
+        false => html! { (number) },
     }
 }

@@ -26,6 +26,7 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     let dispersive = of.if_dispersive.map(|of| of.words_of_base());
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
+    sheet.item("Filter as given", design.and_then(|design| design.answer().washout), "");
     sheet.item("Margin", of.without_margin_in_words(), "");
     sheet.item("Walk", design.and_then(|design| design.answer().walk), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");

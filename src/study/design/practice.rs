@@ -2,8 +2,7 @@
 
 use super::judged::Judged;
 use super::row::Row;
-use crate::outcome::design::band::{open_retention, retention};
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::design::band::retention;
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
 use crate::verdict::FinestBase;
@@ -28,8 +27,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
 }
 
 /// The finest base of this shape that practice allows with a filter of this size: that, and every coarser
-/// one, keeps every rule of retention. A rule of whose limit only the most is known is not kept. `None` where
-/// the base is not scaled, sizes have no unit, or every base keeps every rule.
+/// one, keeps every rule of retention, without the finer part that the filter may lose, too. A rule of whose
+/// limit only the most is known is not kept. `None` where the base is not scaled, sizes have no unit, or every base keeps every rule.
 ///
 /// # Errors
 /// Sizes out of range.
@@ -48,12 +47,8 @@ pub(super) fn finest_base(row: &Row) -> Result<Option<FinestBase>, RunError> {
             dispersive: row.stated.scene.base.dispersive == Some(true),
             ..RuleInputs::of_soils(&base, &row.case.filter)
         };
-        let rules = apply(&inputs);
-        let is_broken = |rule: &&AppliedRule| rule.role == RuleRole::Retention && rule.is_broken();
-        let broken = rules.iter().find(is_broken);
-        if let Some(rule) = broken.or_else(|| open_retention(&rules)) {
-            let (rule, is_open) = (rule.clone(), broken.is_none());
-            return Ok(Some(FinestBase { ratio: kept, rule, is_open }));
+        if let Some(found) = FinestBase::at(&apply(&inputs), kept) {
+            return Ok(Some(found));
         }
         (kept, ratio) = (Some(ratio), ratio * step);
     }

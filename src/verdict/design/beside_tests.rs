@@ -1,6 +1,7 @@
 //! The walk's own boundary beside the range of D15F in which erosion began in tests.
 
 use crate::outcome::apart::digits_of;
+use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::rules::range_of_tests;
@@ -22,7 +23,8 @@ impl BeyondTests {
     /// which had other tests.
     pub fn of(design: &Design, specification: Option<&Specification>) -> Option<Self> {
         let specification = specification.filter(|of| !of.dispersive && !design.inverse)?;
-        let [base] = &specification.curves[..] else { return None };
+        let greatest = |curve: &&SpecifiedCurve| curve.d15f_max_mm.unwrap_or(f64::INFINITY);
+        let base = specification.curves.iter().min_by(|a, b| greatest(a).total_cmp(&greatest(b)))?;
         let range_mm = range_of_tests(base.fines_percent?, base.d85_mm?);
         let (row, held) = design.least_held()?;
         let ratio = row.no_erosion.as_ref().map_or(held, |boundary| boundary.median);

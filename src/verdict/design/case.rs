@@ -4,6 +4,9 @@ use super::sizes::Sizes;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::{Design, DesignRow};
 use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::rules::DESIGN;
+use crate::verdict::rule_words::against;
+use crate::verdict::washout::washout;
 
 /// The finest base that practice allows with a filter, for the inverse.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +18,40 @@ pub struct FinestBase {
     pub rule: AppliedRule,
     /// Whether it may break it: of the limit only the most is known.
     pub is_open: bool,
+    /// What is left of a filter that is not internally stable, where that breaks the rule: a sentence without
+    /// its end. `None` where the filter as placed breaks it.
+    pub washout: Option<String>,
+}
+
+impl FinestBase {
+    /// Where a base breaks, or may break, a rule of retention of these, with the filter as placed or without
+    /// the finer part that it may lose; `kept` is the ratio up to which every base kept all. `None` where it
+    /// keeps all.
+    pub fn at(rules: &[AppliedRule], kept: Option<f64>) -> Option<Self> {
+        let is_broken = |rule: &&AppliedRule| rule.role == RuleRole::Retention && rule.is_broken();
+        let broken = rules.iter().find(is_broken);
+        let washout = washout(rules);
+        let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap_or(1.0);
+        let strictest = retention(rules, d15f).map(|(rule, _)| rule).filter(|_| washout.is_some());
+        let rule = broken.or(strictest);
+        let (rule, is_open) = match rule {
+            Some(rule) => (rule, false),
+            None => (open_retention(rules)?, true),
+        };
+        let washout = washout.map(|of| {
+            let placed = rules.iter().find(|rule| rule.id == DESIGN);
+            let placed = placed.map_or_else(String::new, |rule| {
+                let [value, _] = against(rule, 3);
+                value
+            });
+            format!(
+                "The filter as given is not internally stable: its D15F is {placed}{}, and the limit of \
+                 practice allows for that",
+                of.as_placed()
+            )
+        });
+        Some(Self { ratio: kept, rule: rule.clone(), is_open, washout })
+    }
 }
 
 /// A limit of D15F/D85B, and the rule that sets it.
@@ -106,6 +143,15 @@ impl<'a> Case<'a> {
             | Self::Unknown
             | Self::BelowSearch(..)
             | Self::NotHeld(_) => None,
+        }
+    }
+
+    /// The ratio at which the case judges a filter of this shape: the one that is allowed, or what practice
+    /// allows; `None` where neither is known.
+    pub fn spoken_of(&self) -> Option<f64> {
+        match self {
+            Self::Open(limit, ..) | Self::BelowSearch(limit, _) | Self::NotHeld(limit) => Some(limit.ratio),
+            _ => self.ratio(),
         }
     }
 

@@ -12,9 +12,12 @@ mod tests;
 mod words;
 
 use super::specification::DESIGN_AGAIN;
+use super::thickness::WITH_AMOUNT;
+use super::washout::washout;
 use super::words::capital;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, DesignAnswer, Specification};
+use crate::outcome::record::{AppliedRule, WithoutFiner};
 use beside_tests::BeyondTests;
 use case::Case;
 pub use case::FinestBase;
@@ -39,12 +42,30 @@ pub fn design_answer(design: &Design, finest: Option<&FinestBase>) -> DesignAnsw
         set_by: if case.rule().is_some() { SetBy::Practice } else { SetBy::Walk },
         rule: case.rule().map(|rule| rule.id.clone()),
         limit,
+        washout: of_washout(&case, design, finest),
         margin: None,
         walk,
         if_dispersive: None,
         said: String::new(),
     };
     answer.joined()
+}
+
+/// What is left of a filter of the shape as given at the limit of a case, where it is not internally stable
+/// and then too coarse; for the inverse what `finest` counted of it.
+fn of_washout(case: &Case, design: &Design, finest: Option<&FinestBase>) -> Option<String> {
+    if let Some(of) = finest {
+        return of.washout.clone();
+    }
+    // A filter of one shape keeps it at every size: what is left grows with its D15F.
+    let times = case.spoken_of().filter(|_| design.rules_at > 0.0)? / design.rules_at;
+    let scaled = |rule: &AppliedRule| {
+        let left = rule.without_finer.map(|left| WithoutFiner { d15f: times * left.d15f, ..left });
+        AppliedRule { without_finer: left.filter(|_| !design.inverse).or(rule.without_finer), ..rule.clone() }
+    };
+    let rules: Vec<AppliedRule> = design.rules.iter().map(scaled).collect();
+    let of = washout(&rules)?;
+    Some(format!("The filter as given is not internally stable: it has this D15F{}", of.as_placed()))
 }
 
 impl DesignAnswer {
@@ -59,7 +80,7 @@ impl DesignAnswer {
     }
 
     fn joined(self) -> Self {
-        let beside = [&self.margin, &self.walk, &self.if_dispersive].into_iter().flatten();
+        let beside = [&self.washout, &self.margin, &self.walk, &self.if_dispersive].into_iter().flatten();
         let said: Vec<&str> = [&self.limit].into_iter().chain(beside).map(String::as_str).collect();
         Self { said: said.join(". "), ..self }
     }
@@ -99,9 +120,7 @@ impl Design {
         let first = self.boundaries.first()?;
         let varies = self.boundaries.iter().any(|row| row.thickness != first.thickness);
         let is_held = self.findings.iter().any(|of| of.finding.id == AMOUNT_HELD);
-        (varies && !is_held).then_some(
-            "Thickness was varied together with the amount of base (the base is a share of the filter)",
-        )
+        (varies && !is_held).then_some(WITH_AMOUNT)
     }
 
     /// The walk's D15F of no erosion over the centre of the range in which erosion began in tests on soils

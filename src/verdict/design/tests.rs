@@ -6,6 +6,7 @@ use crate::outcome::design::band::Band;
 use crate::outcome::design::{Boundary, DesignFinding, DesignRow};
 use crate::outcome::record::{AppliedRule, Evidence, RuleRole};
 use crate::outcome::rules::BaseSoil;
+use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
 use crate::verdict::{PairRules, SpecificationOptions, finding};
 
 /// A design in which the walk holds to this D15F/D85B, `None` where it holds nothing, as its file has it.
@@ -165,7 +166,7 @@ fn the_inverse_stops_at_the_base_that_practice_allows() {
     let mut inverse = design(&sand(), Some(7.0));
     (inverse.inverse, inverse.filter_d15_mm, inverse.base.d85_mm) = (true, Some(2.0), None);
     let rule = inverse.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap().clone();
-    let finest = FinestBase { ratio: Some(4.0), rule, is_open: false };
+    let finest = FinestBase { ratio: Some(4.0), rule, is_open: false, washout: None };
     let answer = design_answer(&inverse, Some(&finest));
     assert_eq!((answer.d85b_min_mm, answer.d15f_max_mm), (Some(0.5), None));
     assert!(answer.said.starts_with("D85B down to 0.500 mm, by practice"), "{}", answer.said);
@@ -182,6 +183,56 @@ fn the_inverse_stops_at_the_base_that_practice_allows() {
     assert!(unknown.said.ends_with(". The walk alone holds D85B down to 0.286 mm"), "{}", unknown.said);
     assert_eq!(open(Some(4.0)).d85b_min_mm, Some(0.5));
     assert!(open(Some(4.0)).said.contains("whose limit for a finer base is not known"));
+}
+
+/// `judge` calls this gravel not met on this till: its D15F of 0.61 mm is 2.84 mm without its finest 19.4 %.
+#[test]
+fn a_filter_that_washes_out_is_said_to_be_beyond_the_limit_of_its_design() {
+    let till = Gradation::from_points(&REGRADED_TILL, None).unwrap();
+    let gravel = |times: f64| {
+        Gradation::from_points(&GRAVEL_0_32.map(|(size, percent)| (times * size, percent)), None).unwrap()
+    };
+    let of = |times: f64| {
+        let mut found = design(&till, Some(12.6));
+        let d15f = gravel(times).d(15.0).unwrap();
+        found.rules = PairRules::of(&till, &gravel(times)).rules;
+        found.rules_at = d15f / found.base.d85_mm.unwrap();
+        found
+    };
+    // As it is read at another size than the answer: 0.7 mm is 1.147 times 0.61 mm.
+    for times in [1.0, 1.147, 2.0] {
+        let answer = of(times).answer();
+        assert_eq!(
+            answer.washout.as_deref(),
+            Some(
+                "The filter as given is not internally stable: it has this D15F as placed, but 3.25 mm \
+                 without its finest 19.4 %, which the filter may lose"
+            )
+        );
+        assert!(answer.said.starts_with(&format!("{}. {}. The walk", answer.limit, answer.washout.unwrap())));
+    }
+    // Where the walk allows so little that what is left retains the base.
+    let held = Design { boundaries: design(&till, Some(0.05)).boundaries, ..of(1.0) };
+    assert_eq!((held.answer().set_by, held.answer().washout), (SetBy::Walk, None));
+    assert_eq!(design(&till, Some(12.6)).answer().washout, None);
+    // The finest base for this filter: what is left of it counts.
+    let rules = of(1.0).rules;
+    let finest = FinestBase::at(&rules, Some(0.2)).unwrap();
+    assert_eq!((finest.rule.id.as_str(), finest.is_open), ("foster-fell-no-erosion", false));
+    let inverse = Design { inverse: true, filter_d15_mm: Some(0.61), ..of(1.0) };
+    let answer = design_answer(&inverse, Some(&finest));
+    assert!((answer.d85b_min_mm.unwrap() - 0.61 / 0.2).abs() < 1e-9, "{answer:?}");
+    assert_eq!(
+        answer.washout.as_deref(),
+        Some(
+            "The filter as given is not internally stable: its D15F is 0.610 mm as placed, but 2.52 mm \
+             without its finest 17.6 %, which the filter may lose, and the limit of practice allows for that"
+        )
+    );
+    // Without a finer part that it may lose no rule is broken.
+    assert_eq!(FinestBase::at(&design(&till, None).rules, Some(0.2)).map(|of| of.washout), Some(None));
+    let fine = PairRules::of(&till, &gravel(0.2)).rules;
+    assert_eq!(FinestBase::at(&fine, Some(0.2)), None);
 }
 
 /// With the specification of its base: the walk's 19.3 mm are 17.7 times the centre of 0.7 to 1.7 mm.

@@ -13,7 +13,8 @@ use crate::outcome::design::specification::{SizeBand, Specification, margins};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{SheetCover, commit};
 use crate::outcome::rules::{
-    GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND, range_of_tests,
+    DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND,
+    range_of_tests,
 };
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
@@ -179,24 +180,24 @@ impl Specification {
     }
 }
 
-/// How near the end of a range of tests a limit is that end, of it.
-const AT_END: f64 = 0.005;
-
 impl Specification {
-    /// That the maximum D15F has no margin, where practice sets it and tests of such soils showed erosion at
-    /// it: a sentence without its end.
+    /// That the maximum D15F has no margin, where practice sets it and it is the boundary of no erosion of
+    /// tests itself: a sentence without its end.
     pub fn without_margin_in_words(&self) -> Option<String> {
         let greatest = self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
         let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let fines = curve.fines_percent.filter(|_| greatest >= limit)?;
+        let fines = curve.fines_percent.filter(|_| curve.without_margin && greatest >= limit)?;
         let why = match (self.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
+            // The limit of design is the floor of any filter then, and above the boundary of tests.
+            (true, _) if limit < DESIGN_FLOOR_MM => {
+                "it is the boundary of no erosion in tests (Fell et al., Table 9.2, note b)".into()
+            }
             (true, _) => {
                 "Fell et al. (Table 9.2, note b) give one number for design and for no erosion in tests"
                     .into()
             }
-            (false, [low, _]) if limit < low * (1.0 - AT_END) => return None,
-            (false, [low, _]) if limit <= low * (1.0 + AT_END) => {
+            (false, [low, _]) if limit <= low * (1.0 + 1e-9) => {
                 "it is the lowest D15F at which tests showed erosion (Fell et al., Table 9.2)".into()
             }
             (false, [low, high]) => format!(

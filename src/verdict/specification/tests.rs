@@ -4,6 +4,7 @@ use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::design::DesignFinding;
 use crate::outcome::record::RuleRole;
+use crate::verdict::washout::washout;
 use crate::verdict::{PairOptions, PairRules};
 
 fn soil(points: &[(f64, f64)]) -> Gradation {
@@ -337,6 +338,13 @@ fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
         "{}",
         dispersive(&clay)
     );
+    // No text gives a limit for a dispersive soil of category 3.
+    let silty = dispersive(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
+    assert!(
+        silty.contains("A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = (40 - 25.0)")
+            && silty.contains(" mm (no text gives a limit for dispersive soils with such fines)"),
+        "{silty}"
+    );
     // Fines that are not known leave the formula whole.
     let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
     assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
@@ -370,6 +378,29 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
     assert!(narrow.steps.last().unwrap().note.starts_with("The fine side is not stable by Kenney and Lau"));
 }
 
+/// A side that loses its finer part keeps the limit all the same: D60F of the fine side is no more than the
+/// maximum D15F, and the coarse side is straight, which is stable.
+#[test]
+fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
+    let mut unstable = 0;
+    for scale in [0.3, 1.0, 4.0] {
+        for walked in [0.5, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0].map(|mm| mm * scale) {
+            let sand = [(0.1, 0.0), (0.14, 15.0), (0.5, 85.0), (1.0, 100.0)];
+            let sand = soil(&sand.map(|(size, percent)| (scale * size, percent)));
+            let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
+            let of = Specification::of("sand", &[("sand".into(), sand.clone())], options);
+            unstable += of.findings.iter().filter(|of| of.finding.id == "unstable_side").count();
+            for side in of.band.iter().flat_map(|band| [&band.fine_side, &band.coarse_side]) {
+                let side = soil(&side.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>());
+                let side = side.scaled(1.0 - 1e-9).unwrap();
+                let rules = PairRules::of(&sand, &side).rules;
+                assert!(washout(&rules).is_none(), "{walked} {:?}", washout(&rules).map(|of| of.in_words()));
+            }
+        }
+    }
+    assert!(unstable > 0);
+}
+
 /// A limit within what tests showed, one below it, and those of dispersive soils.
 #[test]
 fn a_limit_without_a_margin_is_said_to_have_none() {
@@ -388,6 +419,15 @@ fn a_limit_without_a_margin_is_said_to_have_none() {
         said(&clay, None).contains("lies in the range in which erosion began in tests (0.320 to 0.675 mm;")
     );
     assert!(said(&clay, Some(true)).contains("Table 9.2, note b) give one number for design and for"));
+    // Of a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
+    let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
+    assert!(
+        said(&fine, Some(true)).ends_with(
+            "no margin: it is the boundary of no erosion in tests (Fell et al., Table 9.2, note b)"
+        ),
+        "{}",
+        said(&fine, Some(true))
+    );
     assert_eq!(said(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), "");
     assert_eq!(said(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)], Some(true)), "");
 }

@@ -1416,6 +1416,9 @@ class DesignAnswer(_DesignAnswer, total=False):
     limit
         The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in files
         of earlier versions, whose text is all in `said`.
+    washout
+        That the filter as given is not internally stable, and too coarse without the finer part that it may
+        lose.
     margin
         That a limit of practice has no margin.
     walk
@@ -1428,6 +1431,7 @@ class DesignAnswer(_DesignAnswer, total=False):
 
     d85b_min_mm: Optional[float]
     limit: str
+    washout: Optional[str]
     margin: Optional[str]
     walk: Optional[str]
     if_dispersive: Optional[str]
@@ -1815,11 +1819,15 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
         Maximum D15F (mm) that retains it; `None` where it is not known.
     d15f_max_rule
         The rule that sets it.
+    without_margin
+        Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
+        it. `false` in files of earlier versions.
     d15f_min_mm
         Minimum D15F (mm) that drains it.
     """
 
     regraded: List[List[float]]
+    without_margin: bool
 
 
 class StepValue(TypedDict):
