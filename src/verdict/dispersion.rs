@@ -64,8 +64,14 @@ impl IfDispersive {
     }
 
     /// The same, with what to do where no text has the limit.
-    fn open_with(&self, test: &str) -> String {
-        let (why, tests) = match self.lacks {
+    fn open_with(&self, test: &'static str) -> String {
+        let (why, tests) = self.lack(test);
+        format!("{why}; it is at most {} mm: {tests}", rounded_down(self.d15f_max_mm))
+    }
+
+    /// Why a limit is not known itself, and what to do: this test, where no text has the limit.
+    fn lack(&self, test: &'static str) -> (&'static str, &'static str) {
+        match self.lacks {
             Some(DispersiveLack::LimitOfDesign) => {
                 ("no source that was read gives a limit of design for such fines", test)
             }
@@ -73,8 +79,7 @@ impl IfDispersive {
                 ("the limit is not known, as D85B is not", "have the base tested with a hydrometer")
             }
             None => ("the limit is not known", test),
-        };
-        format!("{why}; it is at most {} mm: {tests}", rounded_down(self.d15f_max_mm))
+        }
     }
 
     /// The limit in words, of a pair.
@@ -87,6 +92,19 @@ impl IfDispersive {
         self.words_with("have the base tested with the filter")
     }
 
+    /// The limit of a base for which a filter is specified, with why it is not known itself, as a clause of its
+    /// own; and the test that would tell it.
+    pub fn limit_of_base(&self) -> (String, Option<&'static str>) {
+        let limit = format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm));
+        match self.at_most {
+            true => {
+                let (why, test) = self.lack("have the base tested with the filter");
+                (format!("{limit} ({why})"), Some(test))
+            }
+            false => (limit, None),
+        }
+    }
+
     /// The same as a clause of its own: "D15F is at most 0.500 mm".
     pub fn clause_of_base(&self) -> String {
         match self.at_most {
@@ -95,7 +113,7 @@ impl IfDispersive {
         }
     }
 
-    fn words_with(&self, test: &str) -> String {
+    fn words_with(&self, test: &'static str) -> String {
         match self.at_most {
             true => self.open_with(test),
             false => format!("D15F up to {} mm", rounded_down(self.d15f_max_mm)),

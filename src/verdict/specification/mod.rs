@@ -16,6 +16,7 @@ use crate::outcome::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND,
     range_of_tests,
 };
+use crate::verdict::words::capital;
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
 
@@ -210,17 +211,22 @@ impl Specification {
     }
 
     /// What the maximum D15F is if the base is dispersive, what of the specification does not hold then, and
-    /// what to do, as [`DESIGN_AGAIN`]: a sentence without its end; `None` where it all holds, or somebody
+    /// what to do, as [`DESIGN_AGAIN`]: sentences, the last without its end; `None` where it all holds, or somebody
     /// has said whether it is.
     pub fn if_dispersive_in_words(&self, again: &str) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
-        let band = match self.band {
-            Some(_) => "this band and its limits are then not valid: ",
-            None => "",
+        let [before, invalid] = match self.band {
+            Some(_) => ["this band is specified", "this band is not valid: "],
+            None => ["a filter is specified", ""],
         };
-        let limit = of.clause_of_base();
-        Some(format!("If the base is dispersive, which is not stated, {limit}; {band}{again}"))
+        let (limit, test) = of.limit_of_base();
+        let test = test.map_or_else(String::new, |test| format!(", and {test}"));
+        Some(format!(
+            "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before {before}. \
+             If it is, {invalid}{limit}. {}{test}",
+            capital(again)
+        ))
     }
 }
 

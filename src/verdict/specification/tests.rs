@@ -262,14 +262,14 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     let silty = said(&silt, nobody).unwrap();
     assert_eq!(
         silty,
-        "If the base is dispersive, which is not stated, D15F is at most 0.500 mm; this band and its limits \
-         are then not valid: design again for a dispersive base"
+        "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before this band is \
+         specified. If it is, this band is not valid: D15F is at most 0.500 mm. Design again for a dispersive \
+         base"
     );
     let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
     assert!(
-        open.contains(
-            "which is not stated, no source that was read gives a limit of design for such fines; "
-        ) && open.contains(" mm: have the base tested with the filter; this band and its "),
+        open.contains(" mm (no source that was read gives a limit of design for such fines). Design again ")
+            && open.ends_with(", and have the base tested with the filter"),
         "{open}"
     );
     // What is finer anyway, few fines, and what was said.
