@@ -19,4 +19,4 @@ pub use record::{
 };
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};
-pub use spread::{Beyond, band_in_words, over_networks, share_of_networks, spread};
+pub use spread::{Beyond, drawn_of_networks, over_networks, share_of_networks, spread};

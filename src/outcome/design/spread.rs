@@ -37,9 +37,9 @@ pub fn over_networks(ends: &str, networks: u64) -> String {
     }
 }
 
-/// The 5 to 95 % range of so many networks in words, where it is drawn of few networks, too.
-pub fn band_in_words(networks: u64) -> &'static str {
-    if are_few(networks) { "interpolated 5 to 95 %" } else { "5 to 95 %" }
+/// The share of so many networks that figures draw, which is read between two networks where they are few.
+pub fn drawn_of_networks(networks: u64) -> &'static str {
+    if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
 }
 
 /// The 5, 50 and 95 percentile of values of which some are only known to lie above or below all that was
@@ -86,8 +86,8 @@ mod tests {
         let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
         let [low, _, high] = spread(&five).map(Result::unwrap);
         assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");
-        let few = "interpolated 5 to 95 %";
-        assert_eq!([5, 19, 20].map(band_in_words), [few, few, "5 to 95 %"]);
+        let few = "interpolated 5 to 95 % range";
+        assert_eq!([5, 19, 20].map(drawn_of_networks), [few, few, "5 to 95 % range"]);
         assert_eq!(over_networks("4.77 to 4.97", 19), "4.77 to 4.97 over 19 networks");
         assert_eq!(over_networks("4.77 to 4.97", 20), "4.77 to 4.97, 5 to 95 % range of 20 networks");
         assert_eq!(share_of_networks(5), "least and most");

@@ -1,7 +1,7 @@
 //! Erosion against D15F: what every network eroded, the three zones, and the limits of practice on one axis.
 
 use crate::outcome::design::band::{SetBy, limits, open_retention, retention};
-use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow, band_in_words};
+use crate::outcome::design::{Boundary, Design, DesignRow, Specification, WalkRow, drawn_of_networks};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{
     DESIGN, PAPER_CONTINUING, PAPER_NO_EROSION, PERMEABILITY, PERMEABILITY_LEAST, TERZAGHI, TESTS_CONTINUING,
@@ -80,14 +80,16 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
         figure.add(bar.label("band to specify"));
     }
     let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
+    let blend = match design.replicates {
+        1 => String::new(),
+        networks => format!(" The colours blend over the {} of the networks.", drawn_of_networks(networks)),
+    };
     let mut caption = format!(
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
-         second where it was walked. {}; orange: some erosion; red: continuing erosion. The colours blend \
-         over the {} band of the networks.{of_base}",
+         second where it was walked. {}; orange: some erosion; red: continuing erosion.{blend}{of_base}",
         row.name(),
         row.thickness,
-        practice.words(),
-        band_in_words(design.replicates)
+        practice.words()
     );
     if design.boundaries.len() > 1 {
         if least.is_some() {

@@ -21,7 +21,7 @@ use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
 use super::specification::{Stated, cautions, still_to_set, to_specify};
 use super::written::Written;
-use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow, band_in_words};
+use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow, share_of_networks};
 use crate::outcome::record::Confidence;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
@@ -173,13 +173,14 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                 p {
                     "In the model no erosion (less than " (threshold(design.threshold)) " of the base in the \
                      first run) up to D15F/D85B "
-                    @match &row.no_erosion {
+                    @let [no_erosion, _] = row.shown();
+                    @match &no_erosion {
                         Some(boundary) => {
                             (of_walk(design, &ratio(boundary.median)))
                             @if design.replicates == 1 { " on one network: " } @else {
-                                " in the median of " (whole(design.replicates)) " networks, "
-                                (between(boundary.low, boundary.high, ratio)) " in "
-                                (band_in_words(design.replicates)) " of them: "
+                                " in the median of " (whole(design.replicates)) " networks ("
+                                (between(boundary.low, boundary.high, ratio)) ", "
+                                (share_of_networks(design.replicates)) "): "
                             }
                         },
                         None => {

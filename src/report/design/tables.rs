@@ -5,7 +5,7 @@ use maud::{Markup, Render, html};
 use super::words::{in_band, of_walk, ratio, sentence, shown_in};
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, band_in_words};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, share_of_networks};
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
@@ -48,8 +48,11 @@ pub(super) fn boundaries(design: &Design) -> Markup {
     html! {
         p {
             "Results of the walks alone, without the rules of practice: D15F/D85B" (of_base)
-            ", median and " (band_in_words(design.replicates)) " of " (whole(design.replicates))
-            " networks; below it the "
+            @if design.replicates == 1 { ", of one network" } @else {
+                ", median of " (whole(design.replicates)) " networks (in brackets "
+                (share_of_networks(design.replicates)) ")"
+            }
+            "; below it the "
             @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
@@ -58,10 +61,12 @@ pub(super) fn boundaries(design: &Design) -> Markup {
                 html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
             })
             .text("No erosion in the model up to", |row| {
-                cell(row.no_erosion.as_ref(), row.no_erosion_note.as_ref(), true)
+                let [no_erosion, _] = row.shown();
+                cell(no_erosion.as_ref(), row.no_erosion_note.as_ref(), true)
             })
             .text("Continuing erosion from", |row| {
-                cell(row.continuing.as_ref(), row.continuing_note.as_ref(), false)
+                let [_, continuing] = row.shown();
+                cell(continuing.as_ref(), row.continuing_note.as_ref(), false)
             })
             .number("Not monotone", |row| {
                 format!("{} of {}", row.not_monotone, row.networks.len())

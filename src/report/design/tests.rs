@@ -106,6 +106,34 @@ fn design(no_erosion: Option<Boundary>, confidence: Confidence) -> Design {
 const CSV: &str = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second\n\
                    <loose>,60 layers,1,4.0,0.01,\n<loose>,60 layers,1,5.0,0.5,0.4\n";
 
+/// A percentile of few networks would lie between two of them.
+#[test]
+fn of_few_networks_the_page_has_least_and_most() {
+    use crate::outcome::design::NetworkBoundaries;
+    let of = |ratios: &[f64]| {
+        let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
+        let mut design = design(Boundary::of(&networks, Some(0.2)), Confidence::Within);
+        design.base.d85_mm = Some(0.2);
+        design.replicates = ratios.len() as u64;
+        let network =
+            |ratio: &f64| NetworkBoundaries { network: 1, no_erosion: Some(*ratio), continuing: None };
+        design.boundaries[0].networks = ratios.iter().map(network).collect();
+        written(&design, CSV)
+    };
+    let few = of(&[4.0, 4.4, 6.0]);
+    assert!(few.contains(" in the median of 3 networks (4.00 to 6.00, least and most): "), "{few}");
+    assert!(few.contains("median of 3 networks (in brackets least and most); below it the D15F"), "{few}");
+    assert!(few.contains("blend over the interpolated 5 to 95 % range of the networks."), "{few}");
+    let one = of(&[4.4]);
+    assert!(
+        one.contains(" on one network: ") && one.contains(", of one network; below it the D15F"),
+        "{one}"
+    );
+    assert!(!one.contains("least and most") && !one.contains("5 to 95 %"), "{one}");
+    let many = of(&[4.0, 4.4, 4.8, 5.2].repeat(5));
+    assert!(many.contains("in the median of 20 networks (4.00 to 5.20, 5 to 95 % range): "), "{many}");
+}
+
 #[test]
 fn only_what_was_checked_is_green_and_names_are_inert() {
     let boundary = || {
