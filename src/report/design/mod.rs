@@ -26,7 +26,7 @@ use crate::outcome::record::Confidence;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
-use words::{between, of_walk, ratio, sentence, shown_in};
+use words::{between, of_walk, ratio, sentence, shown_in, walk_decides};
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`
 /// there.
@@ -45,7 +45,9 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         (titled_by_file("Base", "Base", &design.base.name)) ", " (filter_words(&design))
     };
     let findings = told(&design);
-    let (foremost, rest) = findings.split_at(findings.len().min(FOREMOST));
+    // Of a walk that sets nothing what speaks against it most is enough for the first sheet.
+    let foremost = if walk_decides(&design) { FOREMOST } else { 1 };
+    let (foremost, rest) = findings.split_at(findings.len().min(foremost));
     let sheet = html! { section.sheet {
         (answer(&design, foremost, rest.len()))
         p.small { (clean(&left_out_in_brief(&design.model_leaves_out))) " The boundaries of the walk are the \
@@ -115,7 +117,8 @@ fn told(design: &Design) -> Vec<String> {
     let notes: Vec<String> = notes.map(|note| sentence(note)).collect();
     let is_said = |of: &&DesignFinding| {
         let is_noted = notes.iter().any(|note| note.contains(&clean(&of.finding.sentence)));
-        is_noted || of.finding.id == NOT_COUNTED || design.is_cautioned(of)
+        let is_above = of.finding.id == NOT_COUNTED && walk_decides(design);
+        is_noted || is_above || design.is_cautioned(of)
     };
     let words = |of: &DesignFinding| {
         let said = &of.finding.sentence;
@@ -197,7 +200,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                     @if let Some(walk) = &said.walk { " " (unbroken(walk)) "." }
                 }
-                @if let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
+                @if walk_decides(design) && let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
                 @if design.specification.is_none() && let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.words())) } "." }
                 }

@@ -33,11 +33,16 @@ pub(super) fn in_band(low: Option<f64>, high: Option<f64>, words: fn(f64) -> Str
     if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }
 }
 
-/// A number of the walk, in bold where the walk decides: it sets an answer that is known.
+/// A number of the walk, in bold where the walk decides.
 pub(super) fn of_walk(design: &Design, number: &str) -> Markup {
-    let answer = design.answer();
-    match answer.set_by == SetBy::Walk && answer.d15f_over_d85b.is_some() {
+    match walk_decides(design) {
         true => html! { b { (number) } },
         false => html! { (number) },
     }
+}
+
+/// Whether the walk sets an answer that is known.
+pub(super) fn walk_decides(design: &Design) -> bool {
+    let answer = design.answer();
+    answer.set_by == SetBy::Walk && answer.d15f_over_d85b.is_some()
 }

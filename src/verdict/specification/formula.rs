@@ -23,7 +23,9 @@ pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let category = curve.of.category.filter(|_| rule.id == DESIGN);
     let category = category.map_or_else(String::new, |category| format!("category {category}, "));
     let dispersive = if curve.dispersive && fines >= FEW_FINES { ", dispersive" } else { "" };
-    let [fines, d85b] = [format!("- {})", significant(fines)), format!("x {}", significant(d85b))];
+    // With so many digits of A the limit is found by hand.
+    let fines = (100.0 * fines).round() / 100.0;
+    let [fines, d85b] = [format!("- {fines})"), format!("x {}", significant(d85b))];
     let worked = formula.replace("- A)", &fines).replace("D85B", &d85b);
     let unit = if worked.contains("mm") { "" } else { " mm" };
     let worked = if worked == formula { String::new() } else { format!(" = {worked}{unit}") };
