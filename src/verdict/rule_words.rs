@@ -223,8 +223,8 @@ mod tests {
         PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
     }
 
-    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4, of 40 to 85 %
-    /// both have 0.7 mm, above 85 % both have 9 D85B, and tests begin at 6.4.
+    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4, of 40 to
+    /// 85 % both have 0.7 mm, above 85 % both have 9 D85B, and tests begin at 6.4.
     #[test]
     fn a_limit_has_no_margin_where_design_is_not_below_the_tests() {
         let fines = |percent: f64| [(0.001, 0.0), (0.075, percent), (2.0, 100.0)];

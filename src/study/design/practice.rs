@@ -28,7 +28,8 @@ pub(super) fn allowed(row: &Row, held: f64, finest: Option<&FinestBase>) -> Resu
 
 /// The finest base of this shape that practice allows with a filter of this size: that, and every coarser
 /// one, keeps every rule of retention, without the finer part that the filter may lose, too. A rule of whose
-/// limit only the most is known is not kept. `None` where the base is not scaled, sizes have no unit, or every base keeps every rule.
+/// limit only the most is known is not kept. `None` where the base is not scaled, sizes have no unit, or
+/// every base keeps every rule.
 ///
 /// # Errors
 /// Sizes out of range.
