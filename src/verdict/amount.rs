@@ -3,9 +3,9 @@
 use super::entry::Finding;
 use super::finding as found;
 use super::practice::severity;
-use super::study_points::{classes, reach, times, walked_in_words};
+use super::study_points::{Scaled, at_end, classes, reach, scaled, times, walked_in_words};
 use crate::outcome::numbers::in_digits;
-use crate::outcome::record::{Outcome, Sensitivity, Verdict};
+use crate::outcome::record::{CurveRange, Outcome, Sensitivity, Verdict};
 
 /// The eroded mass is about the same where its least and greatest lie within this factor.
 const ABOUT_THE_SAME: f64 = 1.5;
@@ -25,27 +25,14 @@ pub fn finding(outcome: &Outcome) -> Option<Finding> {
 }
 
 /// The class with the base of the scene, and a worse one with another amount, as a headline says it; `None`
-/// where no amount gives a worse class.
+/// where no amount gives a worse class, walked or scaled to the end of the range that erodes most.
 pub(super) fn worse_in_words(outcome: &Outcome) -> Option<String> {
-    let amounts = Amounts::of(outcome);
-    let worse = amounts.worse()?;
-    let own = amounts.ratio().map_or_else(
-        || "this amount of base".to_owned(),
-        |ratio| format!("base of {} % of the filter's mass", in_digits(100.0 * ratio, DIGITS)),
-    );
-    let (class, other) = (amounts.verdict.words(), worse.walked.verdict.words());
-    Some(format!("{class} with {own}, {other} with {}", part_of_it(worse.factor)))
+    Amounts::of(outcome).worse_in_words()
 }
 
-/// A multiple of what was just named.
-fn part_of_it(factor: f64) -> String {
-    match factor {
-        0.25 => "a quarter of it".into(),
-        0.5 => "half of it".into(),
-        2.0 => "twice that".into(),
-        4.0 => "four times that".into(),
-        _ => format!("{} times that", times(factor)),
-    }
+/// Whether the walks of a case show that about the same mass erodes however much base is offered.
+pub(super) fn is_same_mass(outcome: &Outcome) -> bool {
+    Amounts::of(outcome).is_same_mass()
 }
 
 /// The amounts of base that were walked, beside a verdict.
@@ -56,8 +43,10 @@ struct Amounts<'a> {
     as_others: Verdict,
     /// How the others are classed, where that is not as the verdict is.
     points: Option<&'a str>,
-    /// Whether the constriction curve is a range, of which the ends have no other amounts.
-    is_range: bool,
+    /// The range of the constriction curve, of which the ends have no other amounts.
+    range: Option<&'a CurveRange>,
+    /// Eroded mass fraction that divides the classes.
+    threshold: f64,
 }
 
 impl<'a> Amounts<'a> {
@@ -67,7 +56,8 @@ impl<'a> Amounts<'a> {
             verdict: outcome.verdict,
             as_others: outcome.class_as_points(),
             points: outcome.points_are(),
-            is_range: outcome.curve_range.is_some(),
+            range: outcome.curve_range.as_ref(),
+            threshold: outcome.threshold,
         }
     }
 
@@ -102,10 +92,56 @@ impl<'a> Amounts<'a> {
         within(ABOUT_THE_SAME, &mass) && !within(FAR_APART * (1.0 - 1e-9), &|row| row.factor)
     }
 
-    /// The class of each amount, and how the others are classed.
+    /// What would erode of the other amounts at the end of the range that erodes most, where that is a worse
+    /// class than was walked: only where the walks show that the same mass erodes.
+    fn scaled(&self) -> Vec<Scaled> {
+        let own = self.rows.iter().find(|row| row.factor == 1.0);
+        let Some((range, own)) = self.range.zip(own).filter(|_| self.is_same_mass()) else {
+            return Vec::new();
+        };
+        let of = |row: &Sensitivity| scaled(range, &own.walked, (row.factor, &row.walked), self.threshold);
+        self.others().filter_map(of).collect()
+    }
+
+    /// The amount nearest to the scene's own that erodes at that end, where no walked class is worse.
+    fn worse_at_end(&self) -> Option<Scaled> {
+        let beyond = self.scaled().into_iter().filter(|of| of.erodes());
+        let away = |of: &Scaled| (of.factor - 1.0).abs();
+        let nearest = beyond.min_by(|a, b| away(a).total_cmp(&away(b)));
+        nearest.filter(|_| self.verdict == Verdict::None && self.worse().is_none())
+    }
+
+    fn worse_in_words(&self) -> Option<String> {
+        let walked = self.worse().map(|row| (row.factor, row.walked.verdict.words(), ""));
+        let (factor, other, how) = walked
+            .or_else(|| self.worse_at_end().map(|of| (of.factor, of.class, " (scaled, not walked)")))?;
+        let class = self.verdict.words();
+        Some(match self.ratio().map(|ratio| 100.0 * ratio) {
+            Some(own) => {
+                let [own, of] = [own, own * factor].map(|share| in_digits(share, DIGITS));
+                format!("{class} with base of {own} % of the filter's mass, {other} with {of} %{how}")
+            }
+            None => {
+                format!("{class} with this amount of base, {other} with {} times as much{how}", times(factor))
+            }
+        })
+    }
+
+    /// One amount, after another in percent of the filter's mass.
+    fn amount(&self, factor: f64) -> String {
+        self.ratio().map_or_else(
+            || format!("{} times the base", times(factor)),
+            |ratio| format!("base of {} %", in_digits(100.0 * ratio * factor, DIGITS)),
+        )
+    }
+
+    /// The class of each amount, and how the others are classed. The scene's own is undecided where the
+    /// verdict is.
     fn classes(&self) -> String {
         let others = self.others().map(|row| (row.factor, row.walked.verdict));
-        let points: Vec<(f64, Verdict)> = others.chain([(1.0, self.as_others)]).collect();
+        let is_open = self.verdict == Verdict::Undecided;
+        let own = if is_open { self.verdict } else { self.as_others };
+        let points: Vec<(f64, Verdict)> = others.chain([(1.0, own)]).collect();
         let each = match self.ratio() {
             Some(ratio) => classes(&points, |ends, is_first| {
                 let share =
@@ -115,10 +151,15 @@ impl<'a> Amounts<'a> {
             }),
             None => classes(&points, |ends, _| format!("with {} times the base", reach(ends, times))),
         };
-        let ends = "; the ends of its range were not walked with other amounts";
+        let scaled = at_end(&self.scaled(), |factor| format!("with {}", self.amount(factor)));
+        let ends = match self.range {
+            Some(_) if scaled.is_empty() => "; the ends of its range were not walked with other amounts",
+            _ => "",
+        };
+        let which = if is_open && self.as_others != own { "other amounts " } else { "" };
         match self.points {
-            Some(points) => format!("{each} ({points}{})", if self.is_range { ends } else { "" }),
-            None => each,
+            Some(points) => format!("{each} ({which}{points}{ends}){scaled}"),
+            None => format!("{each}{scaled}"),
         }
     }
 
@@ -144,7 +185,8 @@ impl<'a> Amounts<'a> {
             .map(|row| format!("{} times the base: {}", times(row.factor), walked_in_words(&row.walked)));
         let each = each.collect::<Vec<_>>().join("; ");
         let classes = self.classes();
-        let is_one = self.others().all(|row| row.walked.verdict == self.as_others);
+        let at_end = self.worse_at_end();
+        let is_one = at_end.is_none() && self.others().all(|row| row.walked.verdict == self.as_others);
         let why = match is_one {
             _ if self.is_same_mass() => &format!("{SAME_MASS}{}", self.follows(is_one)),
             _ if self.verdict == Verdict::Undecided => {
@@ -162,6 +204,10 @@ impl<'a> Amounts<'a> {
                 let class = row.walked.verdict.words();
                 found::worse_with_amount(why, &classes, &times(row.factor), class, &each)
             }
+            None if at_end.is_some() => {
+                let (factor, class) = at_end.map_or((f64::NAN, ""), |of| (of.factor, of.class));
+                found::worse_with_amount(why, &classes, &times(factor), class, &each)
+            }
             None if is_one => {
                 let widen = |[least, most]: [f64; 2], of: f64| [least.min(of), most.max(of)];
                 let factors = self.others().map(|row| row.factor);
@@ -176,7 +222,7 @@ impl<'a> Amounts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Classed, Statistic};
+    use crate::outcome::record::{Classed, CurveEnd, Statistic};
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> Sensitivity {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -186,7 +232,7 @@ mod tests {
     }
 
     fn amounts(rows: &[Sensitivity], verdict: Verdict) -> Amounts<'_> {
-        Amounts { rows, verdict, as_others: verdict, points: None, is_range: false }
+        Amounts { rows, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 }
     }
 
     fn of(rows: &[Sensitivity], verdict: Verdict) -> Finding {
@@ -243,6 +289,59 @@ mod tests {
         );
     }
 
+    /// A range of which the loose end erodes so much.
+    fn range(loose: f64) -> CurveRange {
+        let run = |mean: f64| Statistic { mean, sd: None, low: Some(0.95 * mean), high: Some(1.05 * mean) };
+        let runs = vec![run(loose), run(0.0)];
+        let walked = Classed { replicates: 10, stopped_when_clear: false, verdict: Verdict::None, runs };
+        let end = CurveEnd { curve: "loose".into(), dc50_factor: 1.1, walked };
+        CurveRange {
+            verdict: Verdict::None,
+            ends: vec![end],
+            worst_counts: true,
+            could_be: None,
+            eroded_mass_fraction: Vec::new(),
+        }
+    }
+
+    /// The core on C33 sand and C33 on No. 57 stone: the middle curve holds amounts that the loose end does
+    /// not, as the same mass erodes.
+    #[test]
+    fn the_end_that_erodes_most_is_scaled_to_the_other_amounts() {
+        let held = [(0.25, 0.066), (0.5, 0.033), (1.0, 0.0165), (2.0, 0.0083), (4.0, 0.0041)]
+            .map(|(factor, share)| row(factor, Verdict::None, share));
+        let loose = range(0.0252);
+        let points = Some("by the curve itself");
+        let of = Amounts { points, range: Some(&loose), ..amounts(&held, Verdict::None) };
+        assert_eq!(
+            of.worse_in_words().unwrap(),
+            "no erosion with base of 5 % of the filter's mass, some erosion with 1.25 % (scaled, not walked)"
+        );
+        let found = of.finding().unwrap();
+        assert!(found.id() == "worse_with_amount" && found.is_against(Verdict::None));
+        assert_eq!(
+            found.sentence(),
+            format!(
+                "{SAME_MASS}, so the class follows from the amount: no erosion with base of 1.25 to 20 % of \
+                 the filter's mass (by the curve itself). At the end of the range that erodes most (scaled, \
+                 not walked): some erosion with base of 1.25 % (9.6 to 11 % eroded)."
+            )
+        );
+        let shares = [(0.25, 0.0924), (0.5, 0.0484), (1.0, 0.0248), (2.0, 0.0122), (4.0, 0.0064)];
+        let class = |share: f64| if share < 0.075 { Verdict::None } else { Verdict::Some };
+        let rows = shares.map(|(factor, share)| row(factor, class(share), share));
+        let loose = range(0.0373);
+        let of = Amounts { range: Some(&loose), ..amounts(&rows, Verdict::None) };
+        let said = of.finding().unwrap().sentence();
+        let end = "walked): at the threshold with base of 2.5 % (6.9 to 7.6 % eroded).";
+        assert!(said.ends_with(end), "{said}");
+        assert!(of.worse_in_words().unwrap().ends_with("some erosion with 1.25 %"));
+        // Where other amounts lose another mass nothing is scaled.
+        let other = [0.25, 1.0, 4.0].map(|factor| row(factor, Verdict::None, 0.02));
+        let of = Amounts { range: Some(&loose), ..amounts(&other, Verdict::None) };
+        assert!(of.scaled().is_empty() && of.finding().unwrap().id() == "stays_with_amount");
+    }
+
     /// C33 on No. 57 stone: of a quarter of the base four times the share.
     #[test]
     fn where_the_same_mass_erodes_the_class_is_said_to_follow_from_the_amount() {
@@ -262,7 +361,10 @@ mod tests {
             .clone()
             .map(|row| Sensitivity { walked: Classed { verdict: Verdict::None, ..row.walked }, ..row });
         let points = Some("by the curve itself");
-        let stays = Amounts { points, is_range: true, ..amounts(&held, Verdict::None) }.finding().unwrap();
+        let narrow = range(0.001);
+        let stays = Amounts { points, range: Some(&narrow), ..amounts(&held, Verdict::None) };
+        assert_eq!(stays.worse_in_words(), None);
+        let stays = stays.finding().unwrap();
         assert_eq!(
             (stays.id(), stays.sentence()),
             (
@@ -277,7 +379,11 @@ mod tests {
         let open = Amounts { as_others: Verdict::None, points, ..amounts(&rows, Verdict::Undecided) };
         let open = open.finding().unwrap().sentence();
         assert!(
-            open.starts_with(SAME_MASS) && open.ends_with("with 1.25 % (by the curve itself)."),
+            open.starts_with(SAME_MASS)
+                && open.ends_with(
+                    ": undecided with base of 5 % of the filter's mass, some erosion with 1.25 %, no erosion \
+                     with 2.5 %, no erosion with 10 to 20 % (other amounts by the curve itself)."
+                ),
             "{open}"
         );
         let erodes = rows

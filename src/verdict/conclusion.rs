@@ -12,7 +12,8 @@ use super::tested::is_beyond_tests;
 use super::washout::washout;
 use crate::outcome::digits::{percent, percent_span};
 use crate::outcome::record::{
-    AppliedRule, Confidence, Direction, FindingRecord, Outcome, RuleRole, RunSummary, Verdict,
+    AppliedRule, Confidence, Direction, FindingRecord, Outcome, PanReading, RuleRole, RunSummary, Statistic,
+    Verdict,
 };
 use crate::outcome::rules::PAPER_NO_EROSION;
 
@@ -48,6 +49,7 @@ impl Outcome {
             let runs = [("first run", what), ("second", "")].into_iter().zip(&self.summary);
             runs.map(|((name, what), run)| eroded(name, what, run)).collect::<Vec<_>>().join(", ")
         });
+        let mass = mass + &self.beyond_over_readings().unwrap_or_default();
         let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
@@ -93,8 +95,8 @@ impl Outcome {
         let of = runs().count();
         (closed > 0).then(|| {
             format!(
-                "The filter is closed in {closed} of {of} networks after the {which} run (no open path is \
-                 left)"
+                "No open path for base particles is left in {closed} of {of} networks after the {which} run; \
+                 this says nothing of the filter's drainage"
             )
         })
     }
@@ -109,6 +111,23 @@ impl Outcome {
         let runs = range.eroded_mass_fraction.iter().zip(["first run", "second"]);
         let said = runs.map(run).collect::<Vec<_>>().join(", ");
         (!said.is_empty()).then(|| said + " over the range of constrictions" + beside_ends(range))
+    }
+
+    /// The most that erodes over the readings of the base's finest part, where that is more than the mass
+    /// beside it. Each reading was walked with the curve itself.
+    fn beyond_over_readings(&self) -> Option<String> {
+        let most = |of: &Statistic| of.high.unwrap_or(of.mean);
+        let first = |of: &PanReading| of.walked.runs.first().map(most);
+        let range = self.curve_range.as_ref().and_then(|range| Some(range.eroded_mass_fraction.first()?[1]));
+        let said = range.or_else(|| Some(most(&self.summary.first()?.eroded_mass_fraction)))?;
+        let over = self.pan_bounds.as_ref()?.readings.iter().filter_map(first).fold(f64::NAN, f64::max);
+        let apart = if range.is_some() { " (the two were not walked together)" } else { "" };
+        (over > said).then(|| {
+            format!(
+                ", and up to {} in the first run over the readings of the base's finest part{apart}",
+                percent(over)
+            )
+        })
     }
 
     /// Whether both probabilities that a test would show no erosion stand beside the verdict: where one

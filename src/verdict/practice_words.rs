@@ -7,8 +7,12 @@ use super::rule_words::{
 };
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use super::washout::washout;
-use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleNote, RuleRole, TestedClass, Verdict};
-use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION, authority};
+use crate::gradation::Gradation;
+use crate::outcome::numbers::in_digits;
+use crate::outcome::record::{
+    AppliedRule, Evidence, IfDispersive, Outcome, RuleNote, RuleRole, TestedClass, Verdict,
+};
+use crate::outcome::rules::{BaseSoil, DESIGN, PERMEABILITY, TESTS_NO_EROSION, authority};
 
 impl Outcome {
     /// What practice says of the pair, in a line, with the limit of a dispersive base that the filter breaks
@@ -34,7 +38,32 @@ impl Outcome {
 
     /// Where walk, rules and tests disagree for this pair, and which way each errs.
     pub fn compared_with_tests(&self) -> String {
-        compared_with_tests(self.verdict, &self.rules, self.errs_unsafely())
+        compared_with_tests(self.verdict, &self.rules, self.errs_unsafely(), self.of_soils_in_words())
+    }
+
+    /// Where the walk began to erode for real soils like this base, by tests; of filters like C33 sand where
+    /// none like this one was walked. `None` where no soils were.
+    fn of_soils_in_words(&self) -> Option<String> {
+        let own = self.evidence.clone();
+        let is_own = own.is_some();
+        let of = own.or_else(|| {
+            if self.inputs.scale_free || without_margin(&self.rules).is_some() {
+                return None;
+            }
+            let points: Vec<(f64, f64)> =
+                self.inputs.base.gradation.iter().map(|row| (row[0], row[1])).collect();
+            let soil = BaseSoil::of(&Gradation::from_points(&points, None).ok()?, false);
+            Evidence::of(&soil, self.inputs.filter.d15_mm, Some(CU_OF_C33), None)
+        })?;
+        let side = if of.errs_unsafely() { "unsafe" } else { "safe" };
+        let other = if is_own { "" } else { "This filter is not like theirs. " };
+        Some(format!(
+            "For bases of this kind ({}) the walk began to erode at {} times the centre of the tests' range \
+             (median of {} soils): it errs on the {side} side for most of them. {other}",
+            of.group,
+            in_digits(of.ratio_median, 3),
+            of.soils
+        ))
     }
 }
 
@@ -56,7 +85,19 @@ pub(super) fn practice_line(
 /// Said of a limit that is met, and would be broken by a dispersive base, which is not stated.
 pub(super) const MET_UNLESS_DISPERSIVE: &str = "met unless the base is dispersive";
 
-fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule], errs_unsafely: bool) -> String {
+/// Cu of the broadest filter of the study of real soils: C33 sand.
+const CU_OF_C33: f64 = 5.3;
+
+/// Where walk, rules and tests disagree, with what is known of soils like the base. A base with 15 % fines or
+/// more is no clean sand: neither way of erring follows for it, and to agree confirms nothing.
+fn compared_with_tests(
+    verdict: Verdict,
+    rules: &[AppliedRule],
+    errs_unsafely: bool,
+    of_soils: Option<String>,
+) -> String {
+    let design = rules.iter().find(|rule| rule.id == DESIGN);
+    let has_fines = design.is_some_and(|of| (1..=3).any(|each| of.note.says(RuleNote::Category(each))));
     let said = tested_words(rules);
     let tests = match tested(rules) {
         TestedClass::None => Some((0, said)),
@@ -85,6 +126,7 @@ fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule], errs_unsafely: b
     };
     text += match walked.zip(tests.map(|(class, _)| class)) {
         _ if tested(rules) == TestedClass::Unknown && walked != Some(0) => "",
+        Some((walked, tests)) if walked > tests && has_fines => "The walk is stricter than the tests here. ",
         Some((walked, tests)) if walked > tests => {
             "The walk is stricter than the tests here: for uniform sands it errs on the safe side. "
         }
@@ -96,13 +138,25 @@ fn compared_with_tests(verdict: Verdict, rules: &[AppliedRule], errs_unsafely: b
             "Whether they agree is not known: neither the walk nor the rules here tell some from \
                  excessive erosion. "
         }
+        Some(_) if has_fines => "",
         Some(_) => "Walk and tests agree here. ",
         None => "",
     };
-    text += "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
+    let agree = walked.is_some() && walked == tests.map(|(class, _)| class) && walked != Some(1);
+    text += &match of_soils.filter(|_| has_fines) {
+        Some(of_soils) => of_soils,
+        None if has_fines && agree => {
+            "For bases with such fines it is not known which way the walk errs; that \
+            it agrees with the tests here is no confirmation. "
+                .into()
+        }
+        None if has_fines => "For bases with such fines it is not known which way the walk errs. ".into(),
+        None => "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
                  to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
-                 For uniform sands the model is therefore stricter than tests. ";
-    if errs_unsafely {
+                 For uniform sands the model is therefore stricter than tests. "
+            .to_owned(),
+    };
+    if errs_unsafely && !has_fines {
         text += "For this pair it errs on the unsafe side. ";
     }
     text += "It ignores the cohesion of fines. (Tests: Foster and Fell, as given by Fell et al., \
@@ -246,7 +300,7 @@ mod tests {
     #[test]
     fn whether_walk_and_tests_agree_between_the_boundaries_is_not_known() {
         let between = of(&[(3.7, 0.0), (8.0, 100.0)], &SAND, false);
-        let some = compared_with_tests(Verdict::Some, &between, false);
+        let some = compared_with_tests(Verdict::Some, &between, false, None);
         assert!(
             some.contains(
                 "“some erosion”. By the boundaries of Foster and Fell the pair has at least some erosion; \
@@ -256,15 +310,36 @@ mod tests {
         );
         assert!(some.contains("Whether they agree is not known: ") && !some.contains("agree here"), "{some}");
         assert!(!some.contains("“at least"), "{some}");
-        let held = compared_with_tests(Verdict::None, &between, false);
+        let held = compared_with_tests(Verdict::None, &between, false, None);
         assert!(held.contains("more favourable than the tests here"), "{held}");
         assert!(
-            compared_with_tests(Verdict::Continuing, &between, false)
+            compared_with_tests(Verdict::Continuing, &between, false, None)
                 .contains("stricter than the tests here")
         );
         let good = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
-        let good = compared_with_tests(Verdict::None, &good, false);
+        let good = compared_with_tests(Verdict::None, &good, false, None);
         assert!(good.contains("in tests say “no erosion”. ") && good.contains("agree here"), "{good}");
+    }
+
+    /// A base with fines is no clean sand.
+    #[test]
+    fn of_a_base_with_fines_the_way_of_clean_sands_is_not_said() {
+        let held = of(&[(0.3, 0.0), (0.6, 100.0)], &REGRADED_TILL, false);
+        let unknown = compared_with_tests(Verdict::None, &held, false, None);
+        assert!(
+            unknown.contains("not known which way the walk errs; that it agrees with the tests here is no "),
+            "{unknown}"
+        );
+        let known = compared_with_tests(Verdict::None, &held, true, Some("For bases of this kind. ".into()));
+        assert!(known.contains("For bases of this kind. It ignores the cohesion of fines."), "{known}");
+        for said in [unknown, known] {
+            for clean in ["sands", "agree here"] {
+                assert!(!said.contains(clean), "{clean}: {said}");
+            }
+        }
+        let sand = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
+        let sand = compared_with_tests(Verdict::None, &sand, false, Some("For bases of this kind. ".into()));
+        assert!(sand.contains("for clean sands") && !sand.contains("of this kind"), "{sand}");
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The points of a study in words: which class each amount of base or thickness gives, and what was walked.
 
 use crate::outcome::digits::percent;
-use crate::outcome::record::{Classed, CurveRange, Outcome, PanSize, Statistic, Verdict};
+use crate::outcome::numbers::in_digits;
+use crate::outcome::record::{Classed, CurveEnd, CurveRange, Outcome, PanSize, Statistic, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 
 impl Outcome {
@@ -53,6 +54,72 @@ pub(super) fn reach([least, most]: [f64; 2], words: impl Fn(f64) -> String) -> S
 pub(super) fn times(factor: f64) -> String {
     let times = format!("{factor:.3}");
     times.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// What would erode of a point of a study at the end of the range of constrictions that erodes most: scaled,
+/// not walked.
+pub(super) struct Scaled {
+    /// Multiple of the scene's own amount or thickness.
+    pub(super) factor: f64,
+    /// The class in words; `AT_THRESHOLD` where the interval straddles the threshold.
+    pub(super) class: &'static str,
+    /// Least and most eroded in the first run (fraction of the mass).
+    eroded: [f64; 2],
+}
+
+const AT_THRESHOLD: &str = "at the threshold";
+
+impl Scaled {
+    /// Whether it lies beyond the threshold as a whole.
+    pub(super) fn erodes(&self) -> bool {
+        self.class != AT_THRESHOLD
+    }
+}
+
+/// Scales what erodes at the end of the range that erodes most by what the point and the scene itself lose
+/// with the middle curve; `None` where that is no worse than the class of the point.
+pub(super) fn scaled(
+    range: &CurveRange,
+    own: &Classed,
+    (factor, point): (f64, &Classed),
+    threshold: f64,
+) -> Option<Scaled> {
+    let times = point.runs.first()?.mean / own.runs.first()?.mean;
+    let span = |of: &Statistic| [of.low.unwrap_or(of.mean), of.high.unwrap_or(of.mean)].map(|of| of * times);
+    let first = |of: &CurveEnd| of.walked.runs.first().map(&span);
+    let most = |of: &CurveEnd| first(of).map_or(0.0, |[_, most]| most);
+    let end = range.ends.iter().max_by(|a, b| most(a).total_cmp(&most(b)))?;
+    let eroded = first(end)?;
+    let second = end.walked.runs.get(1).map(span);
+    let class = match eroded {
+        [least, _] if least >= threshold => match second {
+            Some([_, most]) if most < threshold => "some erosion",
+            _ => "at least some erosion",
+        },
+        [_, most] if most >= threshold => AT_THRESHOLD,
+        _ => return None,
+    };
+    let is_worse = match point.verdict {
+        Verdict::None => true,
+        Verdict::Undecided => class != AT_THRESHOLD,
+        Verdict::Some | Verdict::Continuing => false,
+    };
+    is_worse.then_some(Scaled { factor, class, eroded })
+}
+
+/// What follows the classes of the points where the end that erodes most gives worse ones; empty where none
+/// does. `said` words a point by its multiple.
+pub(super) fn at_end(scaled: &[Scaled], said: impl Fn(f64) -> String) -> String {
+    if scaled.is_empty() {
+        return String::new();
+    }
+    let each = scaled.iter().map(|of| {
+        let eroded = of.eroded.map(|share| in_digits(100.0 * share, 2));
+        let eroded = if eroded[0] == eroded[1] { eroded[0].clone() } else { eroded.join(" to ") };
+        format!("{} {} ({eroded} % eroded)", of.class, said(of.factor))
+    });
+    let each = each.collect::<Vec<_>>().join(", ");
+    format!(". At the end of the range that erodes most (scaled, not walked): {each}")
 }
 
 /// What makes least and most eroded over a range wider than its ends that were walked; empty where nothing

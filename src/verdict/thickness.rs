@@ -1,10 +1,11 @@
 //! What is said of the thickness of the filter: how much of it was walked, and how the verdict moves with it.
 
+use super::amount::is_same_mass;
 use super::entry::Finding;
 use super::finding as found;
-use super::study_points::{classes, reach, times, walked_in_words};
+use super::study_points::{at_end, classes, reach, scaled, times, walked_in_words};
 use crate::outcome::numbers::{significant, size_unit};
-use crate::outcome::record::{OfThickness, Outcome, Sensitivity, Verdict};
+use crate::outcome::record::{CurveRange, OfThickness, Outcome, Sensitivity, Verdict};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
@@ -14,6 +15,8 @@ pub fn finding(outcome: &Outcome) -> Option<Finding> {
         verdict: outcome.verdict,
         as_others: outcome.class_as_points(),
         points: outcome.points_are(),
+        range: outcome.curve_range.as_ref().filter(|_| is_same_mass(outcome)),
+        threshold: outcome.threshold,
     };
     points.finding()
 }
@@ -66,6 +69,10 @@ struct Points<'a> {
     as_others: Verdict,
     /// How the others are classed, where that is not as the verdict is.
     points: Option<&'a str>,
+    /// The range of the constriction curve, where the amounts show that the same mass erodes.
+    range: Option<&'a CurveRange>,
+    /// Eroded mass fraction that divides the classes.
+    threshold: f64,
 }
 
 impl Points<'_> {
@@ -89,11 +96,22 @@ impl Points<'_> {
         let is_held = !self.others().all(|row| row.has_its_base(own));
         let why = if is_held { OTHER_BASE } else { WITH_AMOUNT };
         let others = self.others().map(|row| (row.factor, row.walked.verdict));
-        let points: Vec<(f64, Verdict)> = others.chain([(1.0, self.as_others)]).collect();
+        let is_open = self.verdict == Verdict::Undecided;
+        let as_own = if is_open { self.verdict } else { self.as_others };
+        let points: Vec<(f64, Verdict)> = others.chain([(1.0, as_own)]).collect();
         let mut said = classes(&points, |ends, _| format!("at {} times the thickness", reach(ends, times)));
         if let Some(points) = self.points {
-            said += &format!(" ({points})");
+            let which = if is_open && self.as_others != as_own { "other thicknesses " } else { "" };
+            said += &format!(" ({which}{points})");
         }
+        let at_ends = self.range.filter(|_| !is_held).map(|range| {
+            let of =
+                |row: &OfThickness| scaled(range, &own.walked, (row.factor, &row.walked), self.threshold);
+            self.others().filter_map(of).collect::<Vec<_>>()
+        });
+        said += &at_end(&at_ends.unwrap_or_default(), |factor| {
+            format!("at {} times the thickness", times(factor))
+        });
         let each = self
             .others()
             .map(|row| format!("{} times as thick: {}", times(row.factor), walked_in_words(&row.walked)));
@@ -119,7 +137,7 @@ impl Points<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Classed, Statistic};
+    use crate::outcome::record::{Classed, CurveEnd, Statistic};
 
     fn walked(verdict: Verdict, mean: f64) -> Classed {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -137,7 +155,8 @@ mod tests {
     }
 
     fn finding(rows: &[OfThickness], amounts: &[Sensitivity], verdict: Verdict) -> Option<Finding> {
-        Points { rows, amounts, verdict, as_others: verdict, points: None }.finding()
+        Points { rows, amounts, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 }
+            .finding()
     }
 
     fn sentence(rows: &[OfThickness], verdict: Verdict) -> Option<String> {
@@ -199,12 +218,58 @@ mod tests {
     #[test]
     fn what_is_undecided_neither_stays_nor_moves() {
         let rows = [0.5, 1.0, 2.0].map(|factor| row(factor, Verdict::None, 0.05));
-        for (points, end) in [(Some("by the curve itself"), " (by the curve itself)."), (None, ".")] {
-            let as_others = Verdict::None;
-            let of = Points { rows: &rows, amounts: &[], verdict: Verdict::Undecided, as_others, points };
+        for (points, end) in
+            [(Some("by the curve itself"), " (other thicknesses by the curve itself)"), (None, "")]
+        {
+            let (verdict, as_others) = (Verdict::Undecided, Verdict::None);
+            let of = Points {
+                rows: &rows,
+                amounts: &[],
+                verdict,
+                as_others,
+                points,
+                range: None,
+                threshold: 0.075,
+            };
             let found = of.finding().unwrap();
-            let said = format!("no erosion at 0.5 to 2 times the thickness{end}");
+            let said = format!(
+                "undecided at 1 times the thickness, no erosion at 0.5 times the thickness, no erosion at 2 \
+                 times the thickness{end}."
+            );
             assert!(found.id() == "open_with_thickness" && found.sentence().ends_with(&said), "{found:?}");
         }
+    }
+
+    /// C33 on No. 57 stone: the loose end is at the threshold at half the thickness.
+    #[test]
+    fn the_end_that_erodes_most_is_scaled_to_the_other_thicknesses() {
+        let rows =
+            [row(0.5, Verdict::None, 0.051), row(1.0, Verdict::None, 0.0248), row(2.0, Verdict::None, 0.012)];
+        let runs = vec![Statistic { mean: 0.0373, sd: None, low: Some(0.0345), high: Some(0.0401) }];
+        let loose = CurveEnd {
+            curve: "loose".into(),
+            dc50_factor: 1.1,
+            walked: Classed { runs, ..walked(Verdict::None, 0.0) },
+        };
+        let range = CurveRange {
+            verdict: Verdict::None,
+            ends: vec![loose],
+            worst_counts: true,
+            could_be: None,
+            eroded_mass_fraction: Vec::new(),
+        };
+        let (verdict, range) = (Verdict::None, Some(&range));
+        let of = Points {
+            rows: &rows,
+            amounts: &[],
+            verdict,
+            as_others: verdict,
+            points: None,
+            range,
+            threshold: 0.075,
+        };
+        let said = of.finding().unwrap().sentence();
+        let end = "walked): at the threshold at 0.5 times the thickness (7.1 to 8.2 % eroded).";
+        assert!(said.ends_with(end), "{said}");
     }
 }

@@ -5,7 +5,8 @@ use std::process::Command;
 
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{
-    Confidence, Direction, FindingRecord, Outcome, RuleQuantity, RuleRole, Topic, Verdict, Weight,
+    Classed, Confidence, Direction, FindingRecord, Outcome, PanBounds, PanReading, PanSize, RuleQuantity,
+    RuleRole, Statistic, Topic, Verdict, Weight,
 };
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
@@ -485,9 +486,27 @@ fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
     let of = Plan::usual().outcome.replicates.len();
     let closed_in = of - 1;
     let said = format!(
-        ". The filter is closed in {closed_in} of {of} networks after the second run (no open path is left)"
+        ". No open path for base particles is left in {closed_in} of {of} networks after the second run; this \
+         says nothing of the filter's drainage"
     );
     assert!(closed.ends_with(&said), "{closed}");
+    // Readings of the base's finest part were walked with the curve itself.
+    let read = walk(&|outcome| {
+        let first = |high| Statistic { mean: 0.105, sd: None, low: Some(0.091), high: Some(high) };
+        let runs = vec![first(0.118)];
+        let walked = Classed { replicates: 10, stopped_when_clear: false, verdict: Verdict::Some, runs };
+        let reading = PanReading { taken_as: PanSize::Passive, n_base: 100, walked, stopping: None };
+        outcome.summary[0].eroded_mass_fraction = first(0.11);
+        outcome.curve_range = None;
+        outcome.pan_bounds = Some(PanBounds {
+            mass_fraction: 0.4,
+            finest_sieve_mm: 0.075,
+            finest_constriction_mm: 0.0121,
+            readings: vec![reading],
+        });
+    });
+    let said = ", and up to 11.8 % in the first run over the readings of the base's finest part";
+    assert!(read.contains(said), "{read}");
     let beyond = walk(&|outcome| {
         let rule = &mut outcome.rules[0];
         (rule.id, rule.unit, rule.at_least) = ("paper-no-erosion".into(), String::new(), false);
@@ -526,8 +545,8 @@ fn a_walk_whose_class_follows_from_the_amount_of_base_does_not_agree() {
     }
     assert_eq!(
         outcome.headline(),
-        "holds by practice; the walk: no erosion with base of 5 % of the filter's mass, some erosion with a \
-         quarter of it"
+        "holds by practice; the walk: no erosion with base of 5 % of the filter's mass, some erosion with \
+         1.25 %"
     );
     outcome.sensitivity.clear();
     assert_eq!(
