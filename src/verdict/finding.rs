@@ -554,8 +554,8 @@ findings! {
     /// A finest part of the filter that is not counted.
     pan_of_filter(share: Percent): Filter, Unsafe, Note;
         "finest part", "soils.md",
-        "The finest {share} of the filter is not counted, so that too much base is offered. Of more base a \
-         smaller share passes, so that the filter may seem to hold.",
+        "The finest {share} of the filter is not counted: too much base is offered, and the filter may seem \
+         to hold.",
         to do "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     loose_grains(loose: Percent): Filter, Open, Note;
