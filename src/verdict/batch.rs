@@ -403,7 +403,7 @@ mod tests {
         let silt = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
         let of = |d15f: f64| {
             let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-            row("silt", &silt, &vec![("F".to_owned(), filter)], PairOptions::default())
+            row("silt", &silt, &[("F".to_owned(), filter)], PairOptions::default())
         };
         let (beyond, within) = (of(0.61), of(0.45));
         assert_eq!((beyond.met, beyond.result()), (Some(true), "met unless the base is dispersive"));
