@@ -98,7 +98,9 @@ fn envelopes_dispersive_soils_and_joints_by_the_command() {
     assert_eq!(retains["speaks_against"], "a verdict of no erosion");
     let drains = rule(&value, "permeability").unwrap();
     assert_eq!((&drains["filter_curve"], &drains["base_curve"]), (&"fine side".into(), &"coarse".into()));
-    assert_eq!(rule(&value, "filter-band").unwrap()["met"], true);
+    // 15 % of the fine side are finer than its sieves, so that the band may be wider.
+    let band = rule(&value, "filter-band").unwrap();
+    assert_eq!((&band["met"], &band["value_bound"]), (&serde_json::Value::Null, &"at least".into()));
     assert!(rule(&value, "constricted-exit").is_none());
     let dispersive = json(&["--dispersive", "--joint-mm", "1e-9"]);
     let limit = rule(&dispersive, "sherard-dunnigan").unwrap()["limit"].as_f64().unwrap();
@@ -244,7 +246,10 @@ fn one_authority_has_its_rules_and_its_limit_and_says_what_it_leaves_out() {
     assert_eq!(words(&[]), words(&["--authority", "all"]));
     let nrcs = words(&["--authority", "nrcs"]);
     assert!(nrcs.contains("  NOT MET     Sherard and Dunnigan") && nrcs.contains("Permeability: "), "{nrcs}");
-    assert!(!nrcs.contains("  NOT MET     Terzaghi") && !nrcs.contains("Foster and Fell: "), "{nrcs}");
+    // The line of practice is that of all rules, whoever is asked for.
+    let rules: Vec<&str> = nrcs.lines().filter(|line| !line.starts_with("practice ")).collect();
+    let rules = rules.join("\n");
+    assert!(!rules.contains("  NOT MET     Terzaghi") && !rules.contains("Foster and Fell: "), "{nrcs}");
     let last = nrcs.lines().last().unwrap();
     assert!(
         last.starts_with("NRCS: not met: D15F 2.69 mm is more than 1.79 mm")

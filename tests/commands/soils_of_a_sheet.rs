@@ -159,8 +159,8 @@ fn a_specification_has_every_curve_of_its_base() {
     done(&output);
     let page = fs::read_to_string(root.path().join("one/specification.html")).unwrap();
     // The option stands on the terminal alone.
-    assert!(said.contains("design again for a dispersive base (--dispersive)."), "{said}");
-    assert!(page.contains("design again for a dispersive base.") && !page.contains("--dispersive"));
+    assert!(said.contains(". Design again for a dispersive base (--dispersive)"), "{said}");
+    assert!(page.contains(". Design again for a dispersive base") && !page.contains("--dispersive"));
     for part in [
         "Base <b><bdi>base.csv</bdi></b>",
         "Appendix: the gradation of the base</h2>",

@@ -47,7 +47,7 @@ fn steps_limits_and_products_fill_a_folder() {
     // The coarser one sets the least: 5 times its D15B, between 0.15 and 0.3 mm.
     let d15b = 0.15 * 2f64.powf(9.0 / 24.0);
     assert!((found["d15f_min_mm"].as_f64().unwrap() - 5.0 * d15b).abs() < 1e-9, "{found}");
-    assert_eq!(found["steps"].as_array().unwrap().len(), 11);
+    assert_eq!(found["steps"].as_array().unwrap().len(), 12);
     let limits = fs::read_to_string(out.join("specification.csv")).unwrap();
     assert!(limits.starts_with("sieve,opening_mm,min_percent_finer,max_percent_finer\n"), "{limits}");
     assert_eq!(limits.lines().count() - 1, found["limits"].as_array().unwrap().len());
@@ -112,8 +112,9 @@ fn a_design_has_the_specification_of_its_answer() {
     // One band: that of the last step stands on the first sheet, on the figures and on the terminal.
     let steps = specification["steps"].as_array().unwrap();
     let of = |name: &str| {
-        let values = steps.last().unwrap()["values"].as_array().unwrap();
-        values.iter().find(|value| value["name"] == name).unwrap()["value"].as_f64().unwrap()
+        let values = steps.iter().rev().flat_map(|step| step["values"].as_array().unwrap());
+        let mut named = values.filter(|value| value["name"] == name);
+        named.next().unwrap()["value"].as_f64().unwrap()
     };
     let [least, greatest] = [rounded_up(of("minimum D15F")), rounded_down(of("maximum D15F"))];
     let band = format!("D15F from {least} to {greatest} mm, Cu from 2 to 6");
