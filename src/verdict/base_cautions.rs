@@ -1,5 +1,5 @@
-//! What is said of the base itself, as it was sampled. The specification of a design warns of it, and what the
-//! walk says of the same is then not said again.
+//! What is said of the base itself, as it was sampled. The specification of a design warns of it, and what
+//! the walk says of the same is then not said again.
 
 use super::entry::{BROAD_BASE, Finding};
 use super::finding;
@@ -7,8 +7,8 @@ use crate::gradation::{BROAD_CU, Gradation};
 use crate::outcome::design::{Design, DesignFinding};
 use crate::outcome::numbers::{rounded_down, significant};
 
-/// What is said alike of the soil as it was sampled and of the walk: that it is not stable itself, and that it
-/// is broadly graded.
+/// What is said alike of the soil as it was sampled and of the walk: that it is not stable itself, and that
+/// it is broadly graded.
 const ALIKE: [&str; 2] = ["unstable_base", BROAD_BASE];
 
 /// That a base, as sampled, is so broad that practice looks at its finer part alone. Where D10 is finer than

@@ -92,8 +92,8 @@ impl IfDispersive {
         self.words_with("have the base tested with the filter")
     }
 
-    /// The limit of a base for which a filter is specified, with why it is not known itself, as a clause of its
-    /// own; and the test that would tell it.
+    /// The limit of a base for which a filter is specified, with why it is not known itself, as a clause of
+    /// its own; and the test that would tell it.
     pub fn limit_of_base(&self) -> (String, Option<&'static str>) {
         let limit = format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm));
         match self.at_most {

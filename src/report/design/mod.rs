@@ -200,7 +200,9 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     (clean(&row.name())) ", " (clean(&row.thickness)) "."
                     @if let Some(walk) = &said.walk { " " (unbroken(walk)) "." }
                 }
-                @if walk_decides(design) && let Some(said) = not_counted(design) { p.counted { (unbroken(said)) } }
+                @if walk_decides(design) && let Some(said) = not_counted(design) {
+                    p.counted { (unbroken(said)) }
+                }
                 @if design.specification.is_none() && let Some(band) = design.band_of(row) {
                     p { b { "Band: " (clean(&band.words())) } "." }
                 }

@@ -211,8 +211,8 @@ impl Specification {
     }
 
     /// What the maximum D15F is if the base is dispersive, what of the specification does not hold then, and
-    /// what to do, as [`DESIGN_AGAIN`]: sentences, the last without its end; `None` where it all holds, or somebody
-    /// has said whether it is.
+    /// what to do, as [`DESIGN_AGAIN`]: sentences, the last without its end; `None` where it all holds, or
+    /// somebody has said whether it is.
     pub fn if_dispersive_in_words(&self, again: &str) -> Option<String> {
         let of =
             self.if_dispersive.filter(|of| of.beside(self.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some())?;
@@ -223,8 +223,8 @@ impl Specification {
         let (limit, test) = of.limit_of_base();
         let test = test.map_or_else(String::new, |test| format!(", and {test}"));
         Some(format!(
-            "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before {before}. \
-             If it is, {invalid}{limit}. {}{test}",
+            "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before \
+             {before}. If it is, {invalid}{limit}. {}{test}",
             capital(again)
         ))
     }
