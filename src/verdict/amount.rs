@@ -195,19 +195,13 @@ impl<'a> Amounts<'a> {
             true => "The class does not change with the amount of base",
             false => "The class depends on the amount of base",
         };
-        Some(match self.worse() {
+        let worse = self.worse().map(|row| (row.factor, row.walked.verdict.words()));
+        Some(match worse.or(at_end.map(|of| (of.factor, of.class))) {
             _ if self.verdict == Verdict::Undecided => {
                 let points = self.points.map_or(String::new(), |points| format!(", {points}"));
                 found::open_with_amount(why, &classes, &points, &each)
             }
-            Some(row) => {
-                let class = row.walked.verdict.words();
-                found::worse_with_amount(why, &classes, &times(row.factor), class, &each)
-            }
-            None if at_end.is_some() => {
-                let (factor, class) = at_end.map_or((f64::NAN, ""), |of| (of.factor, of.class));
-                found::worse_with_amount(why, &classes, &times(factor), class, &each)
-            }
+            Some((factor, class)) => found::worse_with_amount(why, &classes, &times(factor), class, &each),
             None if is_one => {
                 let widen = |[least, most]: [f64; 2], of: f64| [least.min(of), most.max(of)];
                 let factors = self.others().map(|row| row.factor);

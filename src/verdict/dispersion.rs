@@ -14,6 +14,9 @@ use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Verdict};
 use crate::outcome::rules::{NamedCurve, RuleInputs, apply};
 
+/// What to do where a filter is specified for a base for which no text has the limit.
+const TEST_WITH_FILTER: &str = "have the base tested with the filter";
+
 impl IfDispersive {
     /// Of a pair whose base is taken as dispersive. `None` where it has few fines, or they are not known.
     pub fn of(if_dispersive: &RuleInputs) -> Option<Self> {
@@ -89,7 +92,7 @@ impl IfDispersive {
 
     /// The same of a base for which a filter is specified.
     pub fn words_of_base(&self) -> String {
-        self.words_with("have the base tested with the filter")
+        self.words_with(TEST_WITH_FILTER)
     }
 
     /// The limit of a base for which a filter is specified, with why it is not known itself, as a clause of
@@ -98,7 +101,7 @@ impl IfDispersive {
         let limit = format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm));
         match self.at_most {
             true => {
-                let (why, test) = self.lack("have the base tested with the filter");
+                let (why, test) = self.lack(TEST_WITH_FILTER);
                 (format!("{limit} ({why})"), Some(test))
             }
             false => (limit, None),
@@ -109,7 +112,7 @@ impl IfDispersive {
     pub fn clause_of_base(&self) -> String {
         match self.at_most {
             true => self.words_of_base(),
-            false => format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm)),
+            false => self.limit_of_base().0,
         }
     }
 

@@ -38,31 +38,7 @@ impl Outcome {
             Standing::WashedOut if !broken(&self.rules, RuleRole::Retention).is_empty() => {
                 self.of_retention() + "; it must be internally stable"
             }
-            Standing::WashedOut | Standing::Unstable => {
-                let mut whose: Vec<String> = Vec::new();
-                for rule in broken(&self.rules, RuleRole::Stability) {
-                    let name = authority(rule).to_owned();
-                    if !whose.contains(&name) {
-                        whose.push(name);
-                    }
-                }
-                let rules = listed(&whose);
-                let placing = broken(&self.rules, RuleRole::Placing);
-                if placing.is_empty() {
-                    return format!(
-                        "take a filter that is stable by {rules}, or have its internal stability tested{test}"
-                    );
-                }
-                let placing = placing.into_iter().map(|rule| {
-                    let [value, limit] = against(rule, 3);
-                    format!("{} {value}, limit {limit}", rule.quantity)
-                });
-                format!(
-                    "take a filter that is stable by {rules} and does not segregate ({}): a test of internal \
-                     stability would not settle that{test}",
-                    listed(&placing.collect::<Vec<_>>())
-                )
-            }
+            Standing::WashedOut | Standing::Unstable => self.of_stability() + &test,
             Standing::Unknown(needs) => format!("get {needs}{test}"),
             Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
                 Some(said) => said + &test,
@@ -70,6 +46,30 @@ impl Outcome {
                 None if self.verdict == Verdict::None => self.of_walk() + &self.of_fines(),
                 None => self.of_walk() + &self.of_fines() + &test,
             },
+        }
+    }
+
+    /// Which filter to take in the place of one that may lose its finer part; one that may segregate besides
+    /// no test of its stability saves.
+    fn of_stability(&self) -> String {
+        let mut whose: Vec<String> = Vec::new();
+        for rule in broken(&self.rules, RuleRole::Stability) {
+            let name = authority(rule).to_owned();
+            if !whose.contains(&name) {
+                whose.push(name);
+            }
+        }
+        let stable = format!("take a filter that is stable by {}", listed(&whose));
+        let placing = broken(&self.rules, RuleRole::Placing).into_iter().map(|rule| {
+            let [value, limit] = against(rule, 3);
+            format!("{} {value}, limit {limit}", rule.quantity)
+        });
+        match placing.collect::<Vec<_>>() {
+            placing if placing.is_empty() => format!("{stable}, or have its internal stability tested"),
+            placing => format!(
+                "{stable} and does not segregate ({}): a test of internal stability would not settle that",
+                listed(&placing)
+            ),
         }
     }
 

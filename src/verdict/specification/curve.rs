@@ -136,9 +136,5 @@ pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
 /// few fines.
 pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
     let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
-    let of = |(_, base): &NamedCurve| {
-        IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, &any) })
-    };
-    let all: Vec<IfDispersive> = bases.iter().filter_map(of).collect();
-    IfDispersive::strictest(&all)
+    IfDispersive::of_bases(bases, &any)
 }
