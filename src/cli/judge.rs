@@ -53,7 +53,12 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     show(&run, tables.set.json, quiet)?;
     if in_words {
         let by = tables.authority.unwrap_or_default();
-        let of_authority = of_pair(&run.outcome.rules, by, Some(run.outcome.inputs.filter.d15_mm));
+        let of_authority = of_pair(
+            &run.outcome.rules,
+            by,
+            Some(run.outcome.inputs.filter.d15_mm),
+            run.outcome.if_dispersive,
+        );
         of_authority.iter().for_each(|said| to_stdout(&format!("{} {ON_ALL_RULES}\n", plain(said))));
         let scene = shown(&run.folder.join("scene.toml"));
         let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {

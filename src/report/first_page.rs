@@ -166,7 +166,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
     practice.sort_by_key(|rule| place(rule));
     let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
         practice.into_iter().partition(|rule| place(rule) < WITHOUT_RESULT);
-    let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm));
+    let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm), outcome.if_dispersive);
     html! {
         section.short {
             h2 { "Rules of practice, in short" }

@@ -74,14 +74,23 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
         practice: Some(outcome.practice_in_words()),
         meaning: in_words(&outcome, &walks),
         doubt: doubt.as_deref(),
-        replicate: REPLICATE,
+        replicate: replicate(&outcome),
         leaves_out: &outcome.model_leaves_out,
     };
     Ok(verdict_box::brief(&walks, &said))
 }
 
-/// What a replicate of a run is: the only one, and each of several.
-const REPLICATE: [&str; 2] = ["one network, one walk", "a new network and a new walk"];
+/// What a replicate of a run is: the only one, and each of several. The ends of a range of constrictions have
+/// replicates of their own, which are not counted.
+fn replicate(outcome: &Outcome) -> [&'static str; 2] {
+    match outcome.curve_range {
+        Some(_) => [
+            "one network, one walk, of the curve itself",
+            "a new network and a new walk, of the curve itself",
+        ],
+        None => ["one network, one walk", "a new network and a new walk"],
+    }
+}
 
 /// The page of a run and all its figures.
 fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
@@ -165,7 +174,7 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
         @if let Some(said) = outcome.sentence_of("second_run_missing").filter(|_| !falls_short) {
             p { (clean(&said)) }
         }
-        (verdict_box::replicates_in_words(walks, REPLICATE))
+        (verdict_box::replicates_in_words(walks, replicate(outcome)))
         @if let Some(evidence) = outcome.evidence_in_words() {
             p { b { "Evidence" } ": " (clean(&evidence)) }
         }

@@ -3,9 +3,9 @@
 use super::entry::Finding;
 use super::finding as found;
 use super::practice::severity;
-use super::study_points::{Scaled, at_end, classes, reach, scaled, times, walked_in_words};
+use super::study_points::{Scaled, Study, at_end, classes, reach, times};
 use crate::outcome::numbers::in_digits;
-use crate::outcome::record::{CurveRange, Outcome, Sensitivity, Verdict};
+use crate::outcome::record::{Outcome, Sensitivity, Verdict};
 
 /// The eroded mass is about the same where its least and greatest lie within this factor.
 const ABOUT_THE_SAME: f64 = 1.5;
@@ -36,48 +36,26 @@ pub(super) fn is_same_mass(outcome: &Outcome) -> bool {
 }
 
 /// The amounts of base that were walked, beside a verdict.
-struct Amounts<'a> {
-    rows: &'a [Sensitivity],
-    verdict: Verdict,
-    /// The class of the scene's own base as the others are classed.
-    as_others: Verdict,
-    /// How the others are classed, where that is not as the verdict is.
-    points: Option<&'a str>,
-    /// The range of the constriction curve, of which the ends have no other amounts.
-    range: Option<&'a CurveRange>,
-    /// Eroded mass fraction that divides the classes.
-    threshold: f64,
-}
+struct Amounts<'a>(Study<'a, Sensitivity>);
 
 impl<'a> Amounts<'a> {
     fn of(outcome: &'a Outcome) -> Self {
-        Self {
-            rows: &outcome.sensitivity,
-            verdict: outcome.verdict,
-            as_others: outcome.class_as_points(),
-            points: outcome.points_are(),
-            range: outcome.curve_range.as_ref(),
-            threshold: outcome.threshold,
-        }
-    }
-
-    fn others(&self) -> impl Iterator<Item = &'a Sensitivity> {
-        self.rows.iter().filter(|row| row.factor != 1.0)
+        Self(Study::of(outcome, &outcome.sensitivity))
     }
 
     /// The other amount whose class is worst and worse than the verdict; of equal classes the amount that is
     /// nearest to the one that was asked for.
     fn worse(&self) -> Option<&'a Sensitivity> {
-        let own = severity(self.verdict)?;
+        let own = severity(self.0.verdict)?;
         let away = |row: &Sensitivity| (row.factor - 1.0).abs();
-        let graded = self.others().filter_map(|row| Some((severity(row.walked.verdict)?, row)));
+        let graded = self.0.others().filter_map(|row| Some((severity(row.walked.verdict)?, row)));
         let worst = graded.max_by(|a, b| a.0.cmp(&b.0).then(away(b.1).total_cmp(&away(a.1))));
         worst.filter(|(class, _)| *class > own).map(|(_, row)| row)
     }
 
     /// The mass of the scene's own base over that of its filter.
     fn ratio(&self) -> Option<f64> {
-        self.rows.iter().find_map(|row| Some(row.mass_ratio? / row.factor))
+        self.0.rows.iter().find_map(|row| Some(row.mass_ratio? / row.factor))
     }
 
     /// Whether the mass that erodes in the first run is about the same whatever the amount: then less of a
@@ -85,8 +63,8 @@ impl<'a> Amounts<'a> {
     fn is_same_mass(&self) -> bool {
         let mass = |row: &Sensitivity| row.factor * row.walked.runs.first().map_or(f64::NAN, |s| s.mean);
         let within = |most: f64, of: &dyn Fn(&Sensitivity) -> f64| {
-            let least = self.rows.iter().map(of).fold(f64::INFINITY, f64::min);
-            let greatest = self.rows.iter().map(of).fold(0.0, f64::max);
+            let least = self.0.rows.iter().map(of).fold(f64::INFINITY, f64::min);
+            let greatest = self.0.rows.iter().map(of).fold(0.0, f64::max);
             least > 0.0 && greatest <= most * least
         };
         within(ABOUT_THE_SAME, &mass) && !within(FAR_APART * (1.0 - 1e-9), &|row| row.factor)
@@ -95,12 +73,7 @@ impl<'a> Amounts<'a> {
     /// What would erode of the other amounts at the end of the range that erodes most, where that is a worse
     /// class than was walked: only where the walks show that the same mass erodes.
     fn scaled(&self) -> Vec<Scaled> {
-        let own = self.rows.iter().find(|row| row.factor == 1.0);
-        let Some((range, own)) = self.range.zip(own).filter(|_| self.is_same_mass()) else {
-            return Vec::new();
-        };
-        let of = |row: &Sensitivity| scaled(range, &own.walked, (row.factor, &row.walked), self.threshold);
-        self.others().filter_map(of).collect()
+        if self.is_same_mass() { self.0.scaled() } else { Vec::new() }
     }
 
     /// The amount nearest to the scene's own that erodes at that end, where no walked class is worse.
@@ -108,14 +81,14 @@ impl<'a> Amounts<'a> {
         let beyond = self.scaled().into_iter().filter(|of| of.erodes());
         let away = |of: &Scaled| (of.factor - 1.0).abs();
         let nearest = beyond.min_by(|a, b| away(a).total_cmp(&away(b)));
-        nearest.filter(|_| self.verdict == Verdict::None && self.worse().is_none())
+        nearest.filter(|_| self.0.verdict == Verdict::None && self.worse().is_none())
     }
 
     fn worse_in_words(&self) -> Option<String> {
         let walked = self.worse().map(|row| (row.factor, row.walked.verdict.words(), ""));
         let (factor, other, how) = walked
             .or_else(|| self.worse_at_end().map(|of| (of.factor, of.class, " (scaled, not walked)")))?;
-        let class = self.verdict.words();
+        let class = self.0.verdict.words();
         Some(match self.ratio().map(|ratio| 100.0 * ratio) {
             Some(own) => {
                 let [own, of] = [own, own * factor].map(|share| in_digits(share, DIGITS));
@@ -138,10 +111,7 @@ impl<'a> Amounts<'a> {
     /// The class of each amount, and how the others are classed. The scene's own is undecided where the
     /// verdict is.
     fn classes(&self) -> String {
-        let others = self.others().map(|row| (row.factor, row.walked.verdict));
-        let is_open = self.verdict == Verdict::Undecided;
-        let own = if is_open { self.verdict } else { self.as_others };
-        let points: Vec<(f64, Verdict)> = others.chain([(1.0, own)]).collect();
+        let points = self.0.classed();
         let each = match self.ratio() {
             Some(ratio) => classes(&points, |ends, is_first| {
                 let share =
@@ -152,13 +122,12 @@ impl<'a> Amounts<'a> {
             None => classes(&points, |ends, _| format!("with {} times the base", reach(ends, times))),
         };
         let scaled = at_end(&self.scaled(), |factor| format!("with {}", self.amount(factor)));
-        let ends = match self.range {
+        let ends = match self.0.range {
             Some(_) if scaled.is_empty() => "; the ends of its range were not walked with other amounts",
             _ => "",
         };
-        let which = if is_open && self.as_others != own { "other amounts " } else { "" };
-        match self.points {
-            Some(points) => format!("{each} ({which}{points}{ends}){scaled}"),
+        match self.0.how_classed("other amounts") {
+            Some(points) => format!("{each} ({points}{ends}){scaled}"),
             None => format!("{each}{scaled}"),
         }
     }
@@ -166,7 +135,7 @@ impl<'a> Amounts<'a> {
     /// What follows for the class where the same mass erodes of each amount. One class of all that were
     /// walked is no steadier for it: of less base a greater share erodes.
     fn follows(&self, is_one: bool) -> &'static str {
-        match self.as_others {
+        match self.0.as_others {
             _ if !is_one => ", so the class follows from the amount",
             Verdict::None => ", so that still less base would give a worse class; walked",
             Verdict::Some | Verdict::Continuing => {
@@ -179,32 +148,24 @@ impl<'a> Amounts<'a> {
     /// What the amounts say beside the verdict. A class worse than the verdict speaks against it. What is
     /// undecided neither stays nor moves.
     fn finding(&self) -> Option<Finding> {
-        self.others().next()?;
-        let each = self
-            .others()
-            .map(|row| format!("{} times the base: {}", times(row.factor), walked_in_words(&row.walked)));
-        let each = each.collect::<Vec<_>>().join("; ");
+        self.0.others().next()?;
+        let each = self.0.each("times the base");
         let classes = self.classes();
         let at_end = self.worse_at_end();
-        let is_one = at_end.is_none() && self.others().all(|row| row.walked.verdict == self.as_others);
+        let is_one = at_end.is_none() && self.0.stays();
         let why = match is_one {
             _ if self.is_same_mass() => &format!("{SAME_MASS}{}", self.follows(is_one)),
-            _ if self.verdict == Verdict::Undecided => {
-                "The verdict is undecided. The class by amount of base"
-            }
+            _ if self.0.is_open() => "The verdict is undecided. The class by amount of base",
             true => "The class does not change with the amount of base",
             false => "The class depends on the amount of base",
         };
         let worse = self.worse().map(|row| (row.factor, row.walked.verdict.words()));
         Some(match worse.or(at_end.map(|of| (of.factor, of.class))) {
-            _ if self.verdict == Verdict::Undecided => {
-                let points = self.points.map_or(String::new(), |points| format!(", {points}"));
-                found::open_with_amount(why, &classes, &points, &each)
-            }
+            _ if self.0.is_open() => found::open_with_amount(why, &classes, &self.0.comma_points(), &each),
             Some((factor, class)) => found::worse_with_amount(why, &classes, &times(factor), class, &each),
             None if is_one => {
                 let widen = |[least, most]: [f64; 2], of: f64| [least.min(of), most.max(of)];
-                let factors = self.others().map(|row| row.factor);
+                let factors = self.0.others().map(|row| row.factor);
                 let ends = factors.fold([f64::INFINITY, f64::NEG_INFINITY], widen);
                 found::stays_with_amount(why, &classes, &format!("{} times the base", reach(ends, times)))
             }
@@ -216,7 +177,7 @@ impl<'a> Amounts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Classed, CurveEnd, Statistic};
+    use crate::outcome::record::{Classed, CurveEnd, CurveRange, Statistic};
 
     fn row(factor: f64, verdict: Verdict, mean: f64) -> Sensitivity {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -226,7 +187,7 @@ mod tests {
     }
 
     fn amounts(rows: &[Sensitivity], verdict: Verdict) -> Amounts<'_> {
-        Amounts { rows, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 }
+        Amounts(Study { rows, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 })
     }
 
     fn of(rows: &[Sensitivity], verdict: Verdict) -> Finding {
@@ -306,7 +267,7 @@ mod tests {
             .map(|(factor, share)| row(factor, Verdict::None, share));
         let loose = range(0.0252);
         let points = Some("by the curve itself");
-        let of = Amounts { points, range: Some(&loose), ..amounts(&held, Verdict::None) };
+        let of = Amounts(Study { points, range: Some(&loose), ..amounts(&held, Verdict::None).0 });
         assert_eq!(
             of.worse_in_words().unwrap(),
             "no erosion with base of 5 % of the filter's mass, some erosion with 1.25 % (scaled, not walked)"
@@ -325,14 +286,14 @@ mod tests {
         let class = |share: f64| if share < 0.075 { Verdict::None } else { Verdict::Some };
         let rows = shares.map(|(factor, share)| row(factor, class(share), share));
         let loose = range(0.0373);
-        let of = Amounts { range: Some(&loose), ..amounts(&rows, Verdict::None) };
+        let of = Amounts(Study { range: Some(&loose), ..amounts(&rows, Verdict::None).0 });
         let said = of.finding().unwrap().sentence();
         let end = "walked): at the threshold with base of 2.5 % (6.9 to 7.6 % eroded).";
         assert!(said.ends_with(end), "{said}");
         assert!(of.worse_in_words().unwrap().ends_with("some erosion with 1.25 %"));
         // Where other amounts lose another mass nothing is scaled.
         let other = [0.25, 1.0, 4.0].map(|factor| row(factor, Verdict::None, 0.02));
-        let of = Amounts { range: Some(&loose), ..amounts(&other, Verdict::None) };
+        let of = Amounts(Study { range: Some(&loose), ..amounts(&other, Verdict::None).0 });
         assert!(of.scaled().is_empty() && of.finding().unwrap().id() == "stays_with_amount");
     }
 
@@ -356,7 +317,7 @@ mod tests {
             .map(|row| Sensitivity { walked: Classed { verdict: Verdict::None, ..row.walked }, ..row });
         let points = Some("by the curve itself");
         let narrow = range(0.001);
-        let stays = Amounts { points, range: Some(&narrow), ..amounts(&held, Verdict::None) };
+        let stays = Amounts(Study { points, range: Some(&narrow), ..amounts(&held, Verdict::None).0 });
         assert_eq!(stays.worse_in_words(), None);
         let stays = stays.finding().unwrap();
         assert_eq!(
@@ -370,7 +331,8 @@ mod tests {
                 )
             )
         );
-        let open = Amounts { as_others: Verdict::None, points, ..amounts(&rows, Verdict::Undecided) };
+        let open =
+            Amounts(Study { as_others: Verdict::None, points, ..amounts(&rows, Verdict::Undecided).0 });
         let open = open.finding().unwrap().sentence();
         assert!(
             open.starts_with(SAME_MASS)

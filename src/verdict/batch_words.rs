@@ -80,7 +80,8 @@ fn of_dispersion(rows: &[&WalkedRow]) -> Option<String> {
     let of = |row: &&WalkedRow| Some((row.rules.clone(), row.walk.as_ref().filter(holds)?.if_dispersive?));
     let open: Vec<_> = rows.iter().filter_map(of).collect();
     let is_broken = |(row, of): &&(BatchRow, IfDispersive)| {
-        row.met != Some(false) && row.d15f_mm.is_some_and(|d15f| of.is_broken_by(d15f))
+        let as_placed = || row.d15f_mm.is_some_and(|d15f| of.is_broken_by(d15f));
+        row.breaks_if_dispersive || row.met.is_none() && as_placed()
     };
     let name = |(row, of): &(BatchRow, IfDispersive)| format!("{} ({})", row.sample, of.words());
     let broken: Vec<String> = open.iter().filter(is_broken).map(name).collect();
@@ -198,6 +199,7 @@ mod tests {
         let of = |name: &str, verdict, d15f_max_mm| {
             let mut row = walked(name, true, Some((verdict, Confidence::Within, true)));
             let if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
+            row.rules.breaks_if_dispersive = d15f_max_mm < 0.725;
             row.walk = row.walk.map(|walk| SampleWalk { if_dispersive, ..walk });
             row
         };

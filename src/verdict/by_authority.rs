@@ -7,7 +7,7 @@ use super::tested::tested_in_brief;
 use super::washout::washout;
 use super::words::capital;
 use crate::outcome::design::band::{limits, retention};
-use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
+use crate::outcome::record::{AppliedRule, IfDispersive, RuleQuantity, RuleRole};
 use crate::outcome::rules::{
     Authority, DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, is_stated_by,
 };
@@ -61,12 +61,7 @@ impl PairRules {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn stated_by(mut self, by: Authority) -> Self {
-        let d15f = self.filter.d15_mm;
-        let beyond = self.if_dispersive.and_then(|of| of.beyond_in_words(&self.rules, d15f));
-        let said = of_pair(&self.rules, by, d15f).map(|said| match beyond {
-            Some(_) => said.replacen(": met: ", &format!(": {MET_UNLESS_DISPERSIVE}: "), 1),
-            None => said,
-        });
+        let said = of_pair(&self.rules, by, self.filter.d15_mm, self.if_dispersive);
         self.by_authority = said.map(|said| StatedByAuthority {
             authority: by.word().to_owned(),
             rules: all_stated_by(&self.rules, by).into_iter().map(|rule| rule.id).collect(),
@@ -80,13 +75,20 @@ impl PairRules {
 pub const ON_ALL_RULES: &str = "The verdict rests on all rules.";
 
 /// The strictest limit of D15F that one authority has for this pair, and what it leaves out; `None` for all
-/// authorities, which leave nothing out.
-pub fn of_pair(rules: &[AppliedRule], by: Authority, d15f: Option<f64>) -> Option<String> {
+/// authorities, which leave nothing out. With `if_dispersive` nobody says whether the base is dispersive.
+pub fn of_pair(
+    rules: &[AppliedRule],
+    by: Authority,
+    d15f: Option<f64>,
+    if_dispersive: Option<IfDispersive>,
+) -> Option<String> {
     if by == Authority::All {
         return None;
     }
+    let beyond = if_dispersive.and_then(|of| of.beyond_in_words(rules, d15f));
+    let met = if beyond.is_some() { MET_UNLESS_DISPERSIVE } else { "met" };
     // A D15F that lies in a finest tail has the limits in mm all the same.
-    let governing = match governing(rules, &stated_by(rules, by), d15f.unwrap_or(1.0)) {
+    let governing = match governing(rules, &stated_by(rules, by), d15f.unwrap_or(1.0), met) {
         Some((rule, value)) => format!("{value} ({})", credit(&rule)),
         None => "no limit of D15F for this base".into(),
     };
@@ -144,7 +146,12 @@ fn in_mm(rule: &AppliedRule, limit: f64) -> String {
 }
 
 /// The rule with the strictest limit, and value and limit in words.
-fn governing(rules: &[AppliedRule], stated: &[AppliedRule], d15f: f64) -> Option<(AppliedRule, String)> {
+fn governing(
+    rules: &[AppliedRule],
+    stated: &[AppliedRule],
+    d15f: f64,
+    met: &str,
+) -> Option<(AppliedRule, String)> {
     let (rule, _) = retention(stated, d15f)?;
     let [value, limit] = against(rule, 3);
     let quantity = &rule.quantity;
@@ -155,7 +162,7 @@ fn governing(rules: &[AppliedRule], stated: &[AppliedRule], d15f: f64) -> Option
             None if washout(rules).is_some() => {
                 format!("met as placed, not by all rules: {quantity} {value} is within {limit}")
             }
-            None => format!("met: {quantity} {value} is within {limit}"),
+            None => format!("{met}: {quantity} {value} is within {limit}"),
         },
         Some(false) => format!("not met: {quantity} {value} is more than {limit}{at_most}"),
         None => format!("no result: {quantity} {value}, limit {limit}{at_most}"),
@@ -218,7 +225,7 @@ mod tests {
     #[test]
     fn an_authority_has_its_own_limit_and_says_what_it_leaves_out() {
         let coarse = pair(2.5);
-        let said = |by| of_pair(&coarse.rules, by, coarse.filter.d15_mm);
+        let said = |by| of_pair(&coarse.rules, by, coarse.filter.d15_mm, None);
         assert_eq!(said(Authority::All), None);
         let nrcs = said(Authority::Nrcs).unwrap();
         assert!(nrcs.starts_with("NRCS: not met: D15F 1.54 mm is more than 0.98"), "{nrcs}");
@@ -235,7 +242,7 @@ mod tests {
         use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
         let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
         let pair = PairRules::of(&soil(&REGRADED_TILL), &soil(&GRAVEL_0_32));
-        let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm).unwrap();
+        let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm, None).unwrap();
         let corps = said(Authority::Usace);
         let left = " as placed, but 2.83 mm without its finest 19.4 %, which the filter may lose (Sherard";
         assert!(
@@ -257,7 +264,7 @@ mod tests {
             let pair = pair(scale);
             for by in Authority::ALL {
                 let listed = stated_by(&pair.rules, by);
-                let said = of_pair(&pair.rules, by, pair.filter.d15_mm).unwrap_or_default();
+                let said = of_pair(&pair.rules, by, pair.filter.d15_mm, None).unwrap_or_default();
                 for rule in pair.rules.iter().filter(|rule| rule.is_broken()) {
                     let is_listed = listed.iter().any(|of| of.id == rule.id);
                     assert!(is_listed || said.contains(&rule.name), "{by:?} at {scale}: {}", rule.name);
@@ -330,22 +337,22 @@ mod tests {
         let options = PairOptions { joint_mm: Some(2.0), ..PairOptions::default() };
         let base = soil(&[(0.08, 0.0), (0.3, 100.0)]);
         let joint = PairRules::of_envelopes(&base, &filter, options);
-        let said = of_pair(&joint.rules, Authority::Nrcs, joint.filter.d15_mm).unwrap();
+        let said = of_pair(&joint.rules, Authority::Nrcs, joint.filter.d15_mm, None).unwrap();
         assert!(said.contains(" Constricted exit: 90 %."), "{said}");
         assert!(!said.contains("none of them is broken") && !said.contains("are met"), "{said}");
         let without = PairRules::of_envelopes(&base, &filter, PairOptions::default());
-        let said = of_pair(&without.rules, Authority::Nrcs, without.filter.d15_mm).unwrap();
+        let said = of_pair(&without.rules, Authority::Nrcs, without.filter.d15_mm, None).unwrap();
         assert!(
             said.ends_with("; all that have a limit for these soils are met. No limit for these soils: 2.")
         );
         // Fines that nobody sieved.
         let open =
             PairRules::of_envelopes(&soil(&[(0.3, 25.0), (1.0, 100.0)]), &filter, PairOptions::default());
-        let said = of_pair(&open.rules, Authority::FosterFell, open.filter.d15_mm).unwrap();
+        let said = of_pair(&open.rules, Authority::FosterFell, open.filter.d15_mm, None).unwrap();
         let none = said.split("; no result: ").nth(1).unwrap_or_default();
         assert!(none.contains("Sherard and Dunnigan"), "{said}");
         let kept: Vec<AppliedRule> = joint.rules.iter().filter(|of| of.met == Some(true)).cloned().collect();
-        let said = of_pair(&kept, Authority::Nrcs, joint.filter.d15_mm).unwrap();
+        let said = of_pair(&kept, Authority::Nrcs, joint.filter.d15_mm, None).unwrap();
         assert!(said.ends_with("none of them is broken."), "{said}");
     }
 
@@ -355,7 +362,7 @@ mod tests {
         let filter = Gradation::from_points(&[(0.5, 30.0), (2.0, 100.0)], None).unwrap();
         let pair = PairRules::of(&base, &filter);
         assert_eq!(pair.filter.d15_mm, None);
-        let said = of_pair(&pair.rules, Authority::Nrcs, None).unwrap();
+        let said = of_pair(&pair.rules, Authority::Nrcs, None, None).unwrap();
         assert!(said.starts_with("NRCS: no result: D15F unknown, limit 0.98"), "{said}");
     }
 }

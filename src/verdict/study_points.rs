@@ -2,7 +2,9 @@
 
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::in_digits;
-use crate::outcome::record::{Classed, CurveEnd, CurveRange, Outcome, PanSize, Statistic, Verdict};
+use crate::outcome::record::{
+    Classed, CurveEnd, CurveRange, OfThickness, Outcome, PanSize, Sensitivity, Statistic, Verdict,
+};
 use crate::outcome::undecided::UndecidedBy;
 
 impl Outcome {
@@ -26,6 +28,113 @@ impl Outcome {
             _ => None,
         };
         of.unwrap_or_else(|| self.class_of_curve())
+    }
+}
+
+/// A point of a study: the scene walked with another amount of base or another thickness.
+pub(super) trait StudyPoint {
+    /// Multiple of the scene's own amount or thickness; 1 is the scene itself.
+    fn factor(&self) -> f64;
+    fn walked(&self) -> &Classed;
+}
+
+impl StudyPoint for Sensitivity {
+    fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    fn walked(&self) -> &Classed {
+        &self.walked
+    }
+}
+
+impl StudyPoint for OfThickness {
+    fn factor(&self) -> f64 {
+        self.factor
+    }
+
+    fn walked(&self) -> &Classed {
+        &self.walked
+    }
+}
+
+/// The points of a study beside the verdict of its scene.
+pub(super) struct Study<'a, P> {
+    pub(super) rows: &'a [P],
+    pub(super) verdict: Verdict,
+    /// The class of the scene itself as the others are classed.
+    pub(super) as_others: Verdict,
+    /// How the others are classed, where that is not as the verdict is.
+    pub(super) points: Option<&'a str>,
+    /// The range of the constriction curve, whose ends were walked with the scene itself alone.
+    pub(super) range: Option<&'a CurveRange>,
+    /// Eroded mass fraction that divides the classes.
+    pub(super) threshold: f64,
+}
+
+impl<'a, P: StudyPoint> Study<'a, P> {
+    pub(super) fn of(outcome: &'a Outcome, rows: &'a [P]) -> Self {
+        Self {
+            rows,
+            verdict: outcome.verdict,
+            as_others: outcome.class_as_points(),
+            points: outcome.points_are(),
+            range: outcome.curve_range.as_ref(),
+            threshold: outcome.threshold,
+        }
+    }
+
+    /// The point of the scene itself.
+    pub(super) fn own(&self) -> Option<&'a P> {
+        self.rows.iter().find(|row| row.factor() == 1.0)
+    }
+
+    pub(super) fn others(&self) -> impl Iterator<Item = &'a P> + use<'a, P> {
+        self.rows.iter().filter(|row| row.factor() != 1.0)
+    }
+
+    /// Whether every other point has the class of the scene itself.
+    pub(super) fn stays(&self) -> bool {
+        self.others().all(|row| row.walked().verdict == self.as_others)
+    }
+
+    pub(super) fn is_open(&self) -> bool {
+        self.verdict == Verdict::Undecided
+    }
+
+    /// The class of each point, the scene itself last: undecided where the verdict is.
+    pub(super) fn classed(&self) -> Vec<(f64, Verdict)> {
+        let own = if self.is_open() { self.verdict } else { self.as_others };
+        let others = self.others().map(|row| (row.factor(), row.walked().verdict));
+        others.chain([(1.0, own)]).collect()
+    }
+
+    /// How the points are classed; `others` names them where the scene itself is classed otherwise. `None`
+    /// where all are classed as the verdict is.
+    pub(super) fn how_classed(&self, others: &str) -> Option<String> {
+        let is_otherwise = self.is_open() && self.as_others != self.verdict;
+        self.points.map(|points| if is_otherwise { format!("{others} {points}") } else { points.to_owned() })
+    }
+
+    /// What would erode of the other points at the end of the range of constrictions that erodes most, where
+    /// that is a worse class than was walked.
+    pub(super) fn scaled(&self) -> Vec<Scaled> {
+        let Some((range, own)) = self.range.zip(self.own()) else {
+            return Vec::new();
+        };
+        let of = |row: &P| scaled(range, own.walked(), (row.factor(), row.walked()), self.threshold);
+        self.others().filter_map(of).collect()
+    }
+
+    /// What eroded of each other point, after its multiple and this name.
+    pub(super) fn each(&self, name: &str) -> String {
+        let each = |row: &P| format!("{} {name}: {}", times(row.factor()), walked_in_words(row.walked()));
+        self.others().map(each).collect::<Vec<_>>().join("; ")
+    }
+
+    /// How the points are classed, behind a comma; empty where as the verdict is.
+    pub(super) fn comma_points(&self) -> String {
+        self.points.map_or(String::new(), |points| format!(", {points}"))
     }
 }
 
@@ -78,7 +187,7 @@ impl Scaled {
 
 /// Scales what erodes at the end of the range that erodes most by what the point and the scene itself lose
 /// with the middle curve; `None` where that is no worse than the class of the point.
-pub(super) fn scaled(
+fn scaled(
     range: &CurveRange,
     own: &Classed,
     (factor, point): (f64, &Classed),
@@ -129,7 +238,7 @@ pub(super) fn beside_ends(range: &CurveRange) -> &'static str {
 }
 
 /// The class of other walks, and what eroded in them.
-pub(super) fn walked_in_words(walked: &Classed) -> String {
+fn walked_in_words(walked: &Classed) -> String {
     let eroded: Vec<String> = walked.runs.iter().map(|s| share(s, walked.stopped_when_clear)).collect();
     let replicates = if walked.replicates == 1 { "replicate" } else { "replicates" };
     let (class, count) = (walked.verdict.words(), walked.replicates);

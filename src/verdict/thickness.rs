@@ -3,22 +3,16 @@
 use super::amount::is_same_mass;
 use super::entry::Finding;
 use super::finding as found;
-use super::study_points::{at_end, classes, reach, scaled, times, walked_in_words};
+use super::study_points::{Study, at_end, classes, reach, times};
 use crate::outcome::numbers::{significant, size_unit};
-use crate::outcome::record::{CurveRange, OfThickness, Outcome, Sensitivity, Verdict};
+use crate::outcome::record::{OfThickness, Outcome, Sensitivity};
 
 /// How the verdict moves with the thickness of the filter; `None` without another thickness.
 pub fn finding(outcome: &Outcome) -> Option<Finding> {
-    let points = Points {
-        rows: &outcome.thickness,
-        amounts: &outcome.sensitivity,
-        verdict: outcome.verdict,
-        as_others: outcome.class_as_points(),
-        points: outcome.points_are(),
-        range: outcome.curve_range.as_ref().filter(|_| is_same_mass(outcome)),
-        threshold: outcome.threshold,
-    };
-    points.finding()
+    let mut study = Study::of(outcome, &outcome.thickness);
+    // Nothing is scaled but the same mass.
+    study.range = study.range.filter(|_| is_same_mass(outcome));
+    Thicknesses { study, amounts: &outcome.sensitivity }.finding()
 }
 
 /// How thick the modelled filter is; `None` where its network has no thickness.
@@ -60,29 +54,16 @@ pub const OTHER_BASE: &str =
     "Thickness was varied, and the base not in proportion (its particles are fixed or capped)";
 
 /// The thicknesses that were walked, beside a verdict.
-struct Points<'a> {
-    rows: &'a [OfThickness],
+struct Thicknesses<'a> {
+    study: Study<'a, OfThickness>,
     /// The amounts of base that were walked with the scene's own thickness.
     amounts: &'a [Sensitivity],
-    verdict: Verdict,
-    /// The class of the scene itself as the others are classed.
-    as_others: Verdict,
-    /// How the others are classed, where that is not as the verdict is.
-    points: Option<&'a str>,
-    /// The range of the constriction curve, where the amounts show that the same mass erodes.
-    range: Option<&'a CurveRange>,
-    /// Eroded mass fraction that divides the classes.
-    threshold: f64,
 }
 
-impl Points<'_> {
-    fn others(&self) -> impl Iterator<Item = &OfThickness> {
-        self.rows.iter().filter(|row| row.factor != 1.0)
-    }
-
+impl Thicknesses<'_> {
     /// Whether as many times the base alone gives each of the classes.
     fn is_the_amount(&self) -> bool {
-        self.others().all(|row| {
+        self.study.others().all(|row| {
             let alone = self.amounts.iter().find(|amount| amount.factor == row.factor);
             alone.is_some_and(|amount| amount.walked.verdict == row.walked.verdict)
         })
@@ -91,37 +72,20 @@ impl Points<'_> {
     /// What the rows say beside the verdict: whether it stays, and which class each has where it does not;
     /// `None` without another thickness. What is undecided neither stays nor moves.
     fn finding(&self) -> Option<Finding> {
-        self.others().next()?;
-        let own = own(self.rows)?;
-        let is_held = !self.others().all(|row| row.has_its_base(own));
+        self.study.others().next()?;
+        let own = self.study.own()?;
+        let is_held = !self.study.others().all(|row| row.has_its_base(own));
         let why = if is_held { OTHER_BASE } else { WITH_AMOUNT };
-        let others = self.others().map(|row| (row.factor, row.walked.verdict));
-        let is_open = self.verdict == Verdict::Undecided;
-        let as_own = if is_open { self.verdict } else { self.as_others };
-        let points: Vec<(f64, Verdict)> = others.chain([(1.0, as_own)]).collect();
-        let mut said = classes(&points, |ends, _| format!("at {} times the thickness", reach(ends, times)));
-        if let Some(points) = self.points {
-            let which = if is_open && self.as_others != as_own { "other thicknesses " } else { "" };
-            said += &format!(" ({which}{points})");
+        let at = |factor: String| format!("at {factor} times the thickness");
+        let mut said = classes(&self.study.classed(), |ends, _| at(reach(ends, times)));
+        if let Some(points) = self.study.how_classed("other thicknesses") {
+            said += &format!(" ({points})");
         }
-        let at_ends = self.range.filter(|_| !is_held).map(|range| {
-            let of =
-                |row: &OfThickness| scaled(range, &own.walked, (row.factor, &row.walked), self.threshold);
-            self.others().filter_map(of).collect::<Vec<_>>()
-        });
-        said += &at_end(&at_ends.unwrap_or_default(), |factor| {
-            format!("at {} times the thickness", times(factor))
-        });
-        let each = self
-            .others()
-            .map(|row| format!("{} times as thick: {}", times(row.factor), walked_in_words(&row.walked)));
-        let each = each.collect::<Vec<_>>().join("; ");
-        let stays = self.others().all(|row| row.walked.verdict == self.as_others);
-        Some(match (self.verdict, stays) {
-            (Verdict::Undecided, _) => {
-                let points = self.points.map_or(String::new(), |points| format!(", {points}"));
-                found::open_with_thickness(why, &said, &points, &each)
-            }
+        let at_ends = if is_held { Vec::new() } else { self.study.scaled() };
+        said += &at_end(&at_ends, |factor| at(times(factor)));
+        let each = self.study.each("times as thick");
+        Some(match (self.study.is_open(), self.study.stays()) {
+            (true, _) => found::open_with_thickness(why, &said, &self.study.comma_points(), &each),
             (_, true) => found::stays_with_thickness(why, &said, &each),
             (_, false) => {
                 let amount = match !is_held && self.is_the_amount() {
@@ -137,7 +101,7 @@ impl Points<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Classed, CurveEnd, Statistic};
+    use crate::outcome::record::{Classed, CurveEnd, CurveRange, Statistic, Verdict};
 
     fn walked(verdict: Verdict, mean: f64) -> Classed {
         let runs = vec![Statistic { mean, sd: None, low: None, high: None }];
@@ -154,9 +118,12 @@ mod tests {
         }
     }
 
+    fn study(rows: &[OfThickness], verdict: Verdict) -> Study<'_, OfThickness> {
+        Study { rows, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 }
+    }
+
     fn finding(rows: &[OfThickness], amounts: &[Sensitivity], verdict: Verdict) -> Option<Finding> {
-        Points { rows, amounts, verdict, as_others: verdict, points: None, range: None, threshold: 0.075 }
-            .finding()
+        Thicknesses { study: study(rows, verdict), amounts }.finding()
     }
 
     fn sentence(rows: &[OfThickness], verdict: Verdict) -> Option<String> {
@@ -221,17 +188,9 @@ mod tests {
         for (points, end) in
             [(Some("by the curve itself"), " (other thicknesses by the curve itself)"), (None, "")]
         {
-            let (verdict, as_others) = (Verdict::Undecided, Verdict::None);
-            let of = Points {
-                rows: &rows,
-                amounts: &[],
-                verdict,
-                as_others,
-                points,
-                range: None,
-                threshold: 0.075,
-            };
-            let found = of.finding().unwrap();
+            let as_others = Verdict::None;
+            let study = Study { as_others, points, ..study(&rows, Verdict::Undecided) };
+            let found = Thicknesses { study, amounts: &[] }.finding().unwrap();
             let said = format!(
                 "undecided at 1 times the thickness, no erosion at 0.5 times the thickness, no erosion at 2 \
                  times the thickness{end}."
@@ -258,17 +217,8 @@ mod tests {
             could_be: None,
             eroded_mass_fraction: Vec::new(),
         };
-        let (verdict, range) = (Verdict::None, Some(&range));
-        let of = Points {
-            rows: &rows,
-            amounts: &[],
-            verdict,
-            as_others: verdict,
-            points: None,
-            range,
-            threshold: 0.075,
-        };
-        let said = of.finding().unwrap().sentence();
+        let study = Study { range: Some(&range), ..study(&rows, Verdict::None) };
+        let said = Thicknesses { study, amounts: &[] }.finding().unwrap().sentence();
         let end = "walked): at the threshold at 0.5 times the thickness (7.1 to 8.2 % eroded).";
         assert!(said.ends_with(end), "{said}");
     }

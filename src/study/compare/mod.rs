@@ -123,7 +123,8 @@ impl ComparePlan {
             case.beside = outcome.beside_the_verdict();
             case.found = outcome.ordered().into_iter().map(|finding| finding.sentence).collect();
             let d15f = Some(outcome.inputs.filter.d15_mm);
-            let of_authority = of_pair(&outcome.rules, self.authority_of(&case.name), d15f);
+            let of_authority =
+                of_pair(&outcome.rules, self.authority_of(&case.name), d15f, outcome.if_dispersive);
             case.by_authority = of_authority.map_or(String::new(), |said| format!("{said} {ON_ALL_RULES}"));
         }
         Ok(comparison)
