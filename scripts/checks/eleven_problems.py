@@ -198,7 +198,7 @@ class Problem:
             one = {"sherard-dunnigan", "foster-fell-no-erosion"}
             is_one = limits["sherard-dunnigan"] == limits["foster-fell-no-erosion"] and "--dispersive" in self.call
             named = [rule for rule in outcome["rules"] if rule["role"] != "walk" and not is_twice(rule)]
-            rules = ["Fell et al.: the filter retains a dispersive base"] * is_one + [rule["name"] for rule in named if not (is_one and rule["id"] in one)]
+            rules = ["Fell et al.: no erosion of a highly dispersive base"] * is_one + [rule["name"] for rule in named if not (is_one and rule["id"] in one)]
         lacking = [part for part in [*FIRST_PAGE[self.call[0]], *rules] if part not in first]
         if lacking:
             self.faults.append(f"the first page of {suffix} lacks {', '.join(lacking)}")

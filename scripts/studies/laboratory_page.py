@@ -316,7 +316,7 @@ def increments(cells):
     shares = list(dict.fromkeys(row["inject_share"] for row in cells.increments))
     yield paragraph(
         "**Boundaries of graphs hang on the increments, and those that are sealed (‡) are no boundaries of filters.** The filter of Cu 1.5, loose, just below four of its boundaries, by the share of the "
-        "base that an increment inserts; percent that erodes, mean, least and most of three (`laboratory-increments.csv`; \"sealed\": k/k0 is 0 at the end):")
+        "base that an increment inserts; percent that erodes, mean, least and most of five (`laboratory-increments.csv`; \"sealed\": k/k0 is 0 at the end):")
     yield ""
     yield "| " + " | ".join(["base Cu", "law", "D15F/D85B", *shares]) + " |"
     yield "|---" * (3 + len(shares)) + "|"
@@ -332,7 +332,7 @@ def networks(cells):
     """The boundaries by area on both networks: what was walked, a table, and what the graph changes, law by law."""
     yield paragraph(
         "Six filters, three bases, every law, constrictions closed, no openings; the boundary of the first run. The lattice has 10 x 10 x 60 voids and five replicates. "
-        "The graph has the voids of three packings of 3,000 grains (Cu 1.5), 6,000 (Cu 3) and 10,000 (Cu 6), seeds 1 to 3, one run each; its bracket is that of three. "
+        "The graph has the voids of five packings of 3,000 grains (Cu 1.5), 6,000 (Cu 3) and 10,000 (Cu 6), seeds 1 to 5, one run each. "
         "Its thickness is 60 layers rounded up to whole copies of the packing: 61 to 63 layers, of Cu 3 73 to 74. Of Cu 6 the packing is the finer 78 % of the mass, with the base of the "
         "whole; its constrictions are finer by up to 2 %. A constriction of a packing has no direction, so that area alone leads nowhere: a particle chooses by area among the exits that water leaves by. "
         "The lattice needs no water, so a graph may be sealed (‡) where the lattice cannot be. An empty cell was not walked.")
@@ -469,7 +469,7 @@ def page(cells, name, head):
              "## Tests", ""]
     lines += [bullet(f"**{what}**: {number}. Read in: {source}. Compared: {how}.") for what, number, source, how in TESTS]
     lines += ["", "## Table", "",
-              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates (of graphs by area along flow: three). \"Beyond\": holds at "
+              paragraph("D15F/D85B at which 7.5 % of the base erodes in the first run; in brackets the least and the most of five replicates. \"Beyond\": holds at "
                         "the greatest ratio walked. \"From\": the last replicate holds there. \"To\": the first erodes at the least ratio walked. Other sands: the filters Cu 1.5, 3 and 6, loose and dense, with bases of Cu 1.5, 3 and "
                         f"4.5, as far as they were computed; in brackets how many were found, and how many hold at the greatest ratio walked. **An empty cell was not computed.** Every cell stands in `{name}.csv`, `arches.csv` or `openings.csv`."), ""]
     lines += table(cells)
@@ -540,7 +540,7 @@ def main():
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
     name = Path(options.out).name
-    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5; by area three, one run.")
+    head = paragraph(f"{options.of} Boundaries of 10 x 10 x 60 voids, two runs (`arches.csv` and `openings.csv`: one), seed 1; graphs: five packings, seeds 1 to 5; by area one run.")
     command = f"    scripts/studies/laboratory.py --work FOLDER --out results/{name}    # goes on where it was stopped\n    scripts/studies/laboratory_page.py --out results/{name}"
     Path(f"{options.out}.md").write_text(page(cells, name, f"{head}\n\n{command}"))
 

@@ -98,6 +98,8 @@ notes! {
     LessThanSource,
     /// A largest particle that the tests of others know.
     ChecksWalk,
+    /// How many times finer than in tests the largest particle is that passes, where coarser ones stay.
+    FarFinerThanTests(f64),
 
     // What the filter's own stability was judged by.
     /// The split (%) of Kezdi's ratio, D'15 of the coarser part and d'85 of the finer part.

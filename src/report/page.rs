@@ -153,6 +153,17 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
 }
 
+/// The void ratio of the filter, where that was given; else what the library has.
+fn void_ratio(outcome: &Outcome) -> String {
+    let is_given = !outcome.findings.iter().any(|finding| finding.id == "library_of_any_density");
+    match outcome.inputs.filter.void_ratio {
+        Some(ratio) if !is_given => {
+            format!("not given; {} is that of the packing of the library", significant(ratio))
+        }
+        ratio => known(ratio, significant),
+    }
+}
+
 /// What the walk found: its class, the mass eroded, and what leaves it open.
 fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
@@ -348,7 +359,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                     whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
                     significant(packing.after.coordination), packing.seed)))
             }
-            (fact("Void ratio", known(filter.void_ratio, significant)))
+            (fact("Void ratio", void_ratio(outcome)))
             (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
             (fact("Constriction curve",
                 format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,

@@ -7,7 +7,7 @@ use super::run_figures::run_name;
 use super::table::Table;
 use super::varied::{STOPPED_WHEN_CLEAR, classes_of_points, held};
 use super::walks::Walks;
-use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic};
+use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic, Verdict};
 use crate::verdict::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
@@ -99,7 +99,7 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
         .name("Replicate", |(number, replicate, _)| {
             html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
         })
-        .text("Verdict", |(_, replicate, _)| replicate.verdict.words())
+        .text("Verdict", |(_, replicate, _)| class(replicate.verdict))
         .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
         .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
         .number("number", |(.., run)| percent(run.eroded_number_fraction))
@@ -176,7 +176,7 @@ pub(super) fn thickness(outcome: &Outcome) -> Markup {
     html! {
         @if !outcome.thickness.is_empty() { details {
             summary { "Filters of other thicknesses, in numbers" }
-            (table.text("Verdict", |row| row.walked.verdict.words()))
+            (table.text("Verdict", |row| class(row.walked.verdict)))
             @if outcome.thickness.iter().any(is_held) { p.small { "* " (held()) } }
             (below(outcome, outcome.thickness.iter().any(|row| row.walked.stopped_when_clear)))
         } }
@@ -196,8 +196,13 @@ pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
     html! {
         @if !outcome.sensitivity.is_empty() { details {
             summary { "Sensitivity to the number of base particles, in numbers" }
-            (table.text("Verdict", |case| case.walked.verdict.words()))
+            (table.text("Verdict", |case| class(case.walked.verdict)))
             (below(outcome, outcome.sensitivity.iter().any(|case| case.walked.stopped_when_clear)))
         } }
     }
+}
+
+/// A class, of which no word is broken.
+fn class(verdict: Verdict) -> Markup {
+    html! { span.whole { (verdict.words()) } }
 }

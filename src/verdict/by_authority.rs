@@ -34,7 +34,9 @@ pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
     let named = |rule: &AppliedRule| match is_one && rule.id == DESIGN {
         true => {
-            AppliedRule { name: OF_DISPERSIVE.into(), source: OF_DISPERSIVE_SOURCE.into(), ..rule.clone() }
+            let [name, source, applies_to] =
+                [OF_DISPERSIVE, OF_DISPERSIVE_SOURCE, FOR_DISPERSIVE].map(str::to_owned);
+            AppliedRule { name, source, applies_to, ..rule.clone() }
         }
         false => rule.clone(),
     };
@@ -43,7 +45,11 @@ pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
 
 /// The name of the limit of a dispersive base, which leaves design no margin.
 const OF_DISPERSIVE: &str =
-    "Fell et al.: the filter retains a dispersive base (design and no erosion alike, without a margin)";
+    "Fell et al.: no erosion of a highly dispersive base (taken for design, too, without a margin)";
+
+/// What it was made for.
+const FOR_DISPERSIVE: &str = "highly dispersive bases: the lower boundary of no erosion, without a margin of \
+                              safety; this program takes it for design, too";
 
 /// Where it is stated.
 const OF_DISPERSIVE_SOURCE: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, \

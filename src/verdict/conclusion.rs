@@ -3,14 +3,19 @@
 
 use super::amount::worse_in_words;
 use super::beside::is_evidence;
-use super::entry::{BROAD_BASE, COHESIVE_FINES, DISPERSIVE_WOULD_NOT_HOLD, EVIDENCE_UNSAFE, LOSES_FINES};
+use super::entry::{
+    BROAD_BASE, COHESIVE_FINES, DISPERSIVE_WOULD_NOT_HOLD, EVIDENCE_UNSAFE, GUESSED_CONSTRICTIONS,
+    LOSES_FINES,
+};
 use super::practice::{Standing, broken, standing};
 use super::probability::{beside_range, stated};
 use super::rule_words::against;
 use super::study_points::beside_ends;
 use super::tested::is_beyond_tests;
 use super::washout::washout;
+use crate::gradation::Gradation;
 use crate::outcome::digits::{percent, percent_span};
+use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{
     AppliedRule, Confidence, Direction, FindingRecord, Outcome, PanReading, RuleRole, RunSummary, Statistic,
     Verdict,
@@ -55,6 +60,9 @@ impl Outcome {
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
             said += &format!("; {}", self.confidence.words());
         }
+        if self.confidence == Confidence::Contradicted {
+            said += &self.openings_of_few().unwrap_or_default();
+        }
         if self.verdict != Verdict::Continuing && self.errs_unsafely() {
             said += "; the walk errs on the unsafe side for this pair";
         }
@@ -83,6 +91,24 @@ impl Outcome {
             "beyond the boundary of no erosion of the network with which the model was published (Shire & \
              O'Sullivan: D15F/D85B {value} > {limit})"
         ))
+    }
+
+    /// How little of the filter's mass sets the openings that were walked, where they are guessed from its
+    /// grains by number and half of these have less than [`FEW_PERCENT`] of its mass.
+    fn openings_of_few(&self) -> Option<String> {
+        let filter = &self.inputs.filter;
+        let is_guessed = self.findings.iter().any(|finding| finding.id == GUESSED_CONSTRICTIONS);
+        let points: Vec<(f64, f64)> = filter.gradation.iter().map(|row| (row[0], row[1])).collect();
+        let curve = Gradation::from_points(&points, None).ok().filter(|_| is_guessed)?;
+        // The pan fraction is not walked.
+        let finer = curve.percent_finer_by_mass(filter.d50_by_number_mm) - points.first()?.1;
+        (0.0..FEW_PERCENT).contains(&finer).then(|| {
+            format!(
+                " (half of the filter's grains by number, which set the openings walked, are {} % of its \
+                 mass)",
+                in_digits(finer, 2)
+            )
+        })
     }
 
     /// In how many networks no path is left open after the last run: that nothing erodes there any more says
@@ -192,6 +218,9 @@ fn keep(all: &mut [FindingRecord], place: usize, is_kept: impl Fn(&FindingRecord
     }
 }
 
+/// Of less of a filter's mass (%) sieves tell little.
+const FEW_PERCENT: f64 = 1.0;
+
 /// Beyond the limit of design, and within the boundary of no erosion.
 const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
 
@@ -250,8 +279,9 @@ pub fn headline(
         (Standing::Met, Verdict::Undecided) => "holds by practice; the walk is undecided".into(),
         (Standing::Met, _) => format!("holds by practice; the walk is stricter: {walked} in the model"),
     };
-    let unstable = matches!(standing, Standing::Fails | Standing::NoMargin | Standing::Unknown(_))
-        && breaks(rules, RuleRole::Stability);
+    // Of a filter that is too coarse as it is the line of practice says so.
+    let unstable =
+        matches!(standing, Standing::NoMargin | Standing::Unknown(_)) && breaks(rules, RuleRole::Stability);
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);

@@ -15,6 +15,9 @@ pub const BROAD_BASE: &str = "broad_base";
 /// The name of the finding that the filter is not internally stable.
 pub const LOSES_FINES: &str = "loses_fines";
 
+/// The name of the finding that the constrictions are guessed from the grains.
+pub const GUESSED_CONSTRICTIONS: &str = "guessed_constrictions";
+
 /// Id of the limit that a filter breaks if its base is dispersive.
 pub const DISPERSIVE_WOULD_NOT_HOLD: &str = "dispersive_would_not_hold";
 

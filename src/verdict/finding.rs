@@ -98,7 +98,8 @@ findings! {
         "finest part", "soils.md",
         "The answer depends on the {share} of the base that is finer than its finest sieve. With all of it \
          finer than every constriction the verdict {fine}, with all of it {sieve} in size it {coarse}; the \
-         finest constriction is {constriction}. A hydrometer test or a finer sieve would decide.",
+         finest constriction of any curve walked is {constriction}. A hydrometer test or a finer sieve would \
+         settle this part.",
         to do "Or base.d0_mm.";
     /// Readings of the base's finest part that differ, of which the likely one counts.
     pan_taken_as_likely(share: Percent, sieve: Mm, constriction: Mm, class: Text, fine: Text, coarse: Text):
@@ -106,8 +107,8 @@ findings! {
         "finest part", "soils.md",
         "The answer depends on the {share} of the base that is finer than its finest sieve. With this part \
          as in soils with a hydrometer test the verdict is {class}; with all of it finer than every \
-         constriction it {fine}, with all of it {sieve} in size it {coarse}. The finest constriction is \
-         {constriction}. A hydrometer test would decide.",
+         constriction it {fine}, with all of it {sieve} in size it {coarse}. The finest constriction of \
+         any curve walked is {constriction}. A hydrometer test would settle this part.",
         to do "Or base.d0_mm.";
     /// A range of constriction curves that do not give one class.
     curve_range_decides(low: Percent, high: Percent, span: Text, each: Text):
@@ -348,12 +349,12 @@ findings! {
         "uniformity", "soils.md",
         "The Cu of the {soil} is {cu}, and the model was checked for {low} to {high}.";
     /// A Cu of which only the least is known, and that is out of the checked range.
-    cu_at_least(soil: Text, cu: Ratio, d10: Mm, low: Ratio, high: Ratio): Base, Open, Limits;
+    cu_at_least(soil: Text, cu: LeastRatio, d10: Mm, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
         "The Cu of the {soil} is more than {cu} (D10 is finer than {d10}), and the model was checked for \
          {low} to {high}.";
     /// A Cu of which sieves tell the least alone, and that may be out of the checked range.
-    cu_in_doubt(soil: Text, least: Ratio, how: Text, low: Ratio, high: Ratio): Base, Open, Limits;
+    cu_in_doubt(soil: Text, least: LeastRatio, how: Text, low: Ratio, high: Ratio): Base, Open, Limits;
         "uniformity", "soils.md",
         "The Cu of the {soil} is at least {least}{how}, and the model was checked for {low} to {high}. The \
          D10 of the {soil} is finer than its finest sieve.";

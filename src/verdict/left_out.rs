@@ -193,8 +193,9 @@ impl Shortcut {
             Engine::Expected => "only their expected number in each void is followed",
             _ => "only their number in each void is followed, which is exact",
         };
-        let finest_open =
-            |finest: Finest| format!("the finest open constriction ({} {unit})", fixed(finest.size_mm, 4));
+        let finest_open = |finest: Finest| {
+            format!("the finest open constriction of this walk ({} {unit})", fixed(finest.size_mm, 4))
+        };
         match *self {
             Self::NothingOpen => {
                 "No constriction is open: every base particle stays in the void it starts in.".into()

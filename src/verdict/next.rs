@@ -9,7 +9,7 @@ use super::quantity::FindingValue;
 use super::rule_words::{against, listed};
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
-use crate::outcome::numbers::{rounded_down, rounded_up};
+use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, Verdict,
 };
@@ -59,7 +59,11 @@ impl Outcome {
                 whose.push(name);
             }
         }
-        let stable = format!("take a filter that is stable by {}", listed(&whose));
+        let finer = match self.greatest() {
+            Some((limit, false)) => self.finer(limit) + " that is stable by ",
+            _ => "take a filter that is stable by ".into(),
+        };
+        let stable = finer + &listed(&whose);
         let placing = broken(&self.rules, RuleRole::Placing).into_iter().map(|rule| {
             let [value, limit] = against(rule, 3);
             format!("{} {value}, limit {limit}", rule.quantity)
@@ -67,7 +71,8 @@ impl Outcome {
         match placing.collect::<Vec<_>>() {
             placing if placing.is_empty() => format!("{stable}, or have its internal stability tested"),
             placing => format!(
-                "{stable} and does not segregate ({}): a test of internal stability would not settle that",
+                "{stable} and does not segregate ({}); a test of this one's internal stability would not settle \
+                 its segregation",
                 listed(&placing)
             ),
         }
@@ -75,17 +80,30 @@ impl Outcome {
 
     /// Which D15F a filter is to have that retains the base, and what to do with one that exists.
     fn of_retention(&self) -> String {
-        const EXISTS: &str = "for a filter that exists, have this pair tested";
+        let exists = self.of_a_filter_that_exists();
         let unit = self.unit();
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {} {unit}, and is not \
-                 known{}; {EXISTS}",
+                 known{}; {exists}",
                 rounded_down(limit),
                 self.if_dispersive_in_words(limit)
             ),
-            None => format!("take a finer filter; {EXISTS}"),
-            Some((limit, false)) => format!("{}{}; {EXISTS}", self.finer(limit), self.beside_floor(limit)),
+            None => format!("take a finer filter; {exists}"),
+            Some((limit, false)) => format!("{}{}; {exists}", self.finer(limit), self.beside_floor(limit)),
+        }
+    }
+
+    /// What to do about a filter that exists: beyond the boundary of continuing erosion no test of the pair is
+    /// to be waited for.
+    fn of_a_filter_that_exists(&self) -> String {
+        let boundary = self.rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.met == Some(false));
+        match boundary.and_then(|rule| Some(rule.value? / rule.limit?)) {
+            Some(times) => format!(
+                "for a filter that exists, assume continuing erosion (its D15F is {} times that boundary)",
+                in_digits(times, 2)
+            ),
+            None => "for a filter that exists, have this pair tested".into(),
         }
     }
 
@@ -270,6 +288,7 @@ impl Reason {
         let number = |name: &str| finding.numbers.get(name).and_then(Json::as_f64).unwrap_or(f64::NAN);
         let percent = |name: &str| FindingValue::Percent(number(name)).shown(None);
         let ratio = |name: &str| FindingValue::Ratio(number(name)).shown(None);
+        let least = |name: &str| FindingValue::LeastRatio(number(name)).shown(None);
         let soil = |said: String| Some(Self::Soil(said));
         match finding.id.as_str() {
             COHESIVE_FINES => soil(format!("{} fines", percent("fines_percent"))),
@@ -278,9 +297,9 @@ impl Reason {
             "broadly_graded" | "not_regraded" => soil("broadly graded base".into()),
             "gap_graded" => soil("gap-graded filter".into()),
             "cu_unchecked" => soil(format!("Cu of the {} {}", text("soil"), ratio("cu"))),
-            "cu_at_least" => soil(format!("Cu of the {} above {}", text("soil"), ratio("cu"))),
+            "cu_at_least" => soil(format!("Cu of the {} above {}", text("soil"), least("cu"))),
             "cu_in_doubt" => {
-                soil(format!("Cu of the {} at least {}{}", text("soil"), ratio("least"), text("how")))
+                soil(format!("Cu of the {} at least {}{}", text("soil"), least("least"), text("how")))
             }
             "cu_unknown" => soil(format!("Cu of the {} not known", text("soil"))),
             id => other(id).map(|said| Self::Other(said.into())),

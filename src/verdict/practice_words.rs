@@ -6,7 +6,7 @@ use super::rule_words::{
     NoMargin, against, first_clause, is_of_dispersive, listed, met_of, no_margin, without_margin,
 };
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
-use super::washout::washout;
+use super::washout::{not_stable, washout};
 use crate::gradation::Gradation;
 use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{
@@ -31,8 +31,8 @@ impl Outcome {
     pub fn judged_alone(&self) -> Option<&'static str> {
         let is_envelope = self.findings.iter().any(|finding| finding.id == "envelope");
         (standing(&self.rules) == Standing::Met && !is_envelope).then_some(
-            "Judged for these two gradations alone: the limit holds for the coarsest filter and the finest \
-             base that the works allow.",
+            "Judged for these two gradations alone. The coarsest filter and the finest base that the works \
+             allow must keep the limit, too; that was not checked here.",
         )
     }
 
@@ -98,6 +98,7 @@ fn compared_with_tests(
 ) -> String {
     let design = rules.iter().find(|rule| rule.id == DESIGN);
     let has_fines = design.is_some_and(|of| (1..=3).any(|each| of.note.says(RuleNote::Category(each))));
+    let is_unstable = !broken(rules, RuleRole::Stability).is_empty();
     let said = tested_words(rules);
     let tests = match tested(rules) {
         TestedClass::None => Some((0, said)),
@@ -116,7 +117,7 @@ fn compared_with_tests(
         None => "The boundaries that Foster and Fell saw in tests give no class for this pair. ".into(),
     };
     text += match without_margin(rules) {
-        Some(_) => "The limit of dispersive bases (Fell et al., for design and for no erosion alike) ",
+        Some(_) => "The limit of dispersive bases (Fell et al.: of no erosion, taken for design, too) ",
         None => "The limit of design (Sherard and Dunnigan) ",
     };
     text += match met_of(rules, DESIGN) {
@@ -138,6 +139,10 @@ fn compared_with_tests(
             "Whether they agree is not known: neither the walk nor the rules here tell some from \
                  excessive erosion. "
         }
+        Some(_) if is_unstable => {
+            "They agree for the filter as placed alone: it is not internally stable, and neither the walk nor \
+             these boundaries say what is left without its finer part. "
+        }
         Some(_) if has_fines => "",
         Some(_) => "Walk and tests agree here. ",
         None => "",
@@ -151,6 +156,7 @@ fn compared_with_tests(
                 .into()
         }
         None if has_fines => "For bases with such fines it is not known which way the walk errs. ".into(),
+        None if is_unstable => String::new(),
         None => "Which way each errs: for clean sands tests put the end of no erosion at a D15F/D85B of 6.8 \
                  to 10, the limits of Terzaghi and of design at 4, with a margin, and this network near 5. \
                  For uniform sands the model is therefore stricter than tests. "
@@ -198,13 +204,12 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
             said.push(format!("{} {value} is more than {limit} ({})", rule.quantity, authority(rule)));
         }
     }
-    let also = [
-        (RuleRole::Stability, "may lose its finer part"),
-        (RuleRole::Drainage, "may not drain"),
-        (RuleRole::Placing, "may segregate"),
-    ];
-    let is_said = |role| role == RuleRole::Stability && washout.is_some();
-    let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty() && !is_said(*role));
+    let unstable = broken(rules, RuleRole::Stability);
+    if washout.is_none() && !unstable.is_empty() {
+        said.push(format!("the filter is {}", not_stable(&unstable)));
+    }
+    let also = [(RuleRole::Drainage, "may not drain"), (RuleRole::Placing, "may segregate")];
+    let also = also.into_iter().filter(|(role, _)| !broken(rules, *role).is_empty());
     let also: Vec<String> = also.map(|(_, what)| what.to_owned()).collect();
     if !also.is_empty() {
         said.push(format!("the filter {}", listed(&also)));
@@ -229,10 +234,10 @@ fn of_design(rule: &AppliedRule) -> String {
     let at_most = if rule.limit_at_most { " at most" } else { "" };
     let whose = match is_of_dispersive(rule) {
         true => {
-            let of_size = if rule.note.says(RuleNote::Category(1)) { "6.4 D85B, " } else { "" };
+            let of_size = if rule.note.says(RuleNote::Category(1)) { "6.4 D85B; " } else { "" };
             format!(
-                "of a dispersive base ({of_size}Fell et al., Table 9.2, note b, for design and for no \
-                 erosion alike)"
+                "that Fell et al. recommend for highly dispersive bases as the boundary of no erosion \
+                 ({of_size}Table 9.2, note b; taken here for design, too)"
             )
         }
         false => "that Sherard and Dunnigan allow (design)".into(),
@@ -286,13 +291,16 @@ mod tests {
         assert_eq!(
             said(&[(1.0, 0.0), (3.0, 100.0)], &SAND),
             "met: D15F 1.18 mm is within the 2.03 mm that Sherard and Dunnigan allow (design); Foster and \
-             Fell: no erosion (up to 3.56 mm)"
+             Fell: criterion of no erosion met (up to 3.56 mm)"
         );
         let coarse = said(&[(8.0, 0.0), (16.0, 100.0)], &SAND);
         assert!(coarse.contains("; Foster and Fell: continuing erosion (beyond 5."), "{coarse}");
         // Between the limit of design and the boundary that tests saw.
         let between = said(&[(2.5, 0.0), (5.0, 100.0)], &SAND);
-        assert!(between.starts_with("not met: ") && between.contains("Fell: no erosion (up to"), "{between}");
+        assert!(
+            between.starts_with("not met: ") && between.contains("Fell: criterion of no erosion met (up to"),
+            "{between}"
+        );
     }
 
     /// Between the boundaries of no and of continuing erosion neither side tells some from excessive erosion,
@@ -315,6 +323,14 @@ mod tests {
         assert!(
             compared_with_tests(Verdict::Continuing, &between, false, None)
                 .contains("stricter than the tests here")
+        );
+        // What is left of a gap-graded filter neither side knows.
+        let gap = of(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)], &SAND, false);
+        let gap = compared_with_tests(Verdict::None, &gap, false, None);
+        assert!(
+            gap.contains("They agree for the filter as placed alone: it is not internally stable")
+                && !gap.contains("stricter than tests"),
+            "{gap}"
         );
         let good = of(&[(1.0, 0.0), (3.0, 100.0)], &SAND, false);
         let good = compared_with_tests(Verdict::None, &good, false, None);
@@ -352,12 +368,15 @@ mod tests {
         let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
         let unstable = said(&gap, &SAND);
         assert!(
-            unstable.contains("is 2.82 mm, beyond the limit of design; the filter may not drain"),
+            unstable.contains(" is 2.82 mm, beyond the limit of design; the filter may not drain"),
             "{unstable}"
         );
         // Without its finer part a filter of half the size still retains the sand.
         let unstable = said(&gap.map(|(size, percent)| (0.5 * size, percent)), &SAND);
-        assert!(unstable.contains("; the filter may lose its finer part, may not drain"), "{unstable}");
+        let criteria =
+            "; the filter is not internally stable by Kézdi (7.84, limit 4.00), Kenney and Lau (0, ";
+        assert!(unstable.starts_with("met: ") && unstable.contains(criteria), "{unstable}");
+        assert!(unstable.ends_with("; the filter may not drain and may segregate"), "{unstable}");
     }
 
     /// A till, and a gravel of 0 to 32 mm that loses its finer part: as placed it retains the till.
@@ -371,8 +390,8 @@ mod tests {
         assert!(
             line.starts_with(
                 "not met: as placed D15F 0.610 mm is within the 1.26 mm that Sherard and Dunnigan allow \
-                 (design); Foster and Fell: no erosion (up to 0.700 mm); the filter is not internally stable \
-                 by Kézdi (4.13, limit 4.00), "
+                 (design); Foster and Fell: criterion of no erosion met (up to 0.700 mm); the filter is not \
+                 internally stable by Kézdi (4.13, limit 4.00), "
             ),
             "{line}"
         );
@@ -384,7 +403,7 @@ mod tests {
         let line = practice_in_words(&rules);
         assert!(
             line.starts_with("met, without a margin in the strictest limit: D15F ")
-                && line.contains("the filter may lose its finer part"),
+                && line.contains("the filter is not internally stable by Kézdi (4.13, limit 4.00)"),
             "{line}"
         );
         // Without the record of what is left, as in files of earlier versions, it is the warning alone.
@@ -410,7 +429,7 @@ mod tests {
         assert!(line.contains("beyond both limits"), "{line}");
     }
 
-    /// Fell et al. give 6.4 D85B for design and for no erosion alike: one number, credited once.
+    /// 6.4 D85B of Fell et al. is taken for design, too: one number, credited once.
     #[test]
     fn the_limit_of_a_dispersive_base_is_one_number_without_a_margin() {
         let clay = [(0.002, 30.0), (0.075, 88.0), (0.15, 94.0), (2.0, 100.0)];
@@ -418,15 +437,16 @@ mod tests {
         let line = practice_in_words(&of(&sand(0.3), &clay, true));
         assert!(
             line.starts_with("met, without a margin in the limit: D15F 0.300 mm is ") && line.ends_with(
-                " mm of a dispersive base (6.4 D85B, Fell et al., Table 9.2, note b, for design and for no \
-                 erosion alike)"
+                " mm that Fell et al. recommend for highly dispersive bases as the boundary of no erosion \
+                 (6.4 D85B; Table 9.2, note b; taken here for design, too)"
             ),
             "{line}"
         );
         let broken = of(&sand(0.6), &clay, true);
         let line = practice_in_words(&broken);
         assert!(
-            line.starts_with("not met: D15F 0.600 mm is more than the 0.") && line.contains("base (6.4 D85B")
+            line.starts_with("not met: D15F 0.600 mm is more than the 0.")
+                && line.contains("erosion (6.4 D85B")
         );
         assert!(
             !line.contains("Sherard") && line.contains("Foster and Fell: at least some erosion"),
@@ -444,15 +464,14 @@ mod tests {
             .collect();
         assert_eq!(
             retention,
-            ["Fell et al.: the filter retains a dispersive base (design and no erosion alike, without a \
-                 margin)"]
+            ["Fell et al.: no erosion of a highly dispersive base (taken for design, too, without a margin)"]
         );
         // The floor of the limit of design is another number, and its own source's.
         let fine = practice_in_words(&of(&sand(0.15), &[(0.001, 0.0), (0.01, 85.0), (0.02, 100.0)], true));
         assert!(fine.contains("Sherard and Dunnigan") && !fine.contains("note b"), "{fine}");
         let silt = [(0.01, 0.0), (0.075, 60.0), (0.3, 92.0), (0.6, 100.0)];
         let silt = practice_in_words(&of(&sand(0.4), &silt, true));
-        assert!(silt.contains("the 0.500 mm of a dispersive base (Fell et al., Table 9.2"), "{silt}");
+        assert!(silt.contains("bases as the boundary of no erosion (Table 9.2, note b; taken"), "{silt}");
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub enum FindingValue {
     Points(f64),
     /// A number without unit.
     Ratio(f64),
+    /// A number without unit that is the least of what it may be: shown rounded down.
+    LeastRatio(f64),
     /// So many.
     Count(u64),
     /// Anything else.
@@ -30,16 +32,18 @@ impl FindingValue {
             Self::Percent(_) => "_percent",
             Self::Mm(_) | Self::KnownMm(_) => "_mm",
             Self::Points(_) => "_pp",
-            Self::Ratio(_) | Self::Count(_) | Self::Text(_) => "",
+            Self::Ratio(_) | Self::LeastRatio(_) | Self::Count(_) | Self::Text(_) => "",
         }
     }
 
     /// As it stands in a record; `null` where it is no number.
     pub fn json(&self) -> Json {
         match self {
-            Self::Percent(value) | Self::Points(value) | Self::Mm(value) | Self::Ratio(value) => {
-                (*value).into()
-            }
+            Self::Percent(value)
+            | Self::Points(value)
+            | Self::Mm(value)
+            | Self::Ratio(value)
+            | Self::LeastRatio(value) => (*value).into(),
             Self::KnownMm(value) => (*value).into(),
             Self::Count(count) => (*count).into(),
             Self::Text(text) => text.as_str().into(),
@@ -55,6 +59,7 @@ impl FindingValue {
             Self::Points(value) if value.abs() < 1e6 => format!("{value:.3} percentage points"),
             Self::Points(value) => number(*value) + " percentage points",
             Self::Ratio(value) => number(*value),
+            Self::LeastRatio(value) => number(down(*value)),
             Self::Count(n) => {
                 let Some(noun) = noun else { return count(*n) };
                 let (one, many) = noun.split_once('|').unwrap_or((noun, ""));
@@ -71,6 +76,14 @@ impl FindingValue {
             }
         }
     }
+}
+
+/// Three significant digits, rounded down.
+fn down(value: f64) -> f64 {
+    let scale = 10f64.powi(2 - value.abs().log10().floor() as i32);
+    // What has no more digits stays what it is.
+    let rounded = (value * scale * (1.0 + 1e-12)).floor() / scale;
+    if rounded.is_finite() { rounded } else { value }
 }
 
 /// Three significant digits, or all before the point, without zeros at the end.
@@ -116,6 +129,11 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits_and_their_unit() {
+        // The least of what it may be is not rounded up.
+        assert_eq!(FindingValue::LeastRatio(8.7655).shown(None), "8.76");
+        assert_eq!(FindingValue::LeastRatio(100.0).shown(None), "100");
+        assert_eq!(FindingValue::LeastRatio(0.3).shown(None), "0.3");
+        assert_eq!(FindingValue::LeastRatio(1234.9).shown(None), "1230");
         let shown = |value: FindingValue| value.shown(None);
         assert_eq!(shown(FindingValue::Percent(35.24)), "35.2 %");
         assert_eq!(shown(FindingValue::Percent(7.5)), "7.5 %");

@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
 use crate::gradation::{RegradeCause, RegradeReason};
-use crate::outcome::numbers::{rounded_down, rounded_up, significant};
+use crate::outcome::numbers::{in_digits, rounded_down, rounded_up, significant};
 use crate::outcome::record::{RuleNote, RuleText};
 
 impl RuleNote {
@@ -77,6 +77,10 @@ impl RuleNote {
             }
             Self::LessThanSource => "less than 0.01 %",
             Self::ChecksWalk => "checks the walk against their tests, not the filter",
+            Self::FarFinerThanTests(times) => {
+                let times = in_digits(times, 2);
+                return format!("{times} times finer: the openings walked are not those of such tests");
+            }
             Self::KezdiAt(split, coarse, fine) => {
                 let [coarse, fine] = [coarse, fine].map(significant);
                 return format!(

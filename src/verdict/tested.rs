@@ -78,7 +78,7 @@ pub fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     let continuing = limit(TESTS_CONTINUING);
     let from = continuing.as_ref().map(|of| format!("continuing erosion beyond {of}"));
     let class = match tested(rules) {
-        TestedClass::None => format!("{said} (up to {})", up_to?),
+        TestedClass::None => format!("criterion of no erosion met (up to {})", up_to?),
         TestedClass::Continuing if is_beyond_unclear(rules) => {
             format!("{said} (beyond {}, though {UNCLEAR})", continuing?)
         }
@@ -128,7 +128,10 @@ mod tests {
         for d15f in [3.7, 5.0] {
             assert!(of_tests(&rules(&SAND, d15f)).unwrap().contains("excessive erosion is not excluded"));
         }
-        assert_eq!(of_tests(&rules(&SAND, 3.0)).unwrap(), "Foster and Fell: no erosion (up to 3.56 mm)");
+        assert_eq!(
+            of_tests(&rules(&SAND, 3.0)).unwrap(),
+            "Foster and Fell: criterion of no erosion met (up to 3.56 mm)"
+        );
         let beyond = of_tests(&rules(&SAND, 6.0)).unwrap();
         assert_eq!(beyond, "Foster and Fell: continuing erosion (beyond 5.11 mm)");
     }

@@ -12,11 +12,15 @@ use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::limits;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
-use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{
+    DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
+};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
 pub(super) struct Washout<'r> {
     left: WithoutFiner,
+    /// The criterion by which it is the greatest part that fails.
+    by: &'r AppliedRule,
     /// The rules of retention that it breaks then, and the least of their limits.
     beyond: Vec<&'r str>,
     least: f64,
@@ -25,6 +29,8 @@ pub(super) struct Washout<'r> {
     unstable: Vec<&'r AppliedRule>,
     /// Whether design and no erosion have one limit.
     is_one_limit: bool,
+    /// The boundary of continuing erosion of tests, where it is beyond that, too.
+    continuing: Option<&'r AppliedRule>,
 }
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
@@ -35,10 +41,13 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let limits = limits(rules, d15f.unwrap_or(1.0));
     let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
     let least = limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min);
-    let left = lost(&unstable, least)?;
+    let (by, left) = lost(&unstable, least)?;
     let beyond = limits.iter().filter(|(_, limit)| is_beyond(&left, *limit));
+    let boundary = rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.applies);
     Some(Washout {
+        continuing: boundary.filter(|rule| rule.limit.is_some_and(|limit| is_beyond(&left, limit))),
         left,
+        by,
         beyond: beyond.map(|(rule, _)| rule.id.as_str()).collect(),
         least,
         unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
@@ -49,13 +58,13 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
 
 /// What is left of a filter that is not internally stable, where it is beyond a limit of D15F.
 pub(super) fn lost_beyond(rules: &[AppliedRule], limit: f64) -> Option<WithoutFiner> {
-    lost(&unstable(rules), limit)
+    lost(&unstable(rules), limit).map(|(_, left)| left)
 }
 
-fn lost(unstable: &[&AppliedRule], limit: f64) -> Option<WithoutFiner> {
-    let parts = unstable.iter().filter_map(|rule| rule.without_finer);
-    let beyond = parts.filter(|left| is_beyond(left, limit));
-    beyond.min_by_key(|left| left.percent > WIDE_LOOSE_PERCENT * (1.0 + 1e-9))
+fn lost<'r>(unstable: &[&'r AppliedRule], limit: f64) -> Option<(&'r AppliedRule, WithoutFiner)> {
+    let parts = unstable.iter().filter_map(|rule| Some((*rule, rule.without_finer?)));
+    let beyond = parts.filter(|(_, left)| is_beyond(left, limit));
+    beyond.min_by_key(|(_, left)| left.percent > WIDE_LOOSE_PERCENT * (1.0 + 1e-9))
 }
 
 fn is_beyond(left: &WithoutFiner, limit: f64) -> bool {
@@ -90,13 +99,6 @@ impl Washout<'_> {
 
     /// That the filter is not internally stable, by which criteria, and what is beyond which limit then.
     pub fn in_words(&self) -> String {
-        let each = self.unstable.iter().map(|rule| {
-            let [value, limit] = against(rule, 3);
-            // The year of a source stands in the table of rules.
-            let name = authority(rule).split(" (").next().unwrap_or_default();
-            format!("{name} ({}, limit {limit})", bounded(rule, &value))
-        });
-        let by = listed(&each.collect::<Vec<_>>());
         let breaks = |id: &str| self.beyond.contains(&id);
         let beyond = match (breaks(DESIGN), breaks(TESTS_NO_EROSION)) {
             (true, true) if !self.is_one_limit => "beyond both limits",
@@ -105,9 +107,15 @@ impl Washout<'_> {
             (false, true) => "beyond that of Foster and Fell",
             (false, false) => "beyond a limit of retention",
         };
+        let continuing = self.continuing.map_or_else(String::new, |rule| {
+            format!(" and the boundary of continuing erosion ({})", against(rule, 3)[1])
+        });
         format!(
-            "the filter is not internally stable by {by}; without {} its D15F is {}, {beyond}",
+            "the filter is {}; without {} (the greatest part that fails by {}) its D15F is {}, \
+             {beyond}{continuing}",
+            not_stable(&self.unstable),
             self.part(),
+            named(self.by),
             self.d15f()
         )
     }
@@ -121,6 +129,20 @@ impl Washout<'_> {
     pub fn as_placed(&self) -> String {
         format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
     }
+}
+
+/// Whose criterion it is; the year of a source stands in the table of rules.
+fn named(rule: &AppliedRule) -> &str {
+    authority(rule).split(" (").next().unwrap_or_default()
+}
+
+/// By which of these criteria, none of which is met, a filter is not internally stable.
+pub(super) fn not_stable(unstable: &[&AppliedRule]) -> String {
+    let each = unstable.iter().map(|rule| {
+        let [value, limit] = against(rule, 3);
+        format!("{} ({}, limit {limit})", named(rule), bounded(rule, &value))
+    });
+    format!("not internally stable by {}", listed(&each.collect::<Vec<_>>()))
 }
 
 #[cfg(test)]
@@ -169,12 +191,24 @@ pub(in crate::verdict) mod tests {
         assert_eq!(
             said,
             "the filter is not internally stable by Kézdi (4.13, limit 4.00), Kenney and Lau (0.800, limit \
-             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % its D15F is 2.83 mm, \
-             beyond both limits"
+             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % (the greatest part \
+             that fails by Kézdi) its D15F is 2.83 mm, beyond both limits"
         );
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
         assert_eq!(washout(&read).unwrap().in_words(), said);
+    }
+
+    /// Without a fifth of it a gap-graded filter is beyond the boundary of continuing erosion, too.
+    #[test]
+    fn the_boundary_of_continuing_erosion_is_said_where_what_is_left_is_beyond_it() {
+        let gap = [(0.3, 0.0), (0.36, 15.0), (5.0, 15.0), (12.0, 100.0)];
+        let rules = rules(&gap, &[(0.2, 0.0), (0.6, 100.0)]);
+        let said = washout(&rules).unwrap().in_words();
+        assert!(
+            said.ends_with(" mm, beyond both limits and the boundary of continuing erosion (5.11 mm)"),
+            "{said}"
+        );
     }
 
     /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at

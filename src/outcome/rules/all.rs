@@ -86,7 +86,7 @@ pub const RULES: &[FilterRule] = &[
         stated_by: &[FosterFell],
         says: "no erosion rather than some",
         role: RuleRole::Retention,
-        applies_to: "filters of existing dams: the boundary seen in tests, without a margin of safety",
+        applies_to: "filters of existing dams: a criterion proposed from tests, without a margin of safety",
         quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
                   0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",

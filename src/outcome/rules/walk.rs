@@ -3,11 +3,24 @@
 use super::rule::{Judged, RuleInputs};
 use crate::outcome::record::RuleNote;
 
+/// Largest passing particle over D15F by Kenney et al.
+const KENNEY: f64 = 0.2;
+
+/// Below so small a share of it the walk is not that of such tests.
+const FAR_FINER: f64 = 0.1;
+
 /// Kenney et al.: the largest particle that passes.
 pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     let value = inputs.largest_eroded_over_d15f;
-    let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(0.2)) };
+    let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(KENNEY)) };
+    // Where all of the base is as fine, its size says nothing of the openings.
+    let is_far = |share: f64| share < FAR_FINER * KENNEY;
+    let coarsest = inputs.d15f().map(|d15f| inputs.walked_base.largest_mm() / d15f);
+    let is_held_back = coarsest.is_some_and(|share| !is_far(share));
     match value {
+        Some(share) if is_far(share) && is_held_back => {
+            judged.noted(RuleNote::ChecksWalk).noted(RuleNote::FarFinerThanTests(KENNEY / share))
+        }
         Some(_) => judged.noted(RuleNote::ChecksWalk),
         None => judged.lacking(RuleNote::NeedsErosion),
     }

@@ -220,7 +220,7 @@ pub(super) fn networks(design: &Design) -> Markup {
 /// What was walked, and from what.
 pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
     let [low, high] = design.bracket;
-    let size = |value: Option<f64>| value.map_or_else(|| "no unit".to_owned(), |mm| format!("{mm:.4} mm"));
+    let size = |value: Option<f64>| value.map_or_else(|| "not known".to_owned(), |mm| format!("{mm:.4} mm"));
     let grains = design.boundaries.iter().find_map(|row| row.grains_per_void);
     let asked = design.settings.iter().map(|said| option_words(said)).collect::<Vec<_>>().join(" ");
     html! {

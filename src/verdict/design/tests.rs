@@ -271,15 +271,15 @@ fn a_walk_beyond_every_test_is_said_to_be_no_guide() {
     assert_eq!(dispersive.beyond_tests(), None);
 }
 
-/// 0.7 mm is the lowest D15F at which tests of bases with 35 to 85 % fines showed erosion.
+/// 0.7 mm is the lower end of the boundary of no erosion in tests of bases with 35 to 85 % fines.
 #[test]
 fn an_answer_has_its_parts_and_their_text() {
     let answer = specified(&till(), Some(12.6)).answer();
     let margin = answer.margin.as_deref().unwrap();
     assert_eq!(
         margin,
-        "This limit has no margin: it is the lowest D15F at which tests showed erosion (Fell et al., \
-         Table 9.2)"
+        "This limit has no margin: it is the lower end of the range in which tests put the boundary of no \
+         erosion (0.700 to 1.70 mm; Fell et al., Table 9.2)"
     );
     let dispersive = answer.if_dispersive.as_deref().unwrap();
     assert!(dispersive.contains(". Design again for a dispersive base, and have"), "{dispersive}");

@@ -195,14 +195,17 @@ impl Specification {
                 "it is the boundary of no erosion in tests (Fell et al., Table 9.2, note b)".into()
             }
             (true, _) => {
-                "Fell et al. (Table 9.2, note b) give one number for design and for no erosion in tests"
+                "Fell et al. (Table 9.2, note b) give it for no erosion in tests; it is taken for design, too"
                     .into()
             }
-            (false, [low, _]) if limit <= low * (1.0 + 1e-9) => {
-                "it is the lowest D15F at which tests showed erosion (Fell et al., Table 9.2)".into()
-            }
+            (false, [low, high]) if limit <= low * (1.0 + 1e-9) => format!(
+                "it is the lower end of the range in which tests put the boundary of no erosion ({} to {} mm; \
+                 Fell et al., Table 9.2)",
+                rounded_down(low),
+                rounded_up(high)
+            ),
             (false, [low, high]) => format!(
-                "it lies in the range in which erosion began in tests ({} to {} mm; Fell et al., Table 9.2)",
+                "it lies in the range in which tests put the boundary of no erosion ({} to {} mm; Fell et al., Table 9.2)",
                 rounded_down(low),
                 rounded_up(high)
             ),

@@ -414,12 +414,15 @@ fn a_limit_without_a_margin_is_said_to_have_none() {
         [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)],
         [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)],
     );
-    assert!(said(&core, None).contains("it is the lowest D15F at which tests showed erosion"));
+    assert!(
+        said(&core, None).contains("it is the lower end of the range in which tests put the boundary of no")
+    );
     // 6.4 to 13.5 D85B, and a limit of 9 D85B.
     assert!(
-        said(&clay, None).contains("lies in the range in which erosion began in tests (0.320 to 0.675 mm;")
+        said(&clay, None)
+            .contains("lies in the range in which tests put the boundary of no erosion (0.320 to 0.675 mm;")
     );
-    assert!(said(&clay, Some(true)).contains("Table 9.2, note b) give one number for design and for"));
+    assert!(said(&clay, Some(true)).contains("Table 9.2, note b) give it for no erosion in tests; it is"));
     // Of a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
     let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
     assert!(
