@@ -7,6 +7,9 @@ use super::entry::COHESIVE_FINES;
 use super::quantity::FindingValue;
 use crate::outcome::record::{Confidence, FindingRecord, Outcome};
 
+/// Id of the finding that the filter is finer than any that eroded in tests, and the base erodes in the walk.
+const EVIDENCE_SAFE: &str = "evidence_safe";
+
 /// Reasons that are named in a line.
 pub(super) const REASONS: usize = 3;
 
@@ -38,7 +41,8 @@ impl Outcome {
     pub(super) fn reasons_outside(&self) -> Vec<Reason> {
         let mut reasons: Vec<Reason> = Vec::new();
         if self.confidence == Confidence::Outside {
-            for finding in self.against().iter().filter(|finding| !is_evidence(finding)) {
+            let is_named = |finding: &&FindingRecord| !is_evidence(finding) || finding.id == EVIDENCE_SAFE;
+            for finding in self.against().iter().filter(is_named) {
                 reasons.extend(Reason::of(finding).filter(|reason| !reasons.contains(reason)));
             }
         }
@@ -137,6 +141,7 @@ fn other(id: &str) -> Option<&'static str> {
         "trapped_could_turn" => "trapped particles could change the class",
         "second_run_erodes" => "the base erodes in the second run",
         "all_on_its_way" => "all of the base was inserted before any could be through the filter",
+        EVIDENCE_SAFE => "tests held such filters",
         "arches" => "the law of clogging was not checked by filter tests",
         "openings" => "the openings beside blocked particles were not checked by filter tests",
         _ => return None,
@@ -191,13 +196,17 @@ mod tests {
         use crate::outcome::record::Topic;
         use crate::verdict::entry::DISPERSIVE_WOULD_NOT_HOLD;
         let mut reasons = 0;
+        let eroding = [Verdict::Some, Verdict::Continuing];
         for finding in crate::verdict::finding::all_with(12.0, 3, "base") {
             let record = finding.record(true);
             // Of practice and of a search other lines speak; what comes first names the test of dispersion.
             let is_said = matches!(record.about, Topic::Study | Topic::Practice)
                 || record.id == DISPERSIVE_WOULD_NOT_HOLD;
-            let is_doubt = finding.entry.sets == Confidence::Outside && finding.is_against(Verdict::None);
-            if !is_doubt || (is_said && record.id != "no_filter") {
+            let is_of_erosion = eroding.into_iter().any(|class| finding.is_against(class));
+            let is_doubt = finding.entry.sets == Confidence::Outside
+                && (finding.is_against(Verdict::None) || is_of_erosion);
+            let is_named = record.id == "no_filter" || record.id == EVIDENCE_SAFE;
+            if !is_doubt || (is_said && !is_named) {
                 continue;
             }
             reasons += 1;

@@ -54,11 +54,9 @@ impl RuleNote {
             Self::ByFines(times, until, fines) => {
                 let [width, until] = [until - FEW_FINES, until].map(given);
                 let fines = given((100.0 * fines).round() / 100.0);
-                let by_fines = format!("({until} - {fines})/{width} (4 D85B - 0.7) + 0.7");
-                return match times {
-                    1.0 => format!("{by_fines} mm for {fines} % fines"),
-                    times => format!("{} [{by_fines}] mm for {fines} % fines", given(times)),
-                };
+                let times = if times == 1.0 { String::new() } else { given(times) + " " };
+                let by_fines = format!("[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7]");
+                return format!("{times}{by_fines} mm for {fines} % fines");
             }
             Self::FloorGoverns(times, size) => {
                 return format!("its floor: {} D85B would be {} mm", given(times), rounded_down(size));
