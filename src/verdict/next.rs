@@ -91,19 +91,23 @@ impl Outcome {
             }
             _ => None,
         };
-        let beside = in_brackets(lower.into_iter().chain(self.if_dispersive_beside(most)));
-        let finer = format!("take a filter with a D15F of at most {} {unit}{beside}", rounded_down(most));
-        match self.least() {
-            Some((least, _)) if least <= most => format!("{finer} and at least {} {unit}", rounded_up(least)),
-            // What drains the base may be finer.
-            Some((_, Least::Enough)) => finer,
-            Some((least, Least::Needed)) => format!(
-                "{finer} (to drain the base it would be at least {} {unit}: compare the permeabilities of \
-                 filter and base)",
-                rounded_up(least)
-            ),
-            None => finer,
-        }
+        let (drains, dry) = match self.least() {
+            Some((least, _)) if least <= most => {
+                (format!(" and at least {} {unit}", rounded_up(least)), None)
+            }
+            Some((least, Least::Needed)) => {
+                let dry = format!(
+                    "to drain the base it would be at least {} {unit}: compare the permeabilities of filter \
+                     and base",
+                    rounded_up(least)
+                );
+                (String::new(), Some(dry))
+            }
+            // What drains the base may be finer than what is enough.
+            Some((_, Least::Enough)) | None => (String::new(), None),
+        };
+        let beside = in_brackets([lower, self.if_dispersive_beside(most), dry].into_iter().flatten());
+        format!("take a filter with a D15F of at most {} {unit}{beside}{drains}", rounded_down(most))
     }
 
     /// The floor of the limit of design, where it lies beyond what tests held.
