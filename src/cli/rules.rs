@@ -11,7 +11,9 @@ use crate::run::RunError;
 use crate::store::format;
 use crate::verdict::by_authority::stated_by;
 use crate::verdict::left_out::NOT_COVERED;
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
+use crate::verdict::rule_words::{
+    LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
+};
 use crate::verdict::{PairOptions, PairRules};
 use std::fmt::Write;
 use std::path::Path;
@@ -129,7 +131,7 @@ fn words(
         }
     }
     line(String::new());
-    line(NOT_COVERED.into());
+    line(format!("{LIMITS_ROUNDED} {NOT_COVERED}"));
     if let Some(stated) = &pair.by_authority {
         line(stated.said.clone());
     }
@@ -145,19 +147,15 @@ fn row(rule: &AppliedRule) -> String {
         RuleResult::ExcessiveNotJudged => RuleResult::NotReached.words(),
         of => of.words(),
     };
-    let sign = match limit_begins(rule) {
-        "≥" => ">=",
-        "≤" => "<=",
-        words => words,
-    };
-    let at_most = if rule.limit_at_most && !rule.at_least { " at most" } else { "" };
+    let begins = limit_begins(rule).replace('≥', ">=").replace('≤', "<=");
+    let ends = limit_ends(rule);
     let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
     let (value, limit) = match (rule.value, rule.limit) {
         (Some(value), Some(limit)) => value_and_limit(value, limit, rule.at_least, 3).map(Some).into(),
         (value, limit) => (Some(number(value)), limit.map(|limit| digits_within(limit, 3, rule.at_least))),
     };
     let value = value.unwrap_or_default();
-    let limit = limit.map_or(String::new(), |limit| format!(", {sign} {limit}{unit}{at_most}"));
+    let limit = limit.map_or(String::new(), |limit| format!(", {begins} {limit}{unit}{ends}"));
     format!("  {result:<12}{}: {} {} {value}{unit}{limit}", rule.name, rule.quantity, value_begins(rule))
 }
 

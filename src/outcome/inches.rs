@@ -12,18 +12,21 @@ const BETWEEN: [&str; 2] = [" to ", " and "];
 const OF_BAND: [&str; 3] = ["from ", "between ", "D15F "];
 
 /// What a limit is called before its number; the last of them in its clause counts.
-const LIMITS: [(&str, Limit); 12] = [
+const LIMITS: [(&str, Limit); 15] = [
     ("least", Limit::Least),
     ("minimum", Limit::Least),
     ("down to", Limit::Least),
     ("≥", Limit::Least),
     // The least itself is not known: what it is at most is no less than it.
     ("not known, and at most", Limit::Least),
-    ("not known; at most", Limit::Least),
+    ("D15B;", Limit::Least),
     ("not known. It is at most", Limit::Least),
     ("greatest", Limit::Greatest),
     ("maximum", Limit::Greatest),
     ("at most", Limit::Greatest),
+    ("D15F less than", Limit::Greatest),
+    ("to be less than", Limit::Greatest),
+    ("not stated: less than", Limit::Greatest),
     ("up to", Limit::Greatest),
     ("limit of design is", Limit::Greatest),
 ];
@@ -184,6 +187,7 @@ mod tests {
             ("D15F must be at least 0.14 mm to drain it and at most 0.7 mm to retain it.", up, down),
             ("The least is not known. It is at most 0.14 mm, and D15F must be at most 0.7 mm", up, down),
             ("the minimum that drains is not known, and at most 0.14 mm: D15F up to 0.7 mm", up, down),
+            ("≥ 5 D15B; 0.14 mm is enough, D15F is to be less than 0.7 mm", up, down),
             ("the minimum D15F is 0.14 mm, the maximum 0.7 mm", up, down),
             ("D15F 0.14 mm or more; limit of design is 0.7 mm", up, down),
             ("the greatest is not known; D85B 0.14 mm, D95B 0.7 mm", low, nearest),

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::names::{input_name, is_named, soil_name};
+use super::names::{as_sampled, input_name, is_named, soil_name};
 use super::numbers::{SizeUnit, in_digits, percent, trimmed};
 use super::shell::{clean, fact};
 use super::table::Table;
@@ -29,13 +29,18 @@ pub(super) struct TabledSoil<'a> {
 pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let inputs = &outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let soils = [
-        TabledSoil { kind: "Filter", name: &filter.name, rows: &filter.gradation },
-        TabledSoil { kind: "Base", name: &base.name, rows: &base.gradation },
-    ];
+    let sampled = base.as_sampled.as_ref();
+    let mut soils = vec![TabledSoil { kind: "Filter", name: &filter.name, rows: &filter.gradation }];
+    if let Some(sampled) = sampled {
+        let name = as_sampled(&base.name);
+        soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &sampled.gradation });
+    }
+    soils.push(TabledSoil { kind: "Base", name: &base.name, rows: &base.gradation });
     let note = html! {
         p.small {
-            "Percent finer by mass, as walked and as the rules read them; " (BETWEEN) " Files that they were \
+            "Percent finer by mass, as walked and as the rules read them"
+            @if sampled.is_some() { ", and of the base as it was sampled: permeability is judged by that" }
+            "; " (BETWEEN) " Files that they were \
              read from are kept in the folder " code { "inputs" } " of this run."
         }
     };

@@ -17,10 +17,11 @@ use crate::outcome::record::{
 };
 use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
 use crate::verdict::FOREMOST;
+use crate::verdict::beside::NOT_COUNTED;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::practice::standing;
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
+use crate::verdict::rule_words::{RuleResult, limit_begins, limit_ends, result_of, value_begins};
 use crate::verdict::words::capital;
 
 /// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
@@ -101,7 +102,7 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
                     p.counted { (alone) }
                 }
                 // Beside the mass that is counted.
-                @if let Some(not_counted) = outcome.sentence_of(NOT_COUNTED).filter(|_| *name == "Walk") {
+                @if let Some(not_counted) = outcome.not_counted().filter(|_| *name == "Walk") {
                     p.counted { (unbroken(&not_counted)) }
                 }
             }
@@ -114,9 +115,6 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
         }
     }
 }
-
-/// A part of the filter that the mass eroded does not know of.
-pub(super) const NOT_COUNTED: &str = "pan_of_filter";
 
 /// What is said of the thickness below the rules: how much was walked, and whether the verdict moves with it.
 const OF_THICKNESS: [&str; 2] = ["modelled_thickness", MOVES_WITH_THICKNESS];
@@ -223,13 +221,10 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         .text("limit", |rule| {
             let [_, limit] = value_and_limit(rule, unit);
             match limit.as_deref().map(clean) {
-                Some(limit) if rule.at_least && rule.limit_at_most => {
-                    html! { (limit_begins(rule)) " " span.q { (limit) } }
-                }
-                Some(limit) => html! {
-                    span.q { (limit_begins(rule)) " " (limit) }
-                    @if rule.limit_at_most { " or less" }
+                Some(limit) if rule.at_least && rule.limit_at_most => html! {
+                    span.q { (limit_begins(rule)) } " " span.q { (limit) (limit_ends(rule)) }
                 },
+                Some(limit) => html! { span.q { (limit_begins(rule)) " " (limit) } (limit_ends(rule)) },
                 None => html! { "–" },
             }
         })

@@ -172,7 +172,7 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
         h2 { "What the model found" }
         p.lead { b { (capital(outcome.verdict.words())) } ". " (in_words(outcome, walks)) }
         @if outcome.confidence != Confidence::Within {
-            p { "Confidence: " b { (outcome.confidence.words()) } "." }
+            p { "Confidence: " b { (clean(&outcome.confidence_in_words())) } "." }
         }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))

@@ -8,7 +8,9 @@ use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 use crate::verdict::by_authority::listed;
-use crate::verdict::rule_words::{RuleResult, limit_begins, result_of, value_begins};
+use crate::verdict::rule_words::{
+    LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
+};
 
 /// Digits of a value and a limit, where more are not needed to tell them apart.
 const DIGITS: i32 = 3;
@@ -22,6 +24,7 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
             p { (outcome.compared_with_tests()) }
+            p.small { (LIMITS_ROUNDED) }
             (table(&practice, unit))
             @if !walk.is_empty() {
                 h3 { "Comparisons of the walk with tests and with the paper" }
@@ -120,12 +123,10 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
         })
         .number("Limit", |rule| {
-            let is_open = rule.at_least && rule.limit_at_most;
-            let sign = limit_begins(rule);
+            let [begins, ends] = [limit_begins(rule), limit_ends(rule)];
             let [_, limit] = value_and_limit(rule, unit);
-            let limit =
-                clean(&limit.map_or_else(|| no_limit(rule).to_owned(), |limit| format!("{sign} {limit}")));
-            html! { (limit) @if rule.limit_at_most && !is_open { " or less" } }
+            let limit = limit.map(|limit| format!("{begins} {limit}{ends}"));
+            html! { (clean(&limit.unwrap_or_else(|| no_limit(rule).to_owned()))) }
         })
         .text("", |rule| match (rule.role, rule.met) {
             (RuleRole::Walk, Some(true)) => html! { "within" },

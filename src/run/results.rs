@@ -302,8 +302,10 @@ mod tests {
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = walked(25.0, 9.0, &[]).next_in_words();
-        let beside = "(if the base is dispersive, which is not stated, no source that was read gives a ";
+        let beside = "(if the base is dispersive, which is not stated: less than ";
         assert!(open.contains(beside), "{open}");
+        let test = " mm, by how much no source that was read says; have the pair tested)";
+        assert!(open.contains(test), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
             assert!(said.if_dispersive.is_none() && !said.next_in_words().contains("dispersive"), "{set}");
@@ -333,11 +335,79 @@ mod tests {
         let next = kept.next_in_words();
         assert!(
             next.contains(&format!(
-                "{test} (if it is dispersive, practice allows a D15F of 0.500 mm, which is met)"
+                "{test} (if it is dispersive, practice allows a D15F of at most 0.500 mm, which is met)"
             )),
             "{next}"
         );
         assert!(!kept.practice_in_words().contains("dispersive"));
+    }
+
+    /// With 38 % fines design allows more than the boundary of no erosion, and a dispersive base less. D15B of a
+    /// base whose finest sieve 38 % pass is finer than that: five times that sieve are enough.
+    #[test]
+    fn the_next_step_says_whose_limit_it_names_and_what_is_enough_to_drain() {
+        let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();
+        let lower = next("0.01,0\n0.075,38\n0.6,84\n4,100\n");
+        let begin = "take a filter with a D15F of at most 0.700 mm (the lower of design and no erosion; if the \
+                     base is dispersive, which is not stated: at most 0.500 mm, and have the pair tested) and \
+                     at least ";
+        assert!(lower.starts_with(begin), "{lower}");
+        let pan = next("0.075,38\n0.6,84\n4,100\n");
+        assert!(pan.starts_with(&format!("{begin}0.375 mm; for a filter that exists")), "{pan}");
+        // Above 40 % both have one number.
+        let one = next("0.01,0\n0.075,45\n0.6,84\n4,100\n");
+        assert!(!one.contains("the lower of"), "{one}");
+    }
+
+    /// Beyond every D15F without erosion the line of the walk has its place and no probability; a base that
+    /// erodes does so though a part of the filter is not counted; and the label says which range it means.
+    #[test]
+    fn the_line_of_the_walk_has_no_number_that_nobody_can_work_out() {
+        use crate::outcome::record::{Confidence, Evidence};
+        use crate::outcome::rules::BaseSoil;
+        use crate::verdict::finding;
+        let rows = "0.01,0\n0.075,25\n0.3,92\n0.6,100\n";
+        let points = [(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
+        let soil = BaseSoil::of(&crate::Gradation::from_points(&points, None).unwrap(), false);
+        let of = |d15f: f64| {
+            let walked = walked_base(rows, d15f, &[]);
+            let evidence = Evidence::of(&soil, walked.inputs.filter.d15_mm, Some(1.5), None);
+            Outcome { confidence: Confidence::Within, evidence, ..walked }
+        };
+        let (within, beyond) = (of(0.5), of(9.0));
+        let said = within.walk_in_words();
+        assert!(said.contains("Probability of no erosion in a test"), "{said}");
+        let said = beyond.walk_in_words();
+        assert!(!said.contains("robability") && said.contains(" times the highest D15F without "), "{said}");
+        assert!(beyond.evidence.is_some_and(|of| of.probability_by_tests.is_some()));
+
+        let found = [
+            finding::pan_of_filter(2.0).record(false),
+            finding::cu_unchecked("filter", 35.4, 1.2, 6.0).record(true),
+        ];
+        let of = |verdict| Outcome {
+            verdict,
+            confidence: Confidence::Outside,
+            findings: found.to_vec(),
+            ..within.clone()
+        };
+        for (verdict, erodes) in [
+            (Verdict::None, false),
+            (Verdict::Some, true),
+            (Verdict::Continuing, true),
+            (Verdict::Undecided, false),
+        ] {
+            let said = of(verdict).not_counted().unwrap();
+            assert_eq!(said.ends_with("favours holding. The base erodes all the same."), erodes, "{said}");
+        }
+        let range = "; outside checked range (Cu of the filter 35.4, checked for 1.2 to 6)";
+        let said = of(Verdict::Continuing).walk_in_words();
+        assert!(said.contains(range), "{said}");
+        // Where the next step names it the line of the walk does not.
+        let of = of(Verdict::None);
+        assert!(of.next_in_words().contains("Cu of the filter 35.4"), "{}", of.next_in_words());
+        assert!(!of.walk_in_words().contains("Cu of the filter"), "{}", of.walk_in_words());
+        assert!(of.confidence_in_words().ends_with(" (Cu of the filter 35.4, checked for 1.2 to 6)"));
     }
 
     /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
@@ -370,7 +440,10 @@ mod tests {
         // Of a base that is dispersive no size beyond what tests of such soils held is named.
         assert_eq!(
             next(2.2, &["base.dispersive=true"]),
-            format!("take a filter with a D15F of at most 0.111 mm and at least 0.100 mm; {exists}")
+            format!(
+                "take a filter with a D15F of at most 0.111 mm (the lower of design and no erosion) and at \
+                 least 0.100 mm; {exists}"
+            )
         );
         let fine = Outcome { verdict: Verdict::None, ..walked_base(CLAY, 0.08, &["base.dispersive=false"]) };
         assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.156 mm");
@@ -378,7 +451,9 @@ mod tests {
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {
             let said = walked_base(FAT, d15f, &["base.dispersive=false"]).next_in_words();
-            assert!(said.starts_with("take a filter with a D15F of at most 0.0450 mm (to drain"), "{said}");
+            let begin = "take a filter with a D15F of at most 0.0450 mm (the lower of design and no erosion; \
+                         to drain the base it would be at least 0.100 mm: compare ";
+            assert!(said.starts_with(begin), "{said}");
             assert!(!said.contains("0.200"), "{said}");
         }
         let said = Outcome { verdict: Verdict::None, ..walked_base(FAT, 0.04, &["base.dispersive=false"]) };

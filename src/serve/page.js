@@ -340,7 +340,7 @@ const ROLES = [["retention", "The filter retains the base"],
 const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
 
 function showRules(pair) {
-  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], bound: pair.value_begins[at] }))
+  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at] }))
     .filter((row) => row.named);
   const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
   const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
@@ -353,17 +353,17 @@ function showRules(pair) {
     ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map(({ named }) => named[0]).join("; "))
     : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
   el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source], shown: [value, limit], found, sign, bound }) => {
+  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source], shown: [value, limit], found, sign, ends, bound }) => {
     return el("tr", {}, el("td", {}, result(found)), el("td", {}, name),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
-      el("td", { class: "n" }, limit ? `${sign} ${limit}${rule.limit_at_most && !rule.at_least ? " at most" : ""}` : "–"),
+      el("td", { class: "n" }, limit ? `${sign} ${limit}${ends}` : "–"),
       el("td", { class: "small" }, [rule.note, rule.needs, source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
     ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
     ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
     ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rowsOfRole(role))));
-  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), scrolling("every rule", table)));
+  parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("p", { class: "small" }, pair.rounded), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }
 

@@ -6,7 +6,7 @@ use crate::outcome::numbers::SizeUnit;
 use crate::report::value_and_limit;
 use crate::verdict::PairRules;
 use crate::verdict::by_authority::listed;
-use crate::verdict::rule_words::{limit_begins, result_of, value_begins};
+use crate::verdict::rule_words::{LIMITS_ROUNDED, limit_begins, limit_ends, result_of, value_begins};
 
 /// Every rule with its words: the page shows value and limit as every sheet does, and works nothing out.
 pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
@@ -21,6 +21,7 @@ pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
     let shown: Vec<_> = rules.iter().map(|rule| value_and_limit(rule, SizeUnit::Mm)).collect();
     let results: Vec<_> = rules.iter().map(|rule| result_of(rule).words()).collect();
     let begins: Vec<_> = rules.iter().map(limit_begins).collect();
+    let ends: Vec<_> = rules.iter().map(limit_ends).collect();
     let values: Vec<_> = rules.iter().map(value_begins).collect();
     let mut value = serde_json::to_value(&pair)?;
     value["listed"] = json!(names);
@@ -28,5 +29,7 @@ pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
     value["shown"] = json!(shown);
     value["results"] = json!(results);
     value["limit_begins"] = json!(begins);
+    value["limit_ends"] = json!(ends);
+    value["rounded"] = json!(LIMITS_ROUNDED);
     Ok(value)
 }

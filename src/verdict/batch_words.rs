@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(
             of_dispersion(&rows.each_ref()).unwrap(),
             "not known whether dispersive: 2 samples with 15 % fines or more; if it is, practice allows less \
-             for A (D15F up to 0.500 mm)"
+             for A (D15F at most 0.500 mm)"
         );
         let said = of_dispersion(&[&rows[1]]).unwrap();
         assert_eq!(said, "not known whether dispersive: 1 sample with 15 % fines or more");

@@ -10,6 +10,9 @@ use crate::outcome::record::{
 };
 use crate::outcome::undecided::UndecidedBy;
 
+/// Id of a finest part of the filter that the mass eroded does not know of.
+pub const NOT_COUNTED: &str = "pan_of_filter";
+
 /// Above this part of its volume a void holds more than any packing of particles would.
 const ROOM: f64 = 0.6;
 
@@ -67,6 +70,14 @@ impl Outcome {
     pub fn sentence_of(&self, id: &str) -> Option<String> {
         let mut all = self.against().into_iter().chain(self.besides());
         all.find(|finding| finding.id == id).map(|finding| finding.sentence)
+    }
+
+    /// What the mass eroded does not know of the filter, and that the base erodes all the same where it does;
+    /// `None` where all of the filter is counted.
+    pub fn not_counted(&self) -> Option<String> {
+        let said = self.sentence_of(NOT_COUNTED)?;
+        let erodes = matches!(self.verdict, Verdict::Some | Verdict::Continuing);
+        Some(if erodes { said + " The base erodes all the same." } else { said })
     }
 
     /// What soils of the base's kind say of the walk, whichever way it points.

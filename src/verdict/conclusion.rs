@@ -8,7 +8,7 @@ use super::entry::{
     LOSES_FINES,
 };
 use super::practice::{Standing, broken, standing};
-use super::probability::{beside_range, stated};
+use super::probability::{beside_range, is_beyond_range, stated};
 use super::rule_words::against;
 use super::study_points::beside_ends;
 use super::tested::is_beyond_tests;
@@ -58,7 +58,12 @@ impl Outcome {
         let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
-            said += &format!("; {}", self.confidence.words());
+            // Why stands in the next step where that is to test the pair.
+            said += "; ";
+            match self.names_why_tested() {
+                true => said += self.confidence.words(),
+                false => said += &self.confidence_in_brief(),
+            }
         }
         if self.confidence == Confidence::Contradicted {
             said += &self.openings_of_few().unwrap_or_default();
@@ -162,11 +167,12 @@ impl Outcome {
         !self.confidence.hides_probability() && !is_beyond_tests(&self.rules)
     }
 
-    /// The probability that a test would show no erosion. Outside the checked range, and against practice,
-    /// nobody can answer for one: there stands where D15F lies beside the range of tests.
+    /// The probability that a test would show no erosion. Outside the checked range, against practice, and
+    /// beyond every D15F without erosion nobody can answer for one: there stands where D15F lies beside the
+    /// range of tests.
     pub fn beside_tests(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
-        if self.confidence.hides_probability() {
+        if self.confidence.hides_probability() || is_beyond_range(evidence.probability_by_tests) {
             return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?, ""));
         }
         let each = evidence.probabilities(is_beyond_tests(&self.rules))?;

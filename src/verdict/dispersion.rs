@@ -14,7 +14,10 @@ use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Verdict};
 use crate::outcome::rules::{NamedCurve, RuleInputs, apply};
 
-/// What to do where a filter is specified for a base for which no text has the limit.
+/// What to do where the limit of a pair is not known.
+const TEST_PAIR: &str = "have the pair tested";
+
+/// The same where a filter is specified for a base.
 const TEST_WITH_FILTER: &str = "have the base tested with the filter";
 
 impl IfDispersive {
@@ -24,9 +27,10 @@ impl IfDispersive {
             return None;
         }
         let rules = apply(if_dispersive);
-        let (_, d15f_max_mm) = retention(&rules, if_dispersive.filter.d(15.0).unwrap_or(1.0))?;
+        let (strictest, d15f_max_mm) = retention(&rules, if_dispersive.filter.d(15.0).unwrap_or(1.0))?;
         // A rule that is broken in any case no longer says what it lacks.
         let lack = match if_dispersive.size_of_base(85.0).is_known {
+            true if strictest.limit_at_most => DispersiveLack::AnyLimit,
             true => DispersiveLack::LimitOfDesign,
             false => DispersiveLack::D85B,
         };
@@ -46,96 +50,92 @@ impl IfDispersive {
     pub fn strictest(all: &[Self]) -> Option<Self> {
         let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
         let at_most = all.iter().any(|of| of.at_most);
-        Some(Self { at_most, lacks: least.lacks.or_else(|| all.iter().find_map(|of| of.lacks)), ..*least })
+        // Where the strictest is known, the limit is no less than another curve leaves open.
+        let of_another = || match all.iter().find_map(|of| of.lacks)? {
+            DispersiveLack::AnyLimit => Some(DispersiveLack::LimitOfDesign),
+            lack => Some(lack),
+        };
+        Some(Self { at_most, lacks: least.lacks.or_else(of_another), ..*least })
     }
 
     /// What stands behind a D15F (mm) that is recommended; `None` where it holds for a dispersive base too.
     pub fn beside(&self, d15f_mm: f64) -> Option<String> {
-        let limit = rounded_down(self.d15f_max_mm);
+        const IF: &str = "if the base is dispersive, which is not stated";
         match self.at_most {
-            true => Some(format!("if the base is dispersive, which is not stated, {}", self.open())),
+            true => Some(format!("{IF}: {}", self.limit_and(TEST_PAIR))),
             false if self.d15f_max_mm < d15f_mm => {
-                Some(format!("{limit} mm if the base is dispersive, which is not stated"))
+                Some(format!("{} mm {IF}", rounded_down(self.d15f_max_mm)))
             }
             false => None,
         }
     }
 
-    /// What is known of a limit that is not known itself: why, its most, and what to do.
-    fn open(&self) -> String {
-        self.open_with("have the pair tested")
-    }
-
-    /// The same, with what to do where no text has the limit.
-    fn open_with(&self, test: &'static str) -> String {
-        let (why, tests) = self.lack(test);
-        format!("{why}; it is at most {} mm: {tests}", rounded_down(self.d15f_max_mm))
-    }
-
-    /// Why a limit is not known itself, and what to do: this test, where no text has the limit.
-    fn lack(&self, test: &'static str) -> (&'static str, &'static str) {
-        match self.lacks {
-            Some(DispersiveLack::LimitOfDesign) => {
-                ("no source that was read gives a limit of design for such fines", test)
+    /// The limit of D15F, with what is not known of it. A limit that no source gives is never said to be that
+    /// of other bases.
+    fn limit(&self) -> String {
+        let most = rounded_down(self.d15f_max_mm);
+        match self.lacks.filter(|_| self.at_most) {
+            Some(DispersiveLack::AnyLimit) => {
+                format!("less than {most} mm, by how much no source that was read says")
             }
-            Some(DispersiveLack::D85B) => {
-                ("the limit is not known, as D85B is not", "have the base tested with a hydrometer")
-            }
-            None => ("the limit is not known", test),
+            Some(DispersiveLack::D85B) => format!("at most {most} mm, as D85B is not known"),
+            Some(DispersiveLack::LimitOfDesign) | None => format!("at most {most} mm"),
         }
+    }
+
+    /// The same with what to do where it is not known: this test, unless another tells it.
+    fn limit_and(&self, test: &'static str) -> String {
+        match (self.test(test), self.lacks) {
+            (None, _) => self.limit(),
+            (Some(test), Some(DispersiveLack::LimitOfDesign) | None) => {
+                format!("{}, and {test}", self.limit())
+            }
+            (Some(test), _) => format!("{}; {test}", self.limit()),
+        }
+    }
+
+    /// What tells a limit that is not known: this test, where no text has the limit.
+    fn test(&self, test: &'static str) -> Option<&'static str> {
+        self.at_most.then_some(match self.lacks {
+            Some(DispersiveLack::D85B) => "have the base tested with a hydrometer",
+            Some(DispersiveLack::LimitOfDesign | DispersiveLack::AnyLimit) | None => test,
+        })
     }
 
     /// The limit in words, of a pair.
     pub fn words(&self) -> String {
-        self.words_with("have the pair tested")
+        format!("D15F {}", self.limit_and(TEST_PAIR))
     }
 
     /// The same of a base for which a filter is specified.
     pub fn words_of_base(&self) -> String {
-        self.words_with(TEST_WITH_FILTER)
+        format!("D15F {}", self.limit_and(TEST_WITH_FILTER))
     }
 
-    /// The limit of a base for which a filter is specified, with why it is not known itself, as a clause of
-    /// its own; and the test that would tell it.
+    /// The limit of a base for which a filter is specified, as a clause of its own; and the test that would
+    /// tell one that is not known.
     pub fn limit_of_base(&self) -> (String, Option<&'static str>) {
-        let limit = format!("D15F is at most {} mm", rounded_down(self.d15f_max_mm));
-        match self.at_most {
-            true => {
-                let (why, test) = self.lack(TEST_WITH_FILTER);
-                (format!("{limit} ({why})"), Some(test))
-            }
-            false => (limit, None),
-        }
+        (format!("D15F is to be {}", self.limit()), self.test(TEST_WITH_FILTER))
     }
 
-    /// The same as a clause of its own: "D15F is at most 0.500 mm".
+    /// Both as one clause: "D15F is to be at most 0.500 mm".
     pub fn clause_of_base(&self) -> String {
-        match self.at_most {
-            true => self.words_of_base(),
-            false => self.limit_of_base().0,
-        }
-    }
-
-    fn words_with(&self, test: &'static str) -> String {
-        match self.at_most {
-            true => self.open_with(test),
-            false => format!("D15F up to {} mm", rounded_down(self.d15f_max_mm)),
-        }
+        format!("D15F is to be {}", self.limit_and(TEST_WITH_FILTER))
     }
 
     /// What practice says then of a filter of this D15F (mm), where that is known, and of these rules.
     pub fn of_filter(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> String {
-        let limit = rounded_down(self.d15f_max_mm);
+        let allows = format!("practice allows a D15F of at most {} mm", rounded_down(self.d15f_max_mm));
         match (d15f_mm.map(|d15f| self.is_broken_by(d15f)), self.at_most) {
-            (Some(true), _) => format!("practice allows a D15F of {limit} mm, which is not met"),
-            (_, true) => self.open(),
+            (Some(true), _) => format!("{allows}, which is not met"),
+            (_, true) => format!("D15F is to be {}", self.limit_and(TEST_PAIR)),
             (Some(false), false) => {
                 let lost = lost_beyond(rules, self.d15f_max_mm).map_or_else(String::new, |left| {
                     format!(" as placed, but not without the filter's finest {} %", fixed(left.percent, 1))
                 });
-                format!("practice allows a D15F of {limit} mm, which is met{lost}")
+                format!("{allows}, which is met{lost}")
             }
-            (None, false) => format!("practice allows a D15F of {limit} mm"),
+            (None, false) => allows,
         }
     }
 
@@ -224,14 +224,17 @@ mod tests {
             let (found, label) = said(Verdict::None, fines, 0.6);
             let (id, sentence) = found.unwrap();
             assert_eq!((id, label), ("dispersive_would_not_hold", Confidence::Outside));
-            assert!(sentence.contains("allows a D15F of 0.500 mm, and this is 0.600 mm"), "{sentence}");
+            assert!(
+                sentence.contains("allows a D15F of at most 0.500 mm, and this is 0.600 mm"),
+                "{sentence}"
+            );
             let (found, label) = said(Verdict::None, fines, 0.45);
             let (id, sentence) = found.unwrap();
             assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
             // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
             let then = match fines < 40.0 {
-                true => "limit of design for such fines; it is at most 0.500 mm: have the pair tested",
-                false => "allows a D15F of 0.500 mm, which is met",
+                true => "If it is, D15F is to be at most 0.500 mm, and have the pair tested. ",
+                false => "allows a D15F of at most 0.500 mm, which is met",
             };
             assert!(sentence.contains(then), "{sentence}");
         }
@@ -255,8 +258,7 @@ mod tests {
         let open = IfDispersive { d15f_max_mm: 0.5, at_most: true, lacks: None };
         assert_eq!(
             open.beside(0.4).unwrap(),
-            "if the base is dispersive, which is not stated, the limit is not known; it is at most 0.500 mm: \
-             have the pair tested"
+            "if the base is dispersive, which is not stated: at most 0.500 mm, and have the pair tested"
         );
     }
 
@@ -267,8 +269,8 @@ mod tests {
         let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
         let (id, sentence) = said_of(&clay, Verdict::None, 0.4).0.unwrap();
         assert_eq!(id, "dispersion_not_known");
-        let lacks = "If it is, the limit is not known, as D85B is not; it is at most 0.480 mm: have the base \
-                     tested with a hydrometer. ";
+        let lacks = "If it is, D15F is to be at most 0.480 mm, as D85B is not known; have the base tested \
+                     with a hydrometer. ";
         assert!(sentence.contains(lacks), "{sentence}");
         let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
         let (base, filter) = (soil(&clay), soil(&[(0.5, 0.0), (0.8, 15.0), (2.0, 100.0)]));
@@ -281,6 +283,10 @@ mod tests {
         let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
         let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
         assert_eq!(both, of(0.5, open.lacks));
+        // The limit that is known is not to be taken as lower.
+        let any = of(0.9, Some(DispersiveLack::AnyLimit));
+        assert_eq!(IfDispersive::strictest(&[any, of(0.5, None)]).unwrap(), both);
+        assert_eq!(IfDispersive::strictest(&[any, of(1.0, open.lacks)]).unwrap(), any);
     }
 
     /// Of a filter that practice allows, and that a dispersive base would have finer.
@@ -337,9 +343,10 @@ mod tests {
         let (found, label) = said(Verdict::None, 25.0, 0.6);
         let (id, sentence) = found.unwrap();
         assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-        assert!(
-            sentence.contains("If it is, no source that was read gives a limit of design for such fines; it")
-        );
+        // Of other bases the limit is 0.902 mm: no size that a dispersive one may have.
+        let less = "If it is, D15F is to be less than 0.902 mm, by how much no source that was read says; have \
+                    the pair tested. ";
+        assert!(sentence.contains(less), "{sentence}");
         assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
         for erodes in [Verdict::Some, Verdict::Continuing] {
             assert_eq!(said(erodes, 45.0, 0.6).0, None);

@@ -17,7 +17,7 @@
 use super::entry::{COHESIVE_FINES, Finding};
 use super::evidence_groups::{GROUPS, Group};
 use super::finding;
-use super::probability::{SOURCE, beside_range, named_beside_range, probabilities};
+use super::probability::{SOURCE, SURE, beside_range, named_beside_range, probabilities};
 use super::quantity::FindingValue;
 use super::rule_words::met_of;
 use super::tested::is_beyond_unclear;
@@ -44,9 +44,6 @@ pub const MASS_RATIO: f64 = 0.05;
 
 /// The layers of voids that were walked in the study.
 pub const LAYERS: u64 = 60;
-
-/// A probability is never nearer to 0 or 1 than this.
-const SURE: f64 = 0.02;
 
 impl Evidence {
     /// The evidence for a base, and a filter of this D15 (mm) and Cu, whose walk has this margin; `None`

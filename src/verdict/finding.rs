@@ -82,8 +82,8 @@ findings! {
     /// A filter too coarse for the base if that is dispersive.
     dispersive_would_not_hold(limit: Text, value: Text): Practice, Unsafe, Limits, against HELD;
         "dispersion", "rules.md",
-        "It is not known whether the base is dispersive. If it is, practice allows a D15F of {limit}, and \
-         this is {value}. The walk knows nothing of dispersion.",
+        "It is not known whether the base is dispersive. If it is, practice allows a D15F of at most \
+         {limit}, and this is {value}. The walk knows nothing of dispersion.",
         to do "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
 
     // What the amount of base does to a class.
@@ -555,8 +555,7 @@ findings! {
     /// A finest part of the filter that is not counted.
     pan_of_filter(share: Percent): Filter, Unsafe, Note;
         "finest part", "soils.md",
-        "The finest {share} of the filter is not counted: too much base is offered, and the filter may seem \
-         to hold.",
+        "The finest {share} of the filter is not counted: too much base is offered, which favours holding.",
         to do "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     loose_grains(loose: Percent): Filter, Open, Note;

@@ -23,7 +23,7 @@
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
 //!   and [`WalkedBatch`] is them with what their walks say.
 //! - `conclusion` has what every face says first: headline, line of practice, line of the walk; `next` has
-//!   what to do.
+//!   what to do, `reasons` why a pair lies outside what the model was checked against.
 //! - `words` are what a class means.
 
 mod amount;
@@ -55,6 +55,7 @@ pub(crate) mod practice;
 pub(crate) mod practice_words;
 mod probability;
 mod quantity;
+mod reasons;
 mod rule_notes;
 pub(crate) mod rule_words;
 mod specification;

@@ -1,18 +1,13 @@
 //! What to do next: which D15F a filter is to have, what to test, what to find out.
 
-use serde_json::Value as Json;
-
-use super::beside::is_evidence;
-use super::entry::{COHESIVE_FINES, EVIDENCE_UNSAFE};
+use super::entry::EVIDENCE_UNSAFE;
 use super::practice::{Standing, broken, standing};
-use super::quantity::FindingValue;
-use super::rule_words::{against, listed};
+use super::reasons::{REASONS, Reason};
+use super::rule_words::{NoMargin, against, listed, no_margin};
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
-use crate::outcome::record::{
-    AppliedRule, Confidence, FindingRecord, Outcome, RuleQuantity, RuleRole, Verdict,
-};
+use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
 use crate::outcome::rules::{
     DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority,
 };
@@ -20,9 +15,6 @@ use crate::outcome::undecided::UndecidedBy;
 
 /// What tells whether a base is dispersive.
 const TEST_OF_DISPERSION: &str = "have the base tested for dispersion by a pinhole or crumb test";
-
-/// Reasons that are named of those for which a pair is to be tested.
-const REASONS: usize = 3;
 
 impl Outcome {
     /// What to do next, in a sentence without its end.
@@ -110,17 +102,30 @@ impl Outcome {
     /// A filter with a D15F of at most so much, and of at least what drains the base.
     fn finer(&self, most: f64) -> String {
         let unit = self.unit();
-        let dispersive = self.if_dispersive_in_words(most);
-        let finer = format!("take a filter with a D15F of at most {} {unit}{dispersive}", rounded_down(most));
-        match self.least() {
-            Some(least) if least <= most => format!("{finer} and at least {} {unit}", rounded_up(least)),
-            Some(least) => format!(
-                "{finer} (to drain the base it would be at least {} {unit}: compare the permeabilities of \
-                 filter and base)",
-                rounded_up(least)
-            ),
-            None => finer,
-        }
+        // Where the limit of design alone is named behind it, this one needs no name.
+        let lower = match no_margin(&self.rules) {
+            Some(NoMargin::DesignIsAbove) if self.floor_beyond(most).is_none() => {
+                Some("the lower of design and no erosion".to_owned())
+            }
+            _ => None,
+        };
+        let (drains, dry) = match self.least() {
+            Some((least, _)) if least <= most => {
+                (format!(" and at least {} {unit}", rounded_up(least)), None)
+            }
+            Some((least, Least::Needed)) => {
+                let dry = format!(
+                    "to drain the base it would be at least {} {unit}: compare the permeabilities of filter \
+                     and base",
+                    rounded_up(least)
+                );
+                (String::new(), Some(dry))
+            }
+            // What drains the base may be finer than what is enough.
+            Some((_, Least::Enough)) | None => (String::new(), None),
+        };
+        let beside = in_brackets([lower, self.if_dispersive_beside(most), dry].into_iter().flatten());
+        format!("take a filter with a D15F of at most {} {unit}{beside}{drains}", rounded_down(most))
     }
 
     /// The floor of the limit of design, where it lies beyond what tests held.
@@ -167,17 +172,22 @@ impl Outcome {
         }
     }
 
-    /// The D15F that drains the base; `None` where it is not known.
-    fn least(&self) -> Option<f64> {
-        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
-        rule.filter(|rule| !rule.limit_at_most).and_then(|rule| rule.limit)
+    /// The D15F that drains the base, and whether it needs so much; `None` where neither is known.
+    fn least(&self) -> Option<(f64, Least)> {
+        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies)?;
+        let least = if rule.limit_at_most { Least::Enough } else { Least::Needed };
+        rule.limit.map(|limit| (limit, least))
     }
 
-    /// What a D15F that is recommended has to be if the base is dispersive, in brackets; empty where somebody
-    /// has said whether it is.
+    /// What a D15F that is recommended has to be if the base is dispersive; `None` where somebody has said
+    /// whether it is.
+    fn if_dispersive_beside(&self, most: f64) -> Option<String> {
+        self.if_dispersive.and_then(|of| of.beside(most))
+    }
+
+    /// The same in brackets; empty without it.
     fn if_dispersive_in_words(&self, most: f64) -> String {
-        let said = self.if_dispersive.and_then(|of| of.beside(most));
-        said.map_or_else(String::new, |said| format!(" ({said})"))
+        in_brackets(self.if_dispersive_beside(most))
     }
 
     fn of_drainage(&self) -> Option<String> {
@@ -237,17 +247,18 @@ impl Outcome {
         }
     }
 
+    /// Whether the next step is to have the pair tested, and says why the model is no check of it.
+    pub(super) fn names_why_tested(&self) -> bool {
+        let is_of_walk = matches!(standing(&self.rules), Standing::Met | Standing::NoRules)
+            && self.of_drainage().or_else(|| self.of_placing()).is_none();
+        is_of_walk && self.verdict == Verdict::None && self.undecided_by().is_none()
+    }
+
     /// Why a pair that the walk holds is to be tested all the same: in what its soils lie outside what the
     /// model was checked against, and what else its class hangs on.
     fn why_tested(&self) -> String {
-        let against = self.against();
-        let is_unsafe = against.iter().any(|finding| finding.id == EVIDENCE_UNSAFE);
-        let mut reasons: Vec<Reason> = Vec::new();
-        if self.confidence == Confidence::Outside {
-            for finding in against.iter().filter(|finding| !is_evidence(finding)) {
-                reasons.extend(Reason::of(finding).filter(|reason| !reasons.contains(reason)));
-            }
-        }
+        let is_unsafe = self.against().iter().any(|finding| finding.id == EVIDENCE_UNSAFE);
+        let mut reasons = self.reasons_outside();
         reasons.truncate(REASONS);
         let of = |kind: fn(&Reason) -> Option<&String>| reasons.iter().filter_map(kind).cloned();
         let soils: Vec<String> = of(Reason::soil).collect();
@@ -272,90 +283,19 @@ impl Outcome {
     }
 }
 
-/// Why a pair is to be tested, of one finding.
-#[derive(PartialEq)]
-enum Reason {
-    /// What a soil is that the model was not checked for.
-    Soil(String),
-    /// What else the class hangs on.
-    Other(String),
+/// What a least D15F is that drains a base.
+#[derive(Clone, Copy)]
+enum Least {
+    /// A finer filter may not drain it.
+    Needed,
+    /// D15B lies in the base's finest part: a finer filter may drain it, too.
+    Enough,
 }
 
-impl Reason {
-    /// The reason of a finding; `None` of one that is said elsewhere, and of findings of earlier versions.
-    fn of(finding: &FindingRecord) -> Option<Self> {
-        let text = |name: &str| finding.numbers.get(name).and_then(Json::as_str).unwrap_or_default();
-        let number = |name: &str| finding.numbers.get(name).and_then(Json::as_f64).unwrap_or(f64::NAN);
-        let percent = |name: &str| FindingValue::Percent(number(name)).shown(None);
-        let ratio = |name: &str| FindingValue::Ratio(number(name)).shown(None);
-        let least = |name: &str| FindingValue::LeastRatio(number(name)).shown(None);
-        let soil = |said: String| Some(Self::Soil(said));
-        match finding.id.as_str() {
-            COHESIVE_FINES => soil(format!("{} fines", percent("fines_percent"))),
-            "fines_not_sieved" => soil(format!("up to {} fines", percent("fines_percent"))),
-            "dispersive_base" => soil("dispersive base".into()),
-            "broadly_graded" | "not_regraded" => soil("broadly graded base".into()),
-            "gap_graded" => soil("gap-graded filter".into()),
-            "cu_unchecked" => soil(format!("Cu of the {} {}", text("soil"), ratio("cu"))),
-            "cu_at_least" => soil(format!("Cu of the {} above {}", text("soil"), least("cu"))),
-            "cu_in_doubt" => {
-                soil(format!("Cu of the {} at least {}{}", text("soil"), least("least"), text("how")))
-            }
-            "cu_unknown" => soil(format!("Cu of the {} not known", text("soil"))),
-            id => other(id).map(|said| Self::Other(said.into())),
-        }
-    }
-
-    fn soil(&self) -> Option<&String> {
-        if let Self::Soil(said) = self { Some(said) } else { None }
-    }
-
-    fn other(&self) -> Option<&String> {
-        if let Self::Other(said) = self { Some(said) } else { None }
-    }
-}
-
-/// What a class hangs on beside the kind of its soils, of one finding; `None` where that is said elsewhere.
-fn other(id: &str) -> Option<&'static str> {
-    Some(match id {
-        "worse_with_amount" => "the class changes with the amount of base",
-        "capped_base" | "few_particles" | "more_particles" | "low_mass_ratio" | "amount_unknown"
-        | "amount_held" | "guessed_grains" => "the model was not checked with this amount of base",
-        "pan_decides" | "pan_taken_as_likely" | "pan_readings_walked" | "pan_erodes" => {
-            "the sizes of the base's finest part are not known"
-        }
-        "coarse_base" => "the unit of the base's sizes is in doubt",
-        "regraded_elsewhere" => "the base was regraded in another size",
-        "library_of_any_density" => "the filter's density is not known",
-        "library_of_density" => "the constrictions are those of filters like this one",
-        "curve_range_decides"
-        | "curve_range_open"
-        | "other_curve"
-        | "like_none_of_the_library"
-        | "guessed_constrictions" => "the filter's constrictions are only roughly known",
-        "part_packed" | "floating_part_packed" | "loose_part_packed" => {
-            "the constrictions are those of the filter's finer part"
-        }
-        "skeleton" => "most grains of the filter lie loose between the coarse ones",
-        "layer_thicker" | "layers_thicker" | "copies_thicker" => {
-            "the modelled filter is thicker than the real one"
-        }
-        "thickness_without_unit" | "thickness_of_file" => "the thickness of the modelled filter is not known",
-        "given_network" => "the model was not checked with this network of voids",
-        "narrow_lattice" => "the modelled filter is too narrow",
-        "no_filter" => "the filter's gradation is not given",
-        "open_joint" => "an open joint was not walked",
-        "one_replicate" => "the walk rests on one network",
-        "few_replicates" => "the walk rests on few networks",
-        "decided_below_95" => "the class is decided at less than 95 % confidence",
-        "clogged_before" | "clogged" => "the filter clogged in the walk",
-        "trapped_could_turn" => "trapped particles could change the class",
-        "second_run_erodes" => "the base erodes in the second run",
-        "all_on_its_way" => "all of the base was inserted before any could be through the filter",
-        "arches" => "the law of clogging was not checked by filter tests",
-        "openings" => "the openings beside blocked particles were not checked by filter tests",
-        _ => return None,
-    })
+/// Clauses in brackets, behind a size; empty without any.
+fn in_brackets(said: impl IntoIterator<Item = String>) -> String {
+    let said: Vec<String> = said.into_iter().collect();
+    if said.is_empty() { String::new() } else { format!(" ({})", said.join("; ")) }
 }
 
 /// How few fines a filter is to have once it is placed.
@@ -377,65 +317,6 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::rules::TESTS_NO_EROSION;
     use crate::verdict::PairRules;
-
-    #[test]
-    fn a_pair_is_tested_for_what_its_soils_are() {
-        use crate::verdict::finding;
-        let said = |finding: crate::verdict::Finding| match Reason::of(&finding.record(true)) {
-            Some(Reason::Soil(said)) => said,
-            Some(Reason::Other(said)) => format!("other: {said}"),
-            None => String::new(),
-        };
-        let soil = [(0.01, 0.0), (0.075, 40.0), (2.0, 60.0), (19.0, 100.0)];
-        let regraded = Gradation::from_points(&soil, None).unwrap().regraded().why;
-        for (of, words) in [
-            (finding::cohesive_fines(88.0), "88 % fines"),
-            (finding::fines_not_sieved(25.0, 0.3), "up to 25 % fines"),
-            (finding::cu_at_least("base", 8.77, 0.002, 1.2, 4.5), "Cu of the base above 8.77"),
-            (finding::cu_unchecked("filter", 35.4, 1.2, 6.0), "Cu of the filter 35.4"),
-            (
-                finding::cu_in_doubt("base", 4.03, " as regraded", 1.2, 4.5),
-                "Cu of the base at least 4.03 as regraded",
-            ),
-            (finding::cu_unknown("base", 1.2, 4.5), "Cu of the base not known"),
-            (finding::dispersive_base(), "dispersive base"),
-            (finding::broadly_graded(31.0), "broadly graded base"),
-            (finding::not_regraded(4.75, &regraded), "broadly graded base"),
-            (finding::gap_graded(3.0, 0.5), "gap-graded filter"),
-            (
-                finding::worse_with_amount("", "", "0.25", "some erosion", ""),
-                "other: the class changes with the amount of base",
-            ),
-            (finding::library_of_any_density(10.0), "other: the filter's density is not known"),
-            (finding::few_replicates(3), "other: the walk rests on few networks"),
-            (finding::dispersive_would_not_hold("0.500 mm", "0.610 mm"), ""),
-        ] {
-            assert_eq!(said(of), words);
-        }
-    }
-
-    /// A finding that is renamed, or a new one, would leave a test without its reason.
-    #[test]
-    fn whatever_takes_a_class_out_of_the_checked_range_is_a_reason_to_test() {
-        use crate::outcome::record::Topic;
-        use crate::verdict::entry::DISPERSIVE_WOULD_NOT_HOLD;
-        let mut reasons = 0;
-        for finding in crate::verdict::finding::all_with(12.0, 3, "base") {
-            let record = finding.record(true);
-            // Of practice and of a search other lines speak; what comes first names the test of dispersion.
-            let is_said = matches!(record.about, Topic::Study | Topic::Practice)
-                || record.id == DISPERSIVE_WOULD_NOT_HOLD;
-            let is_doubt = finding.entry.sets == Confidence::Outside && finding.is_against(Verdict::None);
-            if !is_doubt || (is_said && record.id != "no_filter") {
-                continue;
-            }
-            reasons += 1;
-            let of = Reason::of(&record);
-            let said = of.as_ref().and_then(|of| of.soil().or(of.other())).cloned().unwrap_or_default();
-            assert!(!said.is_empty() && !said.contains("NaN"), "{}: {said:?}", record.id);
-        }
-        assert!(reasons > 30, "{reasons}");
-    }
 
     /// With 38 % fines the limit of design lies beyond the boundary that tests saw: no advice goes beyond it.
     #[test]

@@ -13,6 +13,15 @@ const AT_END: f64 = 0.005;
 /// Where the range was read.
 pub const SOURCE: &str = "Fell et al., Geotechnical Engineering of Dams, Table 9.2";
 
+/// A probability is never nearer to 0 or 1 than this.
+pub const SURE: f64 = 0.02;
+
+/// Whether a filter is coarser than any that held such soils in tests, by its probability from the range that
+/// they published: at its end nobody can tell the least probability from none.
+pub fn is_beyond_range(by_tests: Option<f64>) -> bool {
+    by_tests.is_some_and(|of| of <= SURE)
+}
+
 /// A probability of no erosion in words, with what it takes and what it is not for; the range of tests (mm),
 /// where that is known.
 pub fn stated(each: &str, range: Option<[f64; 2]>) -> String {
@@ -181,6 +190,14 @@ mod tests {
         assert_eq!(said(0.3, Bound::AtLeast), "60 % by the published range, at least 30 % by the walk");
         assert!(said(0.3, Bound::AtMost).starts_with("at most 30 % by the walk (the lower of two; "));
         assert!(said(0.9, Bound::AtLeast).starts_with("60 % by the published range (the lower of two; "));
+    }
+
+    #[test]
+    fn beyond_the_range_of_tests_no_probability_is_said() {
+        for (by_tests, is_beyond) in [(Some(SURE), true), (Some(0.021), false), (Some(0.98), false)] {
+            assert_eq!(is_beyond_range(by_tests), is_beyond, "{by_tests:?}");
+        }
+        assert!(!is_beyond_range(None));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
-use crate::gradation::{RegradeCause, RegradeReason};
+use crate::gradation::{FEW_FINES, RegradeCause, RegradeReason};
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up, significant};
 use crate::outcome::record::{RuleNote, RuleText};
 
@@ -51,6 +51,13 @@ impl RuleNote {
                  boundary of continuing erosion (Fell et al., section 9.3.2)"
             }
             Self::ExcessiveNotJudged => "continuing erosion not reached; excessive erosion not judged",
+            Self::ByFines(times, until, fines) => {
+                let [width, until] = [until - FEW_FINES, until].map(given);
+                let fines = given((100.0 * fines).round() / 100.0);
+                let times = if times == 1.0 { String::new() } else { given(times) + " " };
+                let by_fines = format!("[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7]");
+                return format!("{times}{by_fines} mm for {fines} % fines");
+            }
             Self::FloorGoverns(times, size) => {
                 return format!("its floor: {} D85B would be {} mm", given(times), rounded_down(size));
             }
@@ -58,7 +65,7 @@ impl RuleNote {
                 return format!("its floor: {} D15B is below {} mm", given(times), rounded_up(size));
             }
             Self::D15FAtMost => "D15F is finer than the finest sieve: at most this",
-            Self::LimitAtMost => "D15B is finer than the finest sieve: the limit is at most this",
+            Self::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed",
             Self::LimitAtLeast => "D15B is finer than the finest sieve; the limit is never less than this",
             Self::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this",
             Self::FinestSieveOfFilter(size) => {

@@ -3,7 +3,7 @@
 
 use crate::outcome::apart::{digits_of, value_and_limit};
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
-use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_NO_EROSION, authority};
 
 /// What a rule of practice found. Every face shows this, and none works it out by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,9 +67,23 @@ pub fn result_of(rule: &AppliedRule) -> RuleResult {
 pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     match (rule.role, rule.at_least, rule.limit_at_most) {
         (RuleRole::Continuation, ..) => "continuing beyond",
-        (_, true, true) => "not known; at most",
+        // The least follows from a size in the base's finest part, and what is enough for it is known.
+        (_, true, true) if rule.id == PERMEABILITY_LEAST => "≥ 3 D15B;",
+        (_, true, true) => "≥ 5 D15B;",
         (_, true, false) => "≥",
         (_, false, _) => "≤",
+    }
+}
+
+/// Said once where limits are listed: with the digits that are shown a reader finds others a little larger.
+pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
+
+/// What stands behind its limit, where that is not known itself.
+pub fn limit_ends(rule: &AppliedRule) -> &'static str {
+    match (rule.limit_at_most, rule.at_least) {
+        (true, true) => " is enough",
+        (true, false) => " or less",
+        (false, _) => "",
     }
 }
 

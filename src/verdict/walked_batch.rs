@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
-use super::probability::probabilities;
+use super::probability::{is_beyond_range, probabilities};
 use super::tested::is_beyond_tests;
 use crate::outcome::BaseSize;
 use crate::outcome::numbers::SizeUnit;
@@ -155,9 +155,9 @@ impl SampleWalk {
     }
 
     /// The probability of no erosion in a test, as `88 % by the published range, at least 93 % by the walk`;
-    /// `None` where [`Confidence::hides_probability`].
+    /// `None` where [`Confidence::hides_probability`], and beyond every D15F without erosion in tests.
     pub fn probability_in_words(&self) -> Option<String> {
-        if self.confidence.hides_probability() {
+        if self.confidence.hides_probability() || is_beyond_range(self.probability_by_tests) {
             return None;
         }
         let of_walk = (self.probability_no_erosion, self.probability_bound);

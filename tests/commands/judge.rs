@@ -132,7 +132,7 @@ fn what_nobody_said_of_dispersion_stands_where_no_erosion_is_said() {
     assert!(next.starts_with(&format!("Next: {test}; ")), "{next}");
     let (next, found, _) = judge("finer.csv", &[]);
     assert_eq!(found.unwrap().1, "dispersion_not_known");
-    let then = "(if it is dispersive, practice allows a D15F of 0.500 mm, which is met); ";
+    let then = "(if it is dispersive, practice allows a D15F of at most 0.500 mm, which is met); ";
     assert!(next.contains(&format!("{test} {then}")), "{next}");
     for known in [&["--set", "base.dispersive=false"][..], &["--dispersive"]] {
         let (next, found, outcome) = judge("finer.csv", known);
@@ -226,8 +226,8 @@ fn a_broken_rule_of_retention_stands_in_the_first_lines_of_every_verdict() {
         let next = match dispersive {
             false => {
                 "Next: take a filter with a D15F of at most 4.18 mm (if the base is dispersive, which is \
-                 not stated, no source that was read gives a limit of design for such fines; it is at \
-                 most 4.18 mm: have the pair tested); "
+                 not stated: less than 4.18 mm, by how much no source that was read says; have the pair \
+                 tested)"
             }
             true => "Next: take a finer filter; the limit lies below a D15F of 4.18 mm, and is not known; ",
         };

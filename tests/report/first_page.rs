@@ -6,7 +6,7 @@ use std::process::Command;
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{
     Classed, Confidence, Direction, FindingRecord, Outcome, PanBounds, PanReading, PanSize, RuleQuantity,
-    RuleRole, Statistic, Topic, Verdict, Weight,
+    RuleRole, SampledBase, Statistic, Topic, Verdict, Weight,
 };
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
@@ -179,7 +179,10 @@ fn a_washout_is_said_once_and_a_broad_base_among_the_first() {
     let next = plan.outcome.next_in_words();
     assert!(next.starts_with("take a filter with a D15F of at most 2.02 mm"), "{next}");
     assert!(next.contains(" and does not segregate (Cu of the filter "), "{next}");
-    assert!(next.contains("; a test of this one's internal stability would not settle its segregation"), "{next}");
+    assert!(
+        next.contains("; a test of this one's internal stability would not settle its segregation"),
+        "{next}"
+    );
 }
 
 #[test]
@@ -302,6 +305,30 @@ fn both_gradations_are_in_the_appendix() {
         assert!(appendix.contains(expected), "{expected}: {}", &appendix[..1200]);
     }
     assert!(appendix.find("19.05100") < appendix.find("0.663.25"), "the coarsest first");
+    assert!(!appendix.contains("as it was sampled"), "{appendix}");
+}
+
+/// Permeability, Cu and fines are read from the curve as it was sampled: both stand there.
+#[test]
+fn a_base_that_is_regraded_is_in_the_appendix_as_sampled_too() {
+    let mut plan = Plan::usual();
+    let base = &mut plan.outcome.inputs.base;
+    base.name = "Till, regraded on 4.75 mm".into();
+    base.regraded_at_mm = Some(4.75);
+    base.gradation = vec![[0.075, 25.0], [4.75, 100.0]];
+    base.as_sampled = Some(SampledBase {
+        d85_mm: Some(9.0),
+        d95_mm: Some(15.0),
+        d100_mm: 19.0,
+        gradation: vec![[0.075, 20.0], [4.75, 80.0], [19.0, 100.0]],
+    });
+    let text = words(&made(&plan).0);
+    let appendix = &text[text.find("Appendix: the two gradations").unwrap()..];
+    for expected in
+        ["and of the base as it was sampled", "Base, as sampled: Till", "4.7580", "Base: Till, regraded on"]
+    {
+        assert!(appendix.contains(expected), "{expected}: {appendix}");
+    }
 }
 
 #[test]

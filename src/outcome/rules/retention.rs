@@ -45,7 +45,7 @@ pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let of_base = times * inputs.size_of_base(85.0).most;
     let is_floor =
         !judged.limit_at_most && judged.limit == Some(DESIGN_FLOOR_MM) && of_base < DESIGN_FLOOR_MM;
-    judged.noted(is_floor.then_some(RuleNote::FloorGoverns(times, of_base)))
+    judged.noted(is_floor.then_some(RuleNote::FloorGoverns(times, of_base))).noted(formula(inputs, 1.0, 40.0))
 }
 
 /// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
@@ -59,7 +59,15 @@ pub fn no_erosion(inputs: &RuleInputs) -> Judged {
         (_, fines) if fines >= FEW_FINES => Limit::Is(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
         _ => Limit::Is(7.0 * d85b),
     };
-    by_fines(inputs, limit, false)
+    by_fines(inputs, limit, false).noted(formula(inputs, 1.6, 35.0))
+}
+
+/// How a limit between few fines and so many percent of them is worked out, for a reader who checks it.
+fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
+    let Fines::Percent(fines) = inputs.fines() else { return None };
+    let is_known = !inputs.dispersive && inputs.size_of_base(85.0).is_known;
+    let is_between = (FEW_FINES..until).contains(&fines);
+    (is_known && is_between).then_some(RuleNote::ByFines(times, until, fines))
 }
 
 /// The range of D15F (mm) in which tests of bases with so many percent of fines, after regrading, and this

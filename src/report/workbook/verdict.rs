@@ -151,7 +151,8 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
     let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
         (None, ..) => "",
         _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
-        (_, true, _) => "the least",
+        (_, true, false) => "the least",
+        (_, true, true) => "enough; the least is not known",
         (_, false, false) => "the most",
         (_, false, true) => "the most that it can be",
     };

@@ -263,12 +263,13 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
     assert_eq!(
         silty,
         "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before this band \
-         is specified. If it is, this band is not valid: D15F is at most 0.500 mm. Design again \
-         for a dispersive base"
+         is specified. If it is, this band is not valid: D15F is to be at most 0.500 mm. Design \
+         again for a dispersive base"
     );
     let open = said(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], nobody).unwrap();
     assert!(
-        open.contains(" mm (no source that was read gives a limit of design for such fines). Design again ")
+        open.contains(": D15F is to be less than ")
+            && open.contains(" mm, by how much no source that was read says. Design again ")
             && open.ends_with(", and have the base tested with the filter"),
         "{open}"
     );

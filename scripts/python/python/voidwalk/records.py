@@ -187,7 +187,7 @@ class IfDispersive(_IfDispersive, total=False):
     """
 
     at_most: bool
-    lacks: Optional[Literal["limit of design", "D85B"]]
+    lacks: Optional[Literal["limit of design", "any limit", "D85B"]]
 
 
 class ConstrictionsRecord(TypedDict):
