@@ -6,7 +6,7 @@ use std::process::Command;
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{
     Classed, Confidence, Direction, FindingRecord, Outcome, PanBounds, PanReading, PanSize, RuleQuantity,
-    RuleRole, Statistic, Topic, Verdict, Weight,
+    RuleRole, SampledBase, Statistic, Topic, Verdict, Weight,
 };
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
