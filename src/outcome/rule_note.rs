@@ -73,8 +73,8 @@ notes! {
     BeyondUnclearBoundary,
     /// The filter is finer than that, but nobody judges whether the erosion is excessive.
     ExcessiveNotJudged,
-    /// How the limit follows from fines and D85B: so many times the limit that ends at this share of fines (%),
-    /// for this share (%).
+    /// How the limit follows from fines and D85B: so many times the one that ends at this share of fines
+    /// (%), for this share (%).
     ByFines(f64, f64, f64),
     /// The limit of design is its floor: so many times D85B are less (mm).
     FloorGoverns(f64, f64),

@@ -342,14 +342,15 @@ mod tests {
         assert!(!kept.practice_in_words().contains("dispersive"));
     }
 
-    /// With 38 % fines design allows more than the boundary of no erosion, and a dispersive base less. D15B of a
+    /// With 38 % fines design allows more than the boundary of no erosion, a dispersive base less. D15B of a
     /// base whose finest sieve 38 % pass is finer than that: five times that sieve are enough.
     #[test]
     fn the_next_step_says_whose_limit_it_names_and_what_is_enough_to_drain() {
         let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();
         let lower = next("0.01,0\n0.075,38\n0.6,84\n4,100\n");
-        let begin = "take a filter with a D15F of at most 0.700 mm (the lower of design and no erosion; if the \
-                     base is dispersive, which is not stated: at most 0.500 mm, and have the pair tested) and \
+        let begin = "take a filter with a D15F of at most 0.700 mm (the lower of design and no erosion; if \
+                     the base is dispersive, which is not stated: at most 0.500 mm, and have the pair \
+                     tested) and \
                      at least ";
         assert!(lower.starts_with(begin), "{lower}");
         let pan = next("0.075,38\n0.6,84\n4,100\n");

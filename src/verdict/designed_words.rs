@@ -347,7 +347,7 @@ mod tests {
             "the 2 samples that are settled (1 is not) within the limit of silt: ",
             "Governing sample silt: no maximum D15F is known; practice allows ",
             "Then sand: D15F up to 0.650 mm (the walk)",
-            "2 samples with 15 % fines or more may be dispersive, which is not stated. If silt is, D15F is to be ",
+            "2 samples with 15 % fines or more may be dispersive, which is not stated. If silt is, D15F is ",
             " mm. Their bands, and the filter for all, are then not valid: design again for dispersive soils",
             "Not a complete specification: the maximum D90F is still to be set",
             "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",

@@ -344,8 +344,8 @@ mod tests {
         let (id, sentence) = found.unwrap();
         assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
         // Of other bases the limit is 0.902 mm: no size that a dispersive one may have.
-        let less = "If it is, D15F is to be less than 0.902 mm, by how much no source that was read says; have \
-                    the pair tested. ";
+        let less = "If it is, D15F is to be less than 0.902 mm, by how much no source that was read says; \
+                    have the pair tested. ";
         assert!(sentence.contains(less), "{sentence}");
         assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
         for erodes in [Verdict::Some, Verdict::Continuing] {

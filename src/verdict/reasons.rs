@@ -37,7 +37,7 @@ impl Outcome {
         format!("{label} ({})", said.join("; "))
     }
 
-    /// Why the pair lies outside what the model was checked against, each reason once; none where it does not.
+    /// Why the pair lies outside what the model was checked against, each once; none where it does not.
     pub(super) fn reasons_outside(&self) -> Vec<Reason> {
         let mut reasons: Vec<Reason> = Vec::new();
         if self.confidence == Confidence::Outside {
@@ -53,7 +53,7 @@ impl Outcome {
 /// Why a pair lies outside what the model was checked against, of one finding.
 #[derive(PartialEq)]
 pub(super) enum Reason {
-    /// What a soil is that the model was not checked for; with the range that it was checked for, if it is one.
+    /// What a soil is that the model was not checked for, with the range that was checked, if it is one.
     Soil(String, Option<[String; 2]>),
     /// What else the class hangs on.
     Other(String),

@@ -31,7 +31,7 @@ pub struct IfDispersive {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum DispersiveLack {
-    /// No source that was read gives a limit of design for such fines: the most is the boundary of no erosion.
+    /// No source that was read gives a limit of design for such fines: at most that of no erosion.
     #[serde(rename = "limit of design")]
     LimitOfDesign,
     /// No source that was read gives any limit for such fines: the most is the limit of bases that are not
