@@ -184,7 +184,10 @@ fn limits(of: &Specification) -> Markup {
             .render())
         @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
         @if of.if_dispersive_in_words(DESIGN_AGAIN).is_some() {
-            p { b { "Valid only for a base that tests show not to be dispersive." } " The maximum D90F is still to be set." }
+            p {
+                b { "Valid only for a base that tests show not to be dispersive." }
+                " The maximum D90F is still to be set."
+            }
         }
         p.small {
             "Percent finer by mass, rounded into the band. At most 5 % may be finer than \

@@ -63,8 +63,8 @@ impl Outcome {
         match placing.collect::<Vec<_>>() {
             placing if placing.is_empty() => format!("{stable}, or have its internal stability tested"),
             placing => format!(
-                "{stable} and does not segregate ({}); a test of this one's internal stability would not settle \
-                 its segregation",
+                "{stable} and does not segregate ({}); a test of this one's internal stability would not \
+                 settle its segregation",
                 listed(&placing)
             ),
         }
@@ -86,8 +86,8 @@ impl Outcome {
         }
     }
 
-    /// What to do about a filter that exists: beyond the boundary of continuing erosion no test of the pair is
-    /// to be waited for.
+    /// What to do about a filter that exists: beyond the boundary of continuing erosion no test of the pair
+    /// is to be waited for.
     fn of_a_filter_that_exists(&self) -> String {
         let boundary = self.rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.met == Some(false));
         match boundary.and_then(|rule| Some(rule.value? / rule.limit?)) {

@@ -199,13 +199,14 @@ impl Specification {
                     .into()
             }
             (false, [low, high]) if limit <= low * (1.0 + 1e-9) => format!(
-                "it is the lower end of the range in which tests put the boundary of no erosion ({} to {} mm; \
-                 Fell et al., Table 9.2)",
+                "it is the lower end of the range in which tests put the boundary of no erosion ({} to {} \
+                 mm; Fell et al., Table 9.2)",
                 rounded_down(low),
                 rounded_up(high)
             ),
             (false, [low, high]) => format!(
-                "it lies in the range in which tests put the boundary of no erosion ({} to {} mm; Fell et al., Table 9.2)",
+                "it lies in the range in which tests put the boundary of no erosion ({} to {} mm; Fell et \
+                 al., Table 9.2)",
                 rounded_down(low),
                 rounded_up(high)
             ),
