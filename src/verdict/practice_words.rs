@@ -140,8 +140,8 @@ fn compared_with_tests(
                  excessive erosion. "
         }
         Some(_) if is_unstable => {
-            "They agree for the filter as placed alone: it is not internally stable, and neither the walk nor \
-             these boundaries say what is left without its finer part. "
+            "They agree for the filter as placed alone: it is not internally stable, and neither the walk \
+             nor these boundaries say what is left without its finer part. "
         }
         Some(_) if has_fines => "",
         Some(_) => "Walk and tests agree here. ",

@@ -255,8 +255,8 @@ fn a_boundary_that_does_not_decide_is_not_in_bold() {
     assert!(beyond.contains("40.00") && !beyond.contains("<b>40.00</b>"), "{beyond}");
     let sheet = beyond.split("Other findings").next().unwrap();
     assert!(sheet.contains("The walk is no guide here: its boundary of no erosion is 8.9 times the centre"));
-    let said = "This limit has no margin: it is the lower end of the range in which tests put the boundary of no \
-                erosion";
+    let said = "This limit has no margin: it is the lower end of the range in which tests put the boundary \
+                of no erosion";
     assert!(sheet.contains(said));
     // What the walk decides: 2 D85B are 0.49 mm.
     let decides = written(&with(2.0), CSV);
