@@ -114,8 +114,9 @@ def faults_of_practice(line, hand):
         yield f"limit {sizes[2]}"
     beyond = "at least some erosion" if continuing is None or d15f <= continuing else "continuing erosion"
     wanted = "no erosion" if d15f <= no_erosion else beyond
-    # Within the limit of a dispersive base design and no erosion are one number.
-    if f"Foster and Fell: {wanted}" not in line and not (wanted == "no erosion" and "design and for no erosion alike" in line):
+    said = "criterion of no erosion met" if wanted == "no erosion" else wanted
+    # The limit of a dispersive base is that of no erosion, and taken for design, too.
+    if f"Foster and Fell: {said}" not in line and not (wanted == "no erosion" and "taken here for design, too" in line):
         yield f"Foster and Fell: not {wanted}"
     if wanted.startswith("at least") and "excessive erosion is not excluded" not in line:
         yield "nothing of excessive erosion"

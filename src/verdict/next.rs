@@ -46,13 +46,16 @@ impl Outcome {
     fn of_stability(&self) -> String {
         let mut whose: Vec<String> = Vec::new();
         for rule in broken(&self.rules, RuleRole::Stability) {
-            let name = authority(rule).to_owned();
+            // The year of a source stands in the table of rules.
+            let name = authority(rule).split(" (").next().unwrap_or_default().to_owned();
             if !whose.contains(&name) {
                 whose.push(name);
             }
         }
         let finer = match self.greatest() {
-            Some((limit, false)) => self.finer(limit) + " that is stable by ",
+            Some((limit, false)) => {
+                self.sized(limit, self.if_dispersive_in_brief(limit)) + " that is stable by "
+            }
             _ => "take a filter that is stable by ".into(),
         };
         let stable = finer + &listed(&whose);
@@ -101,7 +104,6 @@ impl Outcome {
 
     /// A filter with a D15F of at most so much, and of at least what drains the base.
     fn finer(&self, most: f64) -> String {
-        let unit = self.unit();
         // Where the limit of design alone is named behind it, this one needs no name.
         let lower = match no_margin(&self.rules) {
             Some(NoMargin::DesignIsAbove) if self.floor_beyond(most).is_none() => {
@@ -109,6 +111,13 @@ impl Outcome {
             }
             _ => None,
         };
+        self.sized(most, [lower, self.if_dispersive_beside(most)])
+    }
+
+    /// A filter with a D15F of at most so much, beside which this is said, and of at least what drains the
+    /// base.
+    fn sized(&self, most: f64, beside: impl IntoIterator<Item = Option<String>>) -> String {
+        let unit = self.unit();
         let (drains, dry) = match self.least() {
             Some((least, _)) if least <= most => {
                 (format!(" and at least {} {unit}", rounded_up(least)), None)
@@ -124,8 +133,17 @@ impl Outcome {
             // What drains the base may be finer than what is enough.
             Some((_, Least::Enough)) | None => (String::new(), None),
         };
-        let beside = in_brackets([lower, self.if_dispersive_beside(most), dry].into_iter().flatten());
+        let beside = in_brackets(beside.into_iter().chain([dry]).flatten());
         format!("take a filter with a D15F of at most {} {unit}{beside}{drains}", rounded_down(most))
+    }
+
+    /// The most of a limit that is stricter if the base is dispersive, where a test of that follows.
+    fn if_dispersive_in_brief(&self, most: f64) -> [Option<String>; 1] {
+        let stricter = self.if_dispersive.filter(|of| of.d15f_max_mm < most);
+        [stricter.map(|of| {
+            let at_most = if of.at_most { "at most " } else { "" };
+            format!("{at_most}{} mm if the base is dispersive", rounded_down(of.d15f_max_mm))
+        })]
     }
 
     /// The floor of the limit of design, where it lies beyond what tests held.

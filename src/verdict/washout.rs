@@ -111,7 +111,7 @@ impl Washout<'_> {
             format!(" and the boundary of continuing erosion ({})", against(rule, 3)[1])
         });
         format!(
-            "the filter is {}; without {} (the greatest part that fails by {}) its D15F is {}, \
+            "the filter is {}; without {} (by {}) its D15F is {}, \
              {beyond}{continuing}",
             not_stable(&self.unstable),
             self.part(),
@@ -191,8 +191,8 @@ pub(in crate::verdict) mod tests {
         assert_eq!(
             said,
             "the filter is not internally stable by Kézdi (4.13, limit 4.00), Kenney and Lau (0.800, limit \
-             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % (the greatest part \
-             that fails by Kézdi) its D15F is 2.83 mm, beyond both limits"
+             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % (by Kézdi) its D15F \
+             is 2.83 mm, beyond both limits"
         );
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();

@@ -245,7 +245,7 @@ pub const RULES: &[FilterRule] = &[
         says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
-        quantity: RuleQuantity::named("greatest D'15/d'85, split at 17.6 to 64.7 %"),
+        quantity: RuleQuantity::named("D'15/d'85, split at 17.6 to 64.7 %"),
         formula: "4",
         at_least: false,
         unit: RuleUnit::One,

@@ -140,6 +140,6 @@ mod tests {
     fn the_row_of_kezdi_names_the_splits_that_are_judged() {
         let [from, to] = KEZDI_RANGE.map(|of_fine_d85| of_fine_d85 / 0.85);
         let rule = RULES.iter().find(|rule| rule.id == "kezdi").unwrap();
-        assert_eq!(rule.quantity.to_string(), format!("greatest D'15/d'85, split at {from:.1} to {to:.1} %"));
+        assert_eq!(rule.quantity.to_string(), format!("D'15/d'85, split at {from:.1} to {to:.1} %"));
     }
 }
