@@ -105,7 +105,7 @@ fn limit(name: &str, of: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>
     let mut turn = || {
         // Until when is looked up on the clock, which takes less time to read.
         let (clock, begun, mut items) = (Instant::now(), spent(), 0);
-        while clock.elapsed() < LONG_ENOUGH {
+        while items == 0 || clock.elapsed() < LONG_ENOUGH {
             items += work();
         }
         (spent() - begun).as_nanos() as f64 / items as f64
@@ -270,11 +270,10 @@ impl Timed<'_> {
     where
         Self: 'a,
     {
-        let supply = self.supply();
-        let mut going = self.by_void.then(|| self.begun(&supply, isa));
-        Box::new(move || match &mut going {
-            Some(state) => self.go_on(&supply, state, isa),
-            None => self.go_on(&supply, &mut self.begun(&supply, isa), isa),
+        let (supply, mut going) = (self.supply(), None);
+        Box::new(move || match self.by_void {
+            true => self.go_on(&supply, going.get_or_insert_with(|| self.begun(&supply, isa)), isa),
+            false => self.go_on(&supply, &mut self.begun(&supply, isa), isa),
         })
     }
 }

@@ -26,7 +26,7 @@ KERNELS = {
     "insert, step and block": "walk/|stream|gradation/|kernel",
     "counts": "walk/counts|stream|kernel",
     "expected": "walk/|kernel",
-    "lattice": "network/cubic|constrictions/curve|stream|kernel",
+    "lattice": "network/cubic|constrictions/curve",
     "flow, from nothing": "network/",
     "contacts of grains": "packing/",
     "triangulation": "constrictions/triangulation",
@@ -48,12 +48,17 @@ def built():
 
 
 def samples(bench, kernel):
-    """How many samples were taken at each address of the program, and by name where it is another's code."""
+    """Lets `perf` look at one kernel, and gives what `counted` does."""
     with tempfile.NamedTemporaryFile() as file:
         record = ["perf", "record", "-q", "-e", "cpu-clock", "-F", "4000", "-o", file.name, bench, kernel]
         subprocess.run(record, check=True, capture_output=True)
-        script = ["perf", "script", "-i", file.name, "-F", "ip,sym,symoff,dso", "--no-demangle"]
-        lines = subprocess.run(script, check=True, capture_output=True, text=True).stdout.splitlines()
+        return counted(bench, file.name)
+
+
+def counted(bench, recorded):
+    """How many samples were taken at each address of the program, and by name where it is another's code."""
+    script = ["perf", "script", "-i", recorded, "-F", "ip,sym,symoff,dso", "--no-demangle"]
+    lines = subprocess.run(script, check=True, capture_output=True, text=True).stdout.splitlines()
     start = {}
     for line in subprocess.run(["nm", bench], check=True, capture_output=True, text=True).stdout.splitlines():
         parts = line.split()
@@ -101,7 +106,7 @@ def parts(bench, kernel, wanted):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--bench", help="a bench with line numbers")
+    parser.add_argument("--bench", help="a bench with line numbers, built before")
     parser.add_argument("kernels", nargs="*", metavar="KERNEL")
     arguments = parser.parse_args()
     bench = arguments.bench or built()

@@ -17,9 +17,8 @@ from statistics import median
 
 CACHE = {"second": "second cache", "third": "third cache"}
 
-INSERTED = "portable and AVX2: the inverse cube root; AVX-512: writing memory for the first time, drawing, summing masses (parts below)"
+INSERTED = "the inverse cube root, then random words and the sum of masses (parts below)"
 STEP = "random reads of the table; portable code: arithmetic in vectors of four, which hand-written SSE2 has no faster"
-PREDICATES = "a thousand dependent choices a grain: no simple limit (parts below)"
 
 #: Kernel: what an item is; what it takes; what holds it up next.
 KERNELS = {
@@ -39,25 +38,25 @@ KERNELS = {
         {"bytes": 36, "cache": "third", "operations": 150, "divisions": 2, "roots": 2, "words": 2},
         "two binomial draws a void and where they go (parts below)",
     ),
-    "expected": ("void and increment", {"bytes": 32, "cache": "third", "operations": 9}, "the third cache"),
-    "expected, small": ("void and increment", {"bytes": 32, "cache": "second", "operations": 9}, "calls and rows of 20 voids"),
+    "expected": ("void and increment", {"bytes": 32, "cache": "third", "operations": 9}, "bytes from the third cache"),
+    "expected, small": ("void and increment", {"bytes": 32, "cache": "second", "operations": 9}, "not taken apart: rows of 20 voids in the second cache"),
     "lattice": (
         "constriction",
         {"bytes": 11, "cache": "third", "operations": 6, "divisions": 2, "words": 1},
-        "one generator, whose words wait for one another; memory written for the first time (parts below)",
+        "not taken apart since a search became a look-up",
     ),
     "flow, from nothing": (
         "constriction",
         {"bytes": 108, "cache": "third", "operations": 16, "a round": True},
-        "the factor, which is made once, and sums that wait for one another (parts below)",
+        "down and up through the factor (parts below)",
     ),
     "contacts of grains": (
         "grain and step",
         {"bytes": 320, "cache": "second", "operations": 460, "divisions": 18, "roots": 12},
-        "gathers and scatters of grains, and pairs that do not touch (parts below)",
+        "which pairs touch, gathers and scatters, motion: the law is a tenth (parts below)",
     ),
-    "triangulation": ("grain", None, PREDICATES),
-    "constrictions": ("grain", None, "spheres and discs one after another, each with roots and divisions (parts below)"),
+    "triangulation": ("grain", None, "not taken apart"),
+    "constrictions": ("grain", None, "not taken apart"),
 }
 
 SHOWN = ["bytes", "reads", "operations", "divisions", "roots", "in order", "words"]
