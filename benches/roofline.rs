@@ -1,24 +1,32 @@
-//! How far each kernel is from what this machine could do: `cargo bench --bench roofline`, one thread.
+//! How far each kernel is from what this machine could do: `cargo bench --bench roofline`, one thread. Words
+//! behind `--` name kernels: of these alone, without the limits, so that a profiler sees one.
 //!
-//! First the machine's limits: what it copies a second by size of what it copies, a random read, multiplications and additions a second.
-//! Then the kernels, all of them in each of seven turns. Prints a line of JSON for each, with nanoseconds an item in every turn;
-//! `scripts/peers/roofline.py` puts bytes and operations beside them.
+//! First the machine's limits: what it copies a second by size of what it copies, a random read,
+//! multiplications and additions a second. Then the kernels, all of them in each of seven turns. Prints a line
+//! of JSON for each, with nanoseconds of processor time an item in every turn; `scripts/peers/roofline.py` puts
+//! bytes and operations beside them, and `scripts/peers/kernel_parts.py` names the functions they spend it in.
 
 use std::hint::black_box;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
+
+use rustix::time::{ClockId, clock_gettime};
 
 use bitvec::vec::BitVec;
 use voidwalk::constrictions::{Constrictions, Curve, DEFAULT_MERGE_OVERLAP, Facets, Triangulation, find};
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{CONDUCTANCE_EXPONENT, ExitRule, Flow, Network};
 use voidwalk::packing::{Compression, Settings, draw, random_start};
+use voidwalk::stream::{Key, LANES, Purpose};
 use voidwalk::walk::{Engine, Isa, RunPlan, SizeClasses, State, Supply, Walk, threads};
 
 const TURNS: usize = 7;
 
 /// Voids of the paper's lattice.
 const SHAPE: [u32; 3] = [40, 40, 60];
+
+/// Voids of a lattice whose numbers the second cache holds.
+const SMALL: [u32; 3] = [20, 20, 30];
 
 /// Least time of one measurement of a limit.
 const LONG_ENOUGH: Duration = Duration::from_millis(40);
@@ -31,20 +39,19 @@ fn main() {
 }
 
 fn all() {
-    for (kib, name) in
-        [(16, "first cache"), (512, "second cache"), (12 << 10, "third cache"), (1 << 20, "memory")]
-    {
-        limit("copy", name, &mut || copy(kib << 10));
-    }
-    limit("random read", "96,000 words", &mut || gather(96_000));
-    limit("random read", "64 MiB", &mut || gather(16 << 20));
-    for isa in isas() {
-        limit("multiply or add", isa.name(), &mut || multiply_add(isa));
-    }
     let curve = find("shire2016-cu1.5-loose").and_then(|shipped| shipped.curve()).expect("it is shipped");
     let network = Network::cubic(SHAPE, &curve, 1.0, 1).expect("a lattice");
-    let mut kernels = walks(&network, &curve);
+    let small = Network::cubic(SMALL, &curve, 1.0, 1).expect("a lattice");
+    let mut kernels = walks([&network, &small], &curve);
     kernels.extend(others(&curve));
+    let named: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    if named.is_empty() {
+        limits();
+    } else {
+        kernels.retain(|(name, isa, _)| {
+            named.iter().any(|word| word == name || *word == format!("{name} {isa}"))
+        });
+    }
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); kernels.len()];
     for _ in 0..TURNS {
         for ((_, _, kernel), found) in kernels.iter_mut().zip(&mut found) {
@@ -57,6 +64,24 @@ fn all() {
     }
 }
 
+/// What the machine does at best.
+fn limits() {
+    for (kib, name) in
+        [(16, "first cache"), (512, "second cache"), (12 << 10, "third cache"), (1 << 20, "memory")]
+    {
+        limit("copy", name, &mut || copy(kib << 10));
+    }
+    limit("random read", "96,000 words", &mut || gather(96_000));
+    limit("random read", "64 MiB", &mut || gather(16 << 20));
+    for isa in isas() {
+        limit("multiply or add", isa.name(), &mut || operations(isa, Operation::MultiplyOrAdd));
+        limit("divide", isa.name(), &mut || operations(isa, Operation::Divide));
+        limit("square root", isa.name(), &mut || operations(isa, Operation::Root));
+    }
+    limit("add in order", "any", &mut in_order);
+    limit("random word", "portable", &mut words);
+}
+
 fn print(kind: &str, name: &str, of: &str, ns: &[f64]) {
     let line = serde_json::json!({"kind": kind, "name": name, "of": of, "ns": ns});
     println!("{line}");
@@ -66,16 +91,24 @@ fn isas() -> impl Iterator<Item = Isa> {
     Isa::ALL.into_iter().filter(|isa| isa.is_available())
 }
 
+/// Processor time that this thread, the only one, has spent: what others take of the machine is not in it, but
+/// what they take of caches is.
+fn spent() -> Duration {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
 /// Repeats what gives its items until that takes long enough, in every turn.
 fn limit(name: &str, of: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>) {
     let mut work = work();
     work();
     let mut turn = || {
-        let (begun, mut items) = (Instant::now(), 0);
-        while begun.elapsed() < LONG_ENOUGH {
+        // Until when is looked up on the clock, which takes less time to read.
+        let (clock, begun, mut items) = (Instant::now(), spent(), 0);
+        while items == 0 || clock.elapsed() < LONG_ENOUGH {
             items += work();
         }
-        begun.elapsed().as_nanos() as f64 / items as f64
+        (spent() - begun).as_nanos() as f64 / items as f64
     };
     let found: Vec<f64> = (0..TURNS).map(|_| turn()).collect();
     print("limit", name, of, &found);
@@ -103,40 +136,80 @@ fn gather(words: usize) -> Box<dyn FnMut() -> u64> {
     })
 }
 
-/// Multiplications and additions in double precision, each on its own, as the kernels have them.
-fn multiply_add(isa: Isa) -> Box<dyn FnMut() -> u64> {
+/// Operations in double precision, each on its own, as the kernels have them.
+#[derive(Clone, Copy)]
+enum Operation {
+    MultiplyOrAdd,
+    Divide,
+    Root,
+}
+
+fn operations(isa: Isa, operation: Operation) -> Box<dyn FnMut() -> u64> {
     Box::new(move || match isa {
         // SAFETY: the machine has the instructions, as whoever names them has seen.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { sums_avx512() },
+        Isa::Avx512 => unsafe { many_avx512(operation) },
         // SAFETY: likewise.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { sums_avx2() },
-        _ => sums::<16>(),
+        Isa::Avx2 => unsafe { many_avx2(operation) },
+        _ => many::<16>(operation),
     })
 }
 
 #[inline(always)]
-fn sums<const SIDE_BY_SIDE: usize>() -> u64 {
+fn many<const SIDE_BY_SIDE: usize>(operation: Operation) -> u64 {
     const ROUNDS: u64 = 4096;
     let (mut a, by, more) = ([1.0f64; SIDE_BY_SIDE], black_box(0.999_999), black_box(1e-6));
-    for _ in 0..ROUNDS {
-        a.iter_mut().for_each(|a| *a = *a * by + more);
-    }
+    let rounds = 0..ROUNDS;
+    let each = match operation {
+        Operation::MultiplyOrAdd => {
+            rounds.for_each(|_| a.iter_mut().for_each(|a| *a = *a * by + more));
+            2
+        }
+        Operation::Divide => {
+            rounds.for_each(|_| a.iter_mut().for_each(|a| *a = by / *a));
+            1
+        }
+        // What is added keeps it from a root that is the number itself.
+        Operation::Root => {
+            rounds.for_each(|_| a.iter_mut().for_each(|a| *a = (*a + by).sqrt()));
+            1
+        }
+    };
     black_box(a);
-    2 * ROUNDS * SIDE_BY_SIDE as u64
+    each * ROUNDS * SIDE_BY_SIDE as u64
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn sums_avx2() -> u64 {
-    sums::<48>()
+fn many_avx2(operation: Operation) -> u64 {
+    many::<48>(operation)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn sums_avx512() -> u64 {
-    sums::<128>()
+fn many_avx512(operation: Operation) -> u64 {
+    many::<128>(operation)
+}
+
+/// Additions each of which waits for the one before it, as sums in a fixed order do.
+fn in_order() -> Box<dyn FnMut() -> u64> {
+    let numbers = vec![1e-6f64; 2048];
+    Box::new(move || {
+        black_box(black_box(&numbers).iter().sum::<f64>());
+        numbers.len() as u64
+    })
+}
+
+/// Random words of eight generators side by side, in portable code.
+fn words() -> Box<dyn FnMut() -> u64> {
+    let mut lanes = Key { seed: 1, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 }.lanes();
+    Box::new(move || {
+        (0..256).for_each(|_| {
+            black_box(lanes.next_blocks::<2>());
+        });
+        256 * 2 * LANES as u64
+    })
 }
 
 /// A base of this Cu whose D85 is so fine as `percent` of the constrictions; of 0, finer than half of each.
@@ -177,19 +250,19 @@ impl Timed<'_> {
 
     fn go_on(&self, supply: &Supply, state: &mut State, isa: Isa) -> (Duration, u64) {
         let mut walk = Walk::new(self.network, supply, state).with_isa(isa);
-        let (mut spent, mut items) = (Duration::ZERO, 0);
+        let (mut time, mut items) = (Duration::ZERO, 0);
         for _ in self.span[0]..self.span[1] {
             let t = state.increment + 1;
             items += match self.by_void {
                 true => self.network.voids() as u64,
                 false => state.tally.moving + supply.inserted(t) - supply.inserted(t - 1),
             };
-            let begun = Instant::now();
+            let begun = spent();
             walk.increment(state).expect("a step");
-            spent += begun.elapsed();
+            time += spent() - begun;
         }
         black_box(&state);
-        (spent, items)
+        (time, items)
     }
 
     /// What times a turn: one by one of a fresh walk; by void of one that goes on as it does, turn by turn.
@@ -197,17 +270,16 @@ impl Timed<'_> {
     where
         Self: 'a,
     {
-        let supply = self.supply();
-        let mut going = self.by_void.then(|| self.begun(&supply, isa));
-        Box::new(move || match &mut going {
-            Some(state) => self.go_on(&supply, state, isa),
-            None => self.go_on(&supply, &mut self.begun(&supply, isa), isa),
+        let (supply, mut going) = (self.supply(), None);
+        Box::new(move || match self.by_void {
+            true => self.go_on(&supply, going.get_or_insert_with(|| self.begun(&supply, isa)), isa),
+            false => self.go_on(&supply, &mut self.begun(&supply, isa), isa),
         })
     }
 }
 
-fn walks<'a>(network: &'a Network, curve: &Curve) -> Vec<Kernel<'a>> {
-    let of = |percent, cu, engine, n, increments, span, by_void| Timed {
+fn walks<'a>([network, small]: [&'a Network; 2], curve: &Curve) -> Vec<Kernel<'a>> {
+    let on = |network, percent, cu, engine, n, increments, span, by_void| Timed {
         network,
         sampler: sampler(curve, percent, cu),
         engine,
@@ -216,12 +288,16 @@ fn walks<'a>(network: &'a Network, curve: &Curve) -> Vec<Kernel<'a>> {
         span,
         by_void,
     };
+    let of = |percent, cu, engine, n, increments, span, by_void| {
+        on(network, percent, cu, engine, n, increments, span, by_void)
+    };
     let all = [
         ("insert and step", of(5.0, 4.5, Engine::Particles, 1 << 20, 1, [0, 1], false)),
         ("step", of(5.0, 4.5, Engine::Particles, 1 << 20, 1, [1, 60], false)),
         ("insert, step and block", of(50.0, 4.5, Engine::Particles, 1 << 17, 1, [0, 1], false)),
         ("counts", of(0.0, 1.2, Engine::Counts, 4_000_000_000, 4000, [200, 220], true)),
         ("expected", of(0.0, 1.2, Engine::Expected, 4_000_000_000, 4000, [200, 220], true)),
+        ("expected, small", on(small, 0.0, 1.2, Engine::Expected, 500_000_000, 4000, [200, 220], true)),
     ];
     let mut kernels: Vec<Kernel> = Vec::new();
     for (name, timed) in all {
@@ -232,9 +308,9 @@ fn walks<'a>(network: &'a Network, curve: &Curve) -> Vec<Kernel<'a>> {
 }
 
 fn timed<T>(items: u64, work: impl FnOnce() -> T) -> (Duration, u64) {
-    let begun = Instant::now();
+    let begun = spent();
     black_box(work());
-    (begun.elapsed(), items)
+    (spent() - begun, items)
 }
 
 /// Lattice, flow, packing and triangulation: one set of instructions each.
@@ -244,6 +320,9 @@ fn others<'a>(curve: &'a Curve) -> Vec<Kernel<'a>> {
     let water = lattice().undirected_lattice(ExitRule::Flux, 0.0, CONDUCTANCE_EXPONENT).expect("with flow");
     let open: BitVec = BitVec::repeat(false, water.constrictions());
     let links = water.constrictions() as u64 / 2;
+    let mut flow = Flow::new(&water);
+    flow.solve(&water, &open).expect("a flow");
+    print("count", "rounds", "flow, from nothing", &[flow.rounds() as f64]);
     let settings = Settings { grains: 1000, ..Settings::default() };
     let gradation = Gradation::linear_from_d0(1.0, 3.0).expect("a filter");
     let start = random_start(&draw(&gradation, settings.grains, 1), &settings).expect("a start");

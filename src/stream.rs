@@ -219,6 +219,29 @@ impl Lanes {
         out
     }
 
+    /// The same with AVX2: four generators a register.
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(crate) fn next_blocks_avx2<const N: usize>(&mut self, out: &mut [[u64; LANES]; N]) {
+        use std::arch::x86_64::{_mm256_loadu_si256, _mm256_storeu_si256};
+        let mut halves = self.state.each_mut().map(|row| row.as_chunks_mut::<4>().0);
+        for half in 0..LANES / 4 {
+            let words = halves.each_mut().map(|row| row[half].as_mut_ptr());
+            // SAFETY: a half has four words.
+            let mut state = words.map(|words| unsafe { _mm256_loadu_si256(words.cast()) });
+            for block in out.iter_mut() {
+                let next = next_of_four(&mut state);
+                // SAFETY: likewise.
+                unsafe { _mm256_storeu_si256(block.as_chunks_mut::<4>().0[half].as_mut_ptr().cast(), next) };
+            }
+            for (words, state) in words.into_iter().zip(state) {
+                // SAFETY: likewise.
+                unsafe { _mm256_storeu_si256(words.cast(), state) };
+            }
+        }
+    }
+
     /// The same `N` times, one after the other.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
@@ -269,6 +292,22 @@ fn next_of_registers(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
     bytemuck::cast(out)
 }
 
+/// Next word of four generators; their state by word.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(crate) fn next_of_four(state: &mut [std::arch::x86_64::__m256i; 4]) -> std::arch::x86_64::__m256i {
+    use std::arch::x86_64::*;
+    let [s0, s1, s2, s3] = *state;
+    let sum = _mm256_add_epi64(s0, s3);
+    let turned = _mm256_or_si256(_mm256_slli_epi64::<23>(sum), _mm256_srli_epi64::<41>(sum));
+    let (t, s2, s3) = (_mm256_slli_epi64::<17>(s1), _mm256_xor_si256(s2, s0), _mm256_xor_si256(s3, s1));
+    let (s1, s0_next) = (_mm256_xor_si256(s1, s2), _mm256_xor_si256(s0, s3));
+    let s3 = _mm256_or_si256(_mm256_slli_epi64::<45>(s3), _mm256_srli_epi64::<19>(s3));
+    *state = [s0_next, s1, _mm256_xor_si256(s2, t), s3];
+    _mm256_add_epi64(turned, s0)
+}
+
 /// Sixteen-bit draw `j` of a block, `j < DRAWS_PER_BLOCK`.
 #[inline(always)]
 pub fn draw16(block: &[u64; LANES], j: usize) -> u16 {
@@ -281,10 +320,19 @@ pub fn below(word: u64, n: u64) -> u64 {
     ((u128::from(word) * u128::from(n)) >> 64) as u64
 }
 
+/// [`below`] for fewer than 2^32 values, of products that vector code has.
+#[inline(always)]
+pub fn below_32(word: u64, n: u32) -> u32 {
+    let (high, low) = (word >> 32, word & u64::from(u32::MAX));
+    ((high * u64::from(n) + (low * u64::from(n) >> 32)) >> 32) as u32
+}
+
 /// `word` as an f64 strictly between 0 and 1 (53 bits, centred).
 #[inline(always)]
 pub fn unit(word: u64) -> f64 {
-    ((word >> 12) as f64 + 0.5) * (1.0 / (1u64 << 52) as f64)
+    // As the mantissa of a number from 1 to 2, of which all but half of the last bit is taken: exact, and many
+    // machines have no instruction that makes floats of several 64-bit integers.
+    f64::from_bits(1.0f64.to_bits() | word >> 12) - (1.0 - f64::EPSILON / 2.0)
 }
 
 #[cfg(test)]
@@ -331,6 +379,36 @@ mod tests {
             assert_eq!(at_once.next_blocks::<2>(), [each.next_block(), each.next_block()]);
             assert_eq!(at_once.next_blocks::<1>(), [each.next_block()]);
             assert_eq!(at_once.state, each.state);
+        }
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn blocks_by_four_are_one_after_the_other() {
+        if !is_x86_feature_detected!("avx2") {
+            return;
+        }
+        let (mut by_four, mut each) = (key(2, 5).lanes(), key(2, 5).lanes());
+        for _ in 0..100 {
+            let mut blocks = [[0; LANES]; 3];
+            // SAFETY: the machine has AVX2.
+            unsafe { by_four.next_blocks_avx2(&mut blocks) };
+            assert_eq!(blocks, [each.next_block(), each.next_block(), each.next_block()]);
+            assert_eq!(by_four.state, each.state);
+        }
+    }
+
+    #[test]
+    fn a_word_gives_the_same_number_and_the_same_value_below_n_by_every_way() {
+        let words =
+            [0, 1, 4095, 4096, u64::MAX, u64::MAX - 4095, 1 << 63, (1 << 63) - 1, 1 << 32, 0xffff_ffff];
+        let mut draws = key(1, 2).generator();
+        for word in words.into_iter().chain((0..100_000).map(|_| draws.next_u64())) {
+            assert_eq!(unit(word), ((word >> 12) as f64 + 0.5) * (1.0 / (1u64 << 52) as f64));
+            assert!(0.0 < unit(word) && unit(word) < 1.0);
+            for n in [1, 2, 3, 1600, 96_000, 1 << 31, u32::MAX] {
+                assert_eq!(u64::from(below_32(word, n)), below(word, u64::from(n)), "{word} {n}");
+            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! A constriction size distribution, by number.
 
 use crate::gradation::{Direction, NumberError, Row, Table, TableError, check_size, rising};
+use crate::stream::unit;
 use std::fmt;
 use std::path::Path;
 
@@ -172,16 +173,29 @@ impl Curve {
         if !(0.0..=100.0).contains(&percent) {
             return None;
         }
-        let i = self.percent.partition_point(|&p| p < percent);
-        if i == 0 {
-            return Some(self.diameter[0]);
+        match self.percent.partition_point(|&p| p < percent) {
+            0 => Some(self.diameter[0]),
+            i => Some(self.up_to(i).at(percent)),
         }
-        let (p, q) = (self.percent[i - 1], self.percent[i]);
-        let (a, b) = (self.diameter[i - 1], self.diameter[i]);
-        if percent == q {
-            return Some(b);
-        }
-        Some((a + (percent - p) / (q - p) * (b - a)).clamp(a, b))
+    }
+
+    /// The part of the curve that ends with point `i`, which is not the first.
+    #[inline(always)]
+    fn up_to(&self, i: usize) -> Part {
+        let of = |points: &[f64]| [points[i - 1], points[i]];
+        Part { percent: of(&self.percent), diameter: of(&self.diameter) }
+    }
+
+    /// The diameters that random words draw: those of [`Curve::quantile`] at [`unit`] of each.
+    pub(crate) fn draws(&self) -> CurveDraws<'_> {
+        // There are two points at least, the first at 0 %.
+        let mut end = 1;
+        let of_bucket = |bucket: u64| {
+            let percent = 100.0 * unit(bucket << BELOW_BUCKET);
+            end += self.percent[end..].iter().take_while(|&&p| p < percent).count();
+            end as u32
+        };
+        CurveDraws { curve: self, end: (0..=u64::MAX >> BELOW_BUCKET).map(of_bucket).collect() }
     }
 
     /// Percent of the constrictions, by number, no larger than `diameter` (in this curve's unit).
@@ -258,6 +272,60 @@ impl Curve {
     }
 }
 
+/// A part of a curve that is straight in percent against diameter.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    /// At its ends.
+    percent: [f64; 2],
+    diameter: [f64; 2],
+}
+
+impl Part {
+    /// The diameter at `percent`, which is above the first end and no more than the second.
+    #[inline(always)]
+    fn at(self, percent: f64) -> f64 {
+        let ([p, q], [a, b]) = (self.percent, self.diameter);
+        let d = a + (percent - p) / (q - p) * (b - a);
+        let d = if d < a { a } else { d };
+        let d = if d > b { b } else { d };
+        if percent == q { b } else { d }
+    }
+}
+
+/// Bits of a word below those of its bucket: 1,024 buckets.
+const BELOW_BUCKET: u32 = 54;
+
+/// Words whose diameters are drawn together.
+const AT_ONCE: usize = 64;
+
+/// The inverse of a curve for random words: where each is on the curve is looked up, not searched for.
+pub(crate) struct CurveDraws<'a> {
+    curve: &'a Curve,
+    /// By bucket, the upper bits of a word: the point that ends the part of its smallest word.
+    end: Vec<u32>,
+}
+
+impl CurveDraws<'_> {
+    /// The diameters, in the curve's unit, that the words which `next` gives draw one after another.
+    pub(crate) fn fill(&self, mut next: impl FnMut() -> u64, out: &mut [f32], unit_mm: f64) {
+        for out in out.chunks_mut(AT_ONCE) {
+            let (mut percent, mut parts) = ([0.0; AT_ONCE], [Part::default(); AT_ONCE]);
+            for (percent, part) in percent.iter_mut().zip(&mut parts).take(out.len()) {
+                let word = next();
+                *percent = 100.0 * unit(word);
+                let mut end = self.end[(word >> BELOW_BUCKET) as usize] as usize;
+                while self.curve.percent[end] < *percent {
+                    end += 1;
+                }
+                *part = self.curve.up_to(end);
+            }
+            for ((out, &percent), part) in out.iter_mut().zip(&percent).zip(&parts) {
+                *out = (part.at(percent) / unit_mm) as f32;
+            }
+        }
+    }
+}
+
 /// Which of `known` is most like `name`; none where `known` is empty.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known.into_iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)))
@@ -311,6 +379,31 @@ mod tests {
         assert_eq!((c.dc(-0.1), c.dc(100.1), c.dc(f64::NAN)), (None, None, None));
         assert_eq!((c.quantile(-1.0), c.quantile(2.0)), (0.1, 0.3));
         assert_eq!((c.percent_smaller(0.0), c.percent_smaller(1.0)), (0.0, 100.0));
+    }
+
+    /// Of curves with one size, steps, levels, and many points: at bounds of buckets, beside them, anywhere.
+    #[test]
+    fn words_draw_what_the_quantile_of_each_is() {
+        let many: Vec<_> = (0..=5000).map(|i| (0.02 * f64::from(i), 0.1 + 1e-5 * f64::from(i))).collect();
+        let steps = [(0.0, 0.1), (30.0, 0.2), (60.0, 0.2), (60.0, 0.4), (60.1, 0.4), (100.0, 0.5)];
+        let crowded = [(0.0, 0.1), (1e-15, 0.2), (1e-13, 0.3), (100.0 - 1e-13, 0.4), (100.0, 0.5)];
+        let all: [&[(f64, f64)]; 5] =
+            [&[(100.0, 0.2)], &[(20.0, 0.2), (100.0, 0.4)], &steps, &crowded, &many];
+        for points in all {
+            let curve = curve(points);
+            let bounds = (0..1 << 10).flat_map(|bucket: u64| {
+                let first = bucket << BELOW_BUCKET;
+                [first, first + 4095, first + 4096, first.wrapping_sub(1), first.wrapping_sub(4097)]
+            });
+            let anywhere = (0..10_000).map(|i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+            let words: Vec<u64> = bounds.chain(anywhere).collect();
+            let (mut drawn, mut next) = (vec![0.0; words.len()], words.iter());
+            curve.draws().fill(|| *next.next().unwrap(), &mut drawn, 0.7);
+            for (word, drawn) in words.iter().zip(drawn) {
+                assert_eq!((curve.quantile(unit(*word)) / 0.7) as f32, drawn, "{word}");
+            }
+            assert!(next.next().is_none());
+        }
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The inverse cube root, in operations that give the same bits on every machine.
+//! Inverse cube roots, in operations that give the same bits on every machine.
 
 /// Top half of the bits of the start value at x = 1, in units of the exponent's lowest bit / 2^20.
 ///
@@ -7,19 +7,33 @@
 const MAGIC: u64 = 0x553e_f0ff;
 
 /// `x^(-1/3)` for a positive normal `x`, within 2 units in the last place.
+#[inline(always)]
+pub(crate) fn inverse_cube_root(x: f64) -> f64 {
+    inverse_cube_roots(&[x])[0]
+}
+
+/// [`inverse_cube_root`] of each number.
 ///
 /// Two steps of fourth order for `z^-3 = x`: with `e = 1 - x z^3`,
 /// `z (1 - e)^(-1/3) = z (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. Only additions and multiplications
-/// of f64, in this order: no library call, no fused operation, and no branch, so that a loop over a
-/// slice becomes vector code.
+/// of f64, in this order: no library call, no fused operation, and no branch, so that the loops become vector
+/// code. Each step takes two short loops over all: of one root after another, a machine would wait for each
+/// operation's result before the next.
 #[inline(always)]
-pub(crate) fn inverse_cube_root(x: f64) -> f64 {
-    let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
-    let mut z = f64::from_bits((MAGIC - third) << 32);
+pub(super) fn inverse_cube_roots<const N: usize>(x: &[f64; N]) -> [f64; N] {
+    let (mut z, mut e) = ([0.0; N], [0.0; N]);
+    for (z, x) in z.iter_mut().zip(x) {
+        let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
+        *z = f64::from_bits((MAGIC - third) << 32);
+    }
     for _ in 0..2 {
-        let e = 1.0 - x * (z * z * z);
-        let series = e * (1.0 / 3.0 + e * (2.0 / 9.0 + e * (14.0 / 81.0)));
-        z += z * series;
+        for ((e, z), x) in e.iter_mut().zip(&z).zip(x) {
+            *e = 1.0 - x * (z * z * z);
+        }
+        for (z, e) in z.iter_mut().zip(&e) {
+            let series = e * (1.0 / 3.0 + e * (2.0 / 9.0 + e * (14.0 / 81.0)));
+            *z += *z * series;
+        }
     }
     z
 }

@@ -1,6 +1,6 @@
 //! Drawing diameters by number.
 
-use super::root::inverse_cube_root;
+use super::root::{inverse_cube_root, inverse_cube_roots};
 use super::{Gradation, GradationError, NumberError};
 use crate::stream::unit;
 use std::ops::Range;
@@ -75,8 +75,33 @@ impl Segment {
 
 /// `y^(-1/3)` from 40 bits of the mantissa of `y`, at least `a` and at most `b`.
 #[inline(always)]
-fn root_within(y: f64, [a, b]: [f64; 2]) -> f32 {
-    let d = inverse_cube_root(f64::from_bits(y.to_bits() & COARSE));
+fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
+    within(inverse_cube_root(coarse(y)), bounds)
+}
+
+/// [`root_within`] of each number, from `least` to `most`.
+#[inline(always)]
+fn roots_within(
+    mut y: [f64; AT_ONCE],
+    least: &[f64; AT_ONCE],
+    most: &[f64; AT_ONCE],
+    out: &mut [f32; AT_ONCE],
+) {
+    y.iter_mut().for_each(|y| *y = coarse(*y));
+    for (((out, d), &a), &b) in out.iter_mut().zip(inverse_cube_roots(&y)).zip(least).zip(most) {
+        *out = within(d, [a, b]);
+    }
+}
+
+/// With 40 bits of the mantissa.
+#[inline(always)]
+fn coarse(y: f64) -> f64 {
+    f64::from_bits(y.to_bits() & COARSE)
+}
+
+/// At least `a` and at most `b`.
+#[inline(always)]
+fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
     let d = if d > a { d } else { a };
     (if d < b { d } else { b }) as f32
 }
@@ -209,30 +234,36 @@ impl SizeSampler {
     #[inline(always)]
     pub(crate) fn fill_guided(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");
-        if let [segment] = self.segments[..] {
-            for (out, &word) in out.iter_mut().zip(words) {
-                *out = segment.diameter(coarser_share(word));
-            }
-        } else {
-            for (words, out) in words.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
-                self.fill_some(guide, words, out);
-            }
+        let (words, last_words) = words.as_chunks();
+        let (out, last_out) = out.as_chunks_mut();
+        for (words, out) in words.iter().zip(out) {
+            self.fill_some(guide, words, out);
+        }
+        if let Some(&any) = last_words.first() {
+            let (mut padded, mut drawn) = ([any; AT_ONCE], [0.0; AT_ONCE]);
+            padded[..last_words.len()].copy_from_slice(last_words);
+            self.fill_some(guide, &padded, &mut drawn);
+            last_out.copy_from_slice(&drawn[..last_words.len()]);
         }
     }
 
-    /// The same of at most [`AT_ONCE`] words: what hangs on the segment is looked up one by one, the roots
-    /// are taken together.
+    /// The same of so many words that are drawn together. What hangs on the segment is looked up one by one.
     #[inline(always)]
-    fn fill_some(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
-        let (mut y, mut least, mut most) = ([0.0; AT_ONCE], [0.0; AT_ONCE], [0.0; AT_ONCE]);
+    fn fill_some(&self, guide: &SizeGuide, words: &[u64; AT_ONCE], out: &mut [f32; AT_ONCE]) {
+        let mut y = [0.0; AT_ONCE];
+        if let [segment] = self.segments[..] {
+            for (y, &word) in y.iter_mut().zip(words) {
+                *y = segment.y_at(coarser_share(word));
+            }
+            return roots_within(y, &[segment.a; AT_ONCE], &[segment.b; AT_ONCE], out);
+        }
+        let (mut least, mut most) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
         for (at, &word) in words.iter().enumerate() {
             let v = coarser_share(word);
             let segment = &self.segments[self.segment(guide.start(word), v)];
             (y[at], least[at], most[at]) = (segment.y_at(v), segment.a, segment.b);
         }
-        for (((out, &y), &a), &b) in out.iter_mut().zip(&y).zip(&least).zip(&most) {
-            *out = root_within(y, [a, b]);
-        }
+        roots_within(y, &least, &most, out);
     }
 
     /// The number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` exactly

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;
-use crate::stream::{Key, Purpose, unit};
+use crate::stream::{Key, Purpose};
 
 /// Constrictions drawn from one stream; fixed, so that threads change nothing.
 const BLOCK: usize = 1 << 14;
@@ -57,13 +57,11 @@ impl Network {
         unit_mm: f64,
         seed: u64,
     ) -> Vec<f32> {
-        let mut diameter = vec![0f32; count];
+        let (mut diameter, sizes) = (vec![0f32; count], curve.draws());
         diameter.par_chunks_mut(BLOCK).enumerate().for_each(|(block, diameters)| {
             let chunk = first_block + block as u64;
             let mut draws = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk }.generator();
-            for diameter in diameters {
-                *diameter = (curve.quantile(unit(draws.next_u64())) / unit_mm) as f32;
-            }
+            sizes.fill(|| draws.next_u64(), diameters, unit_mm);
         });
         diameter
     }
@@ -90,18 +88,27 @@ impl Network {
         let voids = (count / 3) as u32;
         let plane = nx * ny;
         let mut target = Vec::with_capacity(count);
-        for void in 0..voids {
-            let (x, y, z) = (void % nx, void / nx % ny, void / plane);
-            target.push(if x + 1 == nx { void + 1 - nx } else { void + 1 });
-            target.push(if y + 1 == ny { void + nx - plane } else { void + nx });
-            target.push(if z + 1 == nz { END } else { void + plane });
+        let mut layer = Vec::with_capacity(voids as usize);
+        for z in 0..nz {
+            layer.resize(layer.len() + plane as usize, z);
+            for y in 0..ny {
+                let row = plane * z + nx * y;
+                for x in 0..nx {
+                    let void = row + x;
+                    target.extend([
+                        if x + 1 == nx { row } else { void + 1 },
+                        if y + 1 == ny { void + nx - plane } else { void + nx },
+                        if z + 1 == nz { END } else { void + plane },
+                    ]);
+                }
+            }
         }
         Ok(Self {
             exit_begin: (0..=voids).map(|v| 3 * v).collect(),
             target,
             diameter,
             start: (0..plane).collect(),
-            layer: (0..voids).map(|v| v / plane).collect(),
+            layer,
             unit_mm,
             shape: Some(shape),
             undirected: None,

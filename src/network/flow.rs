@@ -111,6 +111,11 @@ impl Flow {
         &self.pressure
     }
 
+    /// Rounds of conjugate gradients that the system took whose factor is kept; 0 where none is.
+    pub fn rounds(&self) -> usize {
+        self.kept.as_ref().map_or(0, |kept| kept.rounds)
+    }
+
     /// Flow times viscosity out of a void through one of its exits.
     pub fn flux(&self, void: u32, exit: usize) -> f64 {
         self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])

@@ -63,7 +63,7 @@ pub(super) struct Kept {
     /// By piece.
     factors: Vec<Factor>,
     /// Rounds that the system took that it is of.
-    rounds: usize,
+    pub rounds: usize,
     /// Exits that have closed since.
     pub closed: usize,
 }

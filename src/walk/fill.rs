@@ -1,29 +1,213 @@
-//! Drawing diameters with wide vectors: portable code, compiled for each instruction set.
+//! Drawing start nodes and diameters with wide vectors: portable code, compiled for each instruction set.
+//!
+//! Each step is a loop over a whole batch: so it becomes vector code, and no particle waits for another. Masses
+//! alone are added one after another, as their order is part of the result.
 
+use super::sizes::cube;
 use super::{Isa, Supply};
+use crate::network::Network;
+use crate::stream::{Key, LANES, Lanes, below, below_32};
 
-/// [`Supply::fill`] with the instructions of `isa`, to the same bits.
-pub(super) fn fill_diameters(isa: Isa, supply: &Supply, words: &mut [u64], out: &mut [f32]) {
-    assert!(isa.is_available());
-    match isa {
-        // SAFETY: the machine has the instructions.
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { with_avx512(supply, words, out) },
-        // SAFETY: the machine has the instructions.
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { with_avx2(supply, words, out) },
-        _ => supply.fill(words, out),
+/// Particles drawn at a time.
+const BATCH: usize = 8 * LANES;
+
+/// The words that they take, two each.
+type Words = [[u64; LANES]; 2 * BATCH / LANES];
+
+/// Particles of one chunk that are drawn, and the columns that they go to.
+pub(super) struct Drawing<'a> {
+    pub network: &'a Network,
+    pub supply: &'a Supply,
+    /// The stream of this chunk.
+    pub key: Key,
+    /// How many particles the increment inserts before these.
+    pub before: u64,
+    pub passive_limit: f32,
+    pub void: &'a mut [u32],
+    pub diameter: &'a mut [f32],
+}
+
+/// What was drawn.
+pub(super) struct Drawn {
+    /// Sum of diameters cubed, in particle order.
+    pub mass: f64,
+    /// Particles that are passive.
+    pub passive: u32,
+}
+
+impl Drawing<'_> {
+    /// Draws them with the instructions of `isa`, to the same bits.
+    pub fn draw(self, isa: Isa) -> Drawn {
+        assert!(isa.is_available());
+        match isa {
+            // SAFETY: the machine has the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => unsafe { with_avx512(self) },
+            // SAFETY: the machine has the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => unsafe { with_avx2(self) },
+            _ => self.draw_by(|lanes, words| {
+                // Two blocks at a time: all at once take half as long again.
+                words.as_chunks_mut::<2>().0.iter_mut().for_each(|two| *two = lanes.next_blocks());
+            }),
+        }
+    }
+
+    /// The same, where `next` takes the next words of the stream.
+    #[inline(always)]
+    fn draw_by(self, next: impl Fn(&mut Lanes, &mut Words)) -> Drawn {
+        let Self { network, supply, key, before, passive_limit, void, diameter } = self;
+        let (mut lanes, strata) = (key.lanes(), supply.strata(key.increment));
+        let mut drawn = Drawn { mass: 0.0, passive: 0 };
+        let (mut words, mut place) = (Words::default(), before);
+        for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
+            // The last batch leaves some of its words.
+            next(&mut lanes, &mut words);
+            let pairs = words.as_flattened().as_chunks::<2>().0;
+            let mut size_words = [0; BATCH];
+            for (size_word, pair) in size_words.iter_mut().zip(pairs) {
+                *size_word = pair[1];
+            }
+            match &strata {
+                None => start(network, pairs, void),
+                Some(strata) => {
+                    let nodes = network.start();
+                    let each = void.iter_mut().zip(&mut size_words).zip(pairs);
+                    for (place, ((void, size_word), pair)) in (place..).zip(each) {
+                        *void = nodes[strata.node(place, pair[0], nodes.len() as u64)];
+                        *size_word = strata.size_word(place, pair[1]);
+                    }
+                    place += void.len() as u64;
+                }
+            }
+            let (mut sizes, mut cubes) = ([0.0; BATCH], [0.0; BATCH]);
+            supply.fill(&mut size_words, &mut sizes);
+            diameter.copy_from_slice(&sizes[..diameter.len()]);
+            for (cube_of, &size) in cubes.iter_mut().zip(&sizes) {
+                *cube_of = cube(size);
+            }
+            drawn.mass = cubes[..diameter.len()].iter().fold(drawn.mass, |mass, cube| mass + cube);
+            drawn.passive += diameter.iter().map(|&d| u32::from(d <= passive_limit)).sum::<u32>();
+        }
+        drawn
+    }
+}
+
+/// Draws the start node of each particle by the first of its words.
+#[inline(always)]
+fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
+    let nodes = network.start();
+    if network.shape().is_none() {
+        for (void, pair) in void.iter_mut().zip(pairs) {
+            *void = nodes[below(pair[0], nodes.len() as u64) as usize];
+        }
+        return;
+    }
+    // Those of a lattice are its first voids, in order.
+    for (void, pair) in void.iter_mut().zip(pairs) {
+        *void = below_32(pair[0], nodes.len() as u32);
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-fn with_avx512(supply: &Supply, words: &mut [u64], out: &mut [f32]) {
-    supply.fill(words, out);
+fn with_avx512(drawing: Drawing) -> Drawn {
+    drawing.draw_by(|lanes, words| words.iter_mut().for_each(|block| *block = lanes.next_block()))
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
-fn with_avx2(supply: &Supply, words: &mut [u64], out: &mut [f32]) {
-    supply.fill(words, out);
+fn with_avx2(drawing: Drawing) -> Drawn {
+    drawing.draw_by(|lanes, words| lanes.next_blocks_avx2(words))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::{Gradation, SizeSampler};
+    use crate::network::{ExitRule, NetworkColumns};
+    use crate::stream::Purpose;
+
+    /// A lattice of 15 start nodes, and a network of three that do not follow one another.
+    fn networks() -> [Network; 2] {
+        let columns = NetworkColumns {
+            voids: 6,
+            conns: &[[0, 1], [3, 2], [5, 4]],
+            diameter_mm: &[1.0; 3],
+            conductance: None,
+            inlets: &[3, 0, 5],
+            outlets: &[1, 2, 4],
+            rule: ExitRule::Area,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let lattice = Network::cubic_from_diameters([3, 5, 2], vec![1.0; 90], 1.0).unwrap();
+        [lattice, Network::from_columns(&columns).unwrap().0]
+    }
+
+    fn supplies() -> Vec<Supply> {
+        let sampler = |gradation: Gradation| SizeSampler::new(&gradation, 1.0).unwrap();
+        let points: Vec<_> =
+            (0..40).map(|i| (0.1 + 0.01 * f64::from(i * i), 2.5 * f64::from(i + 1))).collect();
+        let whole = sampler(Gradation::linear_from_d0(0.1, 4.5).unwrap());
+        let sieved = sampler(Gradation::from_points(&points, Some(0.05)).unwrap());
+        vec![
+            Supply::new(whole.clone(), 400, 2),
+            Supply::new(whole.clone(), 400, 2).stratified(3, 1),
+            Supply::coarse_part(whole, 1 << 63, &[200, 200]),
+            Supply::coarse_part(sieved, 3 << 61, &[200, 200]),
+        ]
+    }
+
+    /// What each particle is by definition, from its two words of the stream.
+    fn by_definition(
+        network: &Network,
+        supply: &Supply,
+        key: Key,
+        before: u64,
+        count: usize,
+    ) -> Vec<(u32, f32)> {
+        let (mut lanes, strata, nodes) = (key.lanes(), supply.strata(key.increment), network.start());
+        let words: Vec<u64> = (0..count.div_ceil(4)).flat_map(|_| lanes.next_block()).collect();
+        let of = |(place, pair): (u64, &[u64; 2])| {
+            let [first, second] = *pair;
+            let (node, size_word) = match &strata {
+                None => (below(first, nodes.len() as u64) as usize, second),
+                Some(strata) => {
+                    (strata.node(place, first, nodes.len() as u64), strata.size_word(place, second))
+                }
+            };
+            (nodes[node], supply.diameter(size_word))
+        };
+        (before..).zip(words.as_chunks::<2>().0).map(of).take(count).collect()
+    }
+
+    #[test]
+    fn every_instruction_set_draws_each_particle_as_it_is_defined() {
+        let key = Key { seed: 3, purpose: Purpose::Insertion, run: 1, increment: 2, chunk: 7 };
+        for (network, supply) in networks().iter().flat_map(|n| supplies().into_iter().map(move |s| (n, s))) {
+            for count in [0, 1, 7, 63, 64, 65, 190] {
+                let expected = by_definition(network, &supply, key, 9, count);
+                let passive_limit = 0.2;
+                for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+                    let (mut void, mut diameter) = (vec![99; count], vec![0.0; count]);
+                    let drawing = Drawing {
+                        network,
+                        supply: &supply,
+                        key,
+                        before: 9,
+                        passive_limit,
+                        void: &mut void,
+                        diameter: &mut diameter,
+                    };
+                    let drawn = drawing.draw(isa);
+                    let found: Vec<_> = void.into_iter().zip(diameter).collect();
+                    assert_eq!(found, expected, "{isa:?} {count}");
+                    let mass = expected.iter().fold(0.0, |mass, &(_, d)| mass + cube(d));
+                    let passive = expected.iter().filter(|&&(_, d)| d <= passive_limit).count();
+                    assert_eq!((drawn.mass, drawn.passive), (mass, passive as u32), "{isa:?} {count}");
+                }
+            }
+        }
+    }
 }

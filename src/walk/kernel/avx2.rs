@@ -5,7 +5,7 @@
 use std::arch::x86_64::*;
 
 use super::lattice::{BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
-use crate::stream::{LANES, Lanes};
+use crate::stream::{LANES, Lanes, next_of_four};
 use crate::walk::Isa;
 use crate::walk::arching::{CLASS_OF_ONE, Reach};
 use crate::walk::exits::{CLASS, Lattice};
@@ -250,14 +250,8 @@ fn load_state(lanes: &Lanes) -> State {
 fn next_block(state: &mut State) -> [u64; LANES] {
     let mut words = [0; LANES];
     for (half, words) in words.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-        let [s0, s1, s2, s3] = state.each_ref().map(|row| row[half]);
-        let out = _mm256_add_epi64(rotate::<23, 41>(_mm256_add_epi64(s0, s3)), s0);
-        let t = _mm256_slli_epi64::<17>(s1);
-        let s2 = _mm256_xor_si256(s2, s0);
-        let s3 = _mm256_xor_si256(s3, s1);
-        let s1 = _mm256_xor_si256(s1, s2);
-        let s0 = _mm256_xor_si256(s0, s3);
-        let next = [s0, s1, _mm256_xor_si256(s2, t), rotate::<45, 19>(s3)];
+        let mut next = state.each_ref().map(|row| row[half]);
+        let out = next_of_four(&mut next);
         for (row, word) in state.iter_mut().zip(next) {
             row[half] = word;
         }
@@ -265,11 +259,4 @@ fn next_block(state: &mut State) -> [u64; LANES] {
         unsafe { _mm256_storeu_si256(words.as_mut_ptr().cast(), out) };
     }
     words
-}
-
-/// Every word rotated to the left by `LEFT` bits; `RIGHT` is what is missing from it to 64.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn rotate<const LEFT: i32, const RIGHT: i32>(words: __m256i) -> __m256i {
-    _mm256_or_si256(_mm256_slli_epi64::<LEFT>(words), _mm256_srli_epi64::<RIGHT>(words))
 }

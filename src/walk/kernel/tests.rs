@@ -7,7 +7,6 @@ use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
 use crate::walk::arches::Jam;
-use crate::walk::fill::fill_diameters;
 use crate::walk::{Isa, LAWS, SizeClasses, VoidCrowd, exits};
 
 /// A lattice, and what is blocked in it.
@@ -275,25 +274,6 @@ fn a_void_that_does_not_exist_is_refused() {
                 void[place] = bad;
                 let step = || after(&scene, key(1), kernel, &void, &[0.5; 65]);
                 assert!(std::panic::catch_unwind(step).is_err(), "{kernel:?}: {bad} at {place}");
-            }
-        }
-    }
-}
-
-#[test]
-fn every_instruction_set_draws_the_same_diameters() {
-    let words = picked(1000, &[0, 1, 1 << 40, 1 << 63, u64::MAX - 5, 0x1234_5678_9abc_def0], 4);
-    let mixed: Vec<u64> =
-        words.iter().zip(picked(1000, &[1, 3, 77, 1 << 51], 9)).map(|(a, b)| a ^ b).collect();
-    let whole = SizeSampler::new(&Gradation::linear_from_d0(0.1, 4.5).unwrap(), 1.0).unwrap();
-    let supplies = [Supply::new(whole.clone(), 10, 2), Supply::coarse_part(whole, 1 << 63, &[4, 6])];
-    for supply in supplies {
-        let expected: Vec<f32> = mixed.iter().map(|&word| supply.diameter(word)).collect();
-        for isa in available() {
-            for count in [0, 1, 7, 64, 999, 1000] {
-                let mut out = vec![0.0; count];
-                fill_diameters(isa, &supply, &mut mixed[..count].to_vec(), &mut out);
-                assert_eq!(out, expected[..count], "{isa:?}");
             }
         }
     }

@@ -64,7 +64,7 @@ mod x86 {
     use super::super::draws::Draws;
     use super::super::trials::complete;
     use super::FewTrials;
-    use crate::stream::DRAWS_PER_BLOCK;
+    use crate::stream::{DRAWS_PER_BLOCK, next_of_four};
 
     /// With AVX-512: the generators' state words.
     pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
@@ -229,7 +229,7 @@ mod x86 {
         // What is unsigned is compared as signed, less 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
         let counts = MASKS[counted as usize];
-        let blocks = [next_avx2(&mut state[0]), next_avx2(&mut state[1])];
+        let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];
         let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
         let (mut less, mut same) = ([0; 2], 0);
         for (less, top) in less.iter_mut().zip(tops) {
@@ -254,19 +254,5 @@ mod x86 {
     #[inline]
     fn packed(low: __m256i, high: __m256i) -> u32 {
         _mm256_movemask_epi8(_mm256_packs_epi16(low, high)) as u32
-    }
-
-    /// The next word of four generators.
-    #[target_feature(enable = "avx2,popcnt")]
-    #[inline]
-    fn next_avx2(state: &mut [__m256i; 4]) -> __m256i {
-        let [s0, s1, s2, s3] = *state;
-        let sum = _mm256_add_epi64(s0, s3);
-        let turned = _mm256_or_si256(_mm256_slli_epi64::<23>(sum), _mm256_srli_epi64::<41>(sum));
-        let (t, s2, s3) = (_mm256_slli_epi64::<17>(s1), _mm256_xor_si256(s2, s0), _mm256_xor_si256(s3, s1));
-        let (s1, s0_next) = (_mm256_xor_si256(s1, s2), _mm256_xor_si256(s0, s3));
-        let s3 = _mm256_or_si256(_mm256_slli_epi64::<45>(s3), _mm256_srli_epi64::<19>(s3));
-        *state = [s0_next, s1, _mm256_xor_si256(s2, t), s3];
-        _mm256_add_epi64(turned, s0)
     }
 }
