@@ -53,6 +53,32 @@ pub enum CurveError {
     },
 }
 
+/// Parts of the percentages in which [`Quantiles`] know where to look.
+const PARTS: usize = 1 << 10;
+
+/// Draws from a curve, to the bits of [`Curve::quantile`].
+pub(crate) struct Quantiles<'a> {
+    curve: &'a Curve,
+    /// By part: none of the curve's points before this one is of as many percent as any draw in it.
+    first: Vec<u32>,
+}
+
+impl Quantiles<'_> {
+    /// The diameter of the draw `unit`, 0 to 1.
+    #[inline]
+    pub fn at(&self, unit: f64) -> f64 {
+        let percent = 100.0 * unit;
+        let Some(&first) = self.first.get((unit * PARTS as f64) as usize).filter(|_| percent <= 100.0) else {
+            return self.curve.quantile(unit);
+        };
+        let mut i = first as usize;
+        while self.curve.percent[i] < percent {
+            i += 1;
+        }
+        self.curve.between(percent, i)
+    }
+}
+
 const PERCENT: &str = "percent_smaller";
 
 /// A constriction size distribution (CSD): percent smaller by number against diameter, straight in
@@ -172,16 +198,21 @@ impl Curve {
         if !(0.0..=100.0).contains(&percent) {
             return None;
         }
-        let i = self.percent.partition_point(|&p| p < percent);
+        Some(self.between(percent, self.percent.partition_point(|&p| p < percent)))
+    }
+
+    /// D_cx, where the first point of at least `percent` is known.
+    #[inline]
+    fn between(&self, percent: f64, i: usize) -> f64 {
         if i == 0 {
-            return Some(self.diameter[0]);
+            return self.diameter[0];
         }
         let (p, q) = (self.percent[i - 1], self.percent[i]);
         let (a, b) = (self.diameter[i - 1], self.diameter[i]);
         if percent == q {
-            return Some(b);
+            return b;
         }
-        Some((a + (percent - p) / (q - p) * (b - a)).clamp(a, b))
+        (a + (percent - p) / (q - p) * (b - a)).clamp(a, b)
     }
 
     /// Percent of the constrictions, by number, no larger than `diameter` (in this curve's unit).
@@ -206,6 +237,14 @@ impl Curve {
             None if unit > 0.5 => self.diameter[self.diameter.len() - 1],
             None => self.diameter[0],
         }
+    }
+
+    /// The same for many draws: where to look among the points is known beforehand.
+    pub(crate) fn quantiles(&self) -> Quantiles<'_> {
+        // From one part before its own: no rounding passes over a point.
+        let before = |part: usize| (part.saturating_sub(1) as f64) * (100.0 / PARTS as f64);
+        let first = |part| self.percent.partition_point(|&p| p < before(part)) as u32;
+        Quantiles { curve: self, first: (0..=PARTS).map(first).collect() }
     }
 
     /// Coefficient of uniformity of the constrictions, `D_c60 / D_c10`.
@@ -290,6 +329,25 @@ mod tests {
         assert_eq!(stepped.quantile(0.1), 0.2);
         assert_eq!((stepped.percent_smaller(0.19), stepped.percent_smaller(0.2)), (0.0, 20.0));
         assert!((stepped.quantile(0.6) - 0.3).abs() < 1e-15);
+    }
+
+    /// To the bit, at points, at the bounds of parts, beside them, and beyond the ends.
+    #[test]
+    fn many_draws_are_those_of_one() {
+        for points in [
+            vec![(100.0, 0.2)],
+            vec![(20.0, 0.2), (100.0, 0.4)],
+            vec![(0.0, 0.1), (30.0, 0.2), (40.0, 0.2), (60.0, 0.2), (60.0, 0.4), (100.0, 0.5)],
+            (0..=5000).map(|i| (f64::from(i) / 50.0, 0.1 + f64::from(i * i))).collect(),
+        ] {
+            let curve = curve(&points);
+            let quantiles = curve.quantiles();
+            let at = |k: i32, of: f64| f64::from(k) / of;
+            let even = (-3..=4100).map(|k| at(k, 4096.0)).chain((0..=1000).map(|k| at(k, 1000.0)));
+            for unit in even.flat_map(|unit| [unit.next_down(), unit, unit.next_up()]) {
+                assert_eq!(quantiles.at(unit).to_bits(), curve.quantile(unit).to_bits(), "{unit}");
+            }
+        }
     }
 
     #[test]

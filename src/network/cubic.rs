@@ -57,12 +57,12 @@ impl Network {
         unit_mm: f64,
         seed: u64,
     ) -> Vec<f32> {
-        let mut diameter = vec![0f32; count];
+        let (mut diameter, quantiles) = (vec![0f32; count], curve.quantiles());
         diameter.par_chunks_mut(BLOCK).enumerate().for_each(|(block, diameters)| {
             let chunk = first_block + block as u64;
             let mut draws = Key { seed, purpose: Purpose::Network, run: 0, increment: 0, chunk }.generator();
             for diameter in diameters {
-                *diameter = (curve.quantile(unit(draws.next_u64())) / unit_mm) as f32;
+                *diameter = (quantiles.at(unit(draws.next_u64())) / unit_mm) as f32;
             }
         });
         diameter
