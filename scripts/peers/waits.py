@@ -5,8 +5,9 @@
 
 The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
-programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before
-all others (`chrt`, which asks for the right to), so that other work takes no turns from them, though it shares their caches. `compare` takes the soil and the first three of the six filters.
+programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
+which asks for the right to), so that other work takes no turns from them, though it shares their caches. `compare` takes the soil and the
+first three of the six filters.
 """
 
 import argparse

@@ -14,6 +14,7 @@
 use std::sync::OnceLock;
 
 use libm::{exp, log, sqrt};
+use multiversion::multiversion;
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use crate::gradation::Gradation;
@@ -254,6 +255,7 @@ struct Root {
 }
 
 /// Solves the lower triangle for `right`, one equation after another.
+#[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 fn eliminate(columns: &[Vec<f64>], rows: &[Vec<f64>], right: &mut [f64]) {
     // As a sum begins.
     let mut sums = vec![-0.0; right.len()];
