@@ -69,8 +69,8 @@ pub struct ReplicateResult {
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops. `of_first` walks
-/// what else hangs on the first of them alone: beside the others where walks fit into the memory side by side,
-/// so that the threads which would wait for the last one have something to do.
+/// what else hangs on the first of them alone: beside the others where walks fit into the memory side by
+/// side, so that the threads which would wait for the last one have something to do.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.

@@ -207,8 +207,8 @@ impl ExitTable {
         Self::of_form(network, Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest)))
     }
 
-    /// Classes anew, where many constrictions have closed since the table was made: those that are left may be
-    /// coarser than every class.
+    /// Classes anew, where many constrictions have closed since the table was made: those that are left may
+    /// be coarser than every class.
     pub(super) fn class_anew(&mut self, network: &Network, blocked: &BitSlice) {
         if let Form::Lattice(lattice) = &mut self.form
             && !lattice.by_widths

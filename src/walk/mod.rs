@@ -160,8 +160,8 @@ pub struct Walk<'a> {
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
-/// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first runs
-/// of many walks, or left by a run to the next.
+/// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first
+/// runs of many walks, or left by a run to the next.
 #[derive(Clone)]
 pub struct PlainExits {
     /// Number of blocked constrictions that they hold for: nothing opens again, so it names them.
