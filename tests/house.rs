@@ -178,7 +178,7 @@ fn only_the_platform_names_a_system() {
         ("std::os::linux", &[]),
         ("std::os::windows", &["windows"]),
         ("rustix", &["unix", "linux", "macos"]),
-        ("libc::", &[]),
+        ("libc::", &["allocator"]),
         ("windows_sys", &["windows"]),
         ("signal_hook", &["signals"]),
         ("\"/proc", &["linux", "cgroup", "signals"]),

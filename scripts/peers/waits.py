@@ -1,17 +1,21 @@
 #!/usr/bin/env python3
 """Prints how long a user waits for `judge`, `design` and `compare` of real pairs, from two sheets to the page, in Markdown.
 
-    scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5]
+    scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
 
 The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
-programs follow one another. VOIDWALK_ISA chooses the instructions. `compare` takes the soil and the first three of the six filters.
+programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
+which asks for the right to), so that other work takes no turns from them, though it shares their caches. `compare` takes the soil and the
+first three of the six filters.
 """
 
 import argparse
 import json
 import os
 import random
+import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,6 +25,8 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
 from real_pairs import FILTERS, table  # noqa: E402
+
+BEFORE_OTHERS = ("chrt", "-f", "5")
 
 
 def commands(folder):
@@ -34,15 +40,56 @@ def commands(folder):
     }
 
 
-def timed(binary, words, out):
-    began = time.monotonic()
-    done = subprocess.run([str(part) for part in [binary, *words, "--quiet", "--out", out]], capture_output=True, text=True)
-    seconds = time.monotonic() - began
+def timed(binary, words, out, first=()):
+    """Seconds by the clock and of the processors of a whole process; nothing where the pair is refused."""
+    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    done = subprocess.run([str(part) for part in [*first, binary, *words, "--quiet", "--out", out]], capture_output=True, text=True)
+    seconds, after = time.monotonic() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode == 2 and "exchanged" in done.stderr:
         return None
     if done.returncode != 0:
         raise SystemExit(f"{words}: exit code {done.returncode}: {done.stderr[-500:]}")
-    return seconds
+    return seconds, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
+def drawn(soils, pairs, seed):
+    """So many pairs of a soil and the name of a filter."""
+    soils = [soil for soil in soils if len(soil["points_mm_percent"]) >= 6]
+    draw = random.Random(seed)
+    return [(draw.choice(soils), list(FILTERS)[k % len(FILTERS)]) for k in range(pairs)]
+
+
+def measured(pairs, binaries, turns, only=(), first=()):
+    """By command: soil, filter, and of each program the median seconds by the clock and of the processors."""
+    found = {}
+    with tempfile.TemporaryDirectory() as work:
+        for number, (soil, name) in enumerate(pairs):
+            folder = Path(work, f"{number}")
+            folder.mkdir()
+            table(folder / "base.csv", soil["points_mm_percent"])
+            table(folder / "filter.csv", FILTERS[name])
+            for k, other in enumerate(list(FILTERS)[:3]):
+                table(folder / f"other-{k}.csv", FILTERS[other])
+            for command, words in commands(folder).items():
+                if only and command not in only:
+                    continue
+                rows = []
+                for turn in range(turns):
+                    out = [folder / f"{command}-{turn}-{at}" for at in range(len(binaries))]
+                    rows.append([timed(binary, words, of, first) for binary, of in zip(binaries, out)])
+                    for of in out:
+                        shutil.rmtree(of, ignore_errors=True)
+                    if None in rows[0]:
+                        break
+                if None not in rows[0]:
+                    seconds = [[median(row[at][k] for row in rows) for k in range(2)] for at in range(len(binaries))]
+                    found.setdefault(command, []).append((soil["id"], name, seconds))
+                    print(f"{command}, soil {soil['id']}, {name}: {seconds}", file=sys.stderr, flush=True)
+    return found
+
+
+def spread(values):
+    return f"{median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
 
 
 def main():
@@ -54,45 +101,25 @@ def main():
     parser.add_argument("--pairs", type=int, default=12)
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--only", nargs="*", default=[])
+    parser.add_argument("--first", action="store_true")
     options = parser.parse_args()
-    soils = [soil for soil in json.loads(options.soils.read_text()) if len(soil["points_mm_percent"]) >= 6]
-    draw = random.Random(options.seed)
-    pairs = [(draw.choice(soils), list(FILTERS)[k % len(FILTERS)]) for k in range(options.pairs)]
     binaries = [binary for binary in (options.before, options.binary) if binary]
-    found = {}
-    with tempfile.TemporaryDirectory() as work:
-        for number, (soil, name) in enumerate(pairs):
-            folder = Path(work, f"{number}")
-            folder.mkdir()
-            table(folder / "base.csv", soil["points_mm_percent"])
-            table(folder / "filter.csv", FILTERS[name])
-            for k, other in enumerate(list(FILTERS)[:3]):
-                table(folder / f"other-{k}.csv", FILTERS[other])
-            for command, words in commands(folder).items():
-                if options.only and command not in options.only:
-                    continue
-                turns = []
-                for turn in range(options.turns):
-                    turns.append([timed(binary, words, folder / f"{command}-{turn}-{at}") for at, binary in enumerate(binaries)])
-                if None not in turns[0]:
-                    seconds = [median(turn[at] for turn in turns) for at in range(len(binaries))]
-                    found.setdefault(command, []).append((soil["id"], name, seconds))
-                    print(f"{command}, soil {soil['id']}, {name}: {seconds}", file=sys.stderr, flush=True)
-    print(f"Instructions: {os.environ.get('VOIDWALK_ISA', 'the widest of the machine')}.\n")
+    pairs = drawn(json.loads(options.soils.read_text()), options.pairs, options.seed)
+    load = os.getloadavg()[0]
+    found = measured(pairs, binaries, options.turns, options.only, BEFORE_OTHERS if options.first else ())
+    print(f"Instructions: {os.environ.get('VOIDWALK_ISA', 'the widest of the machine')}; load {load:.1f} before and "
+          f"{os.getloadavg()[0]:.1f} after{', these processes before all others' if options.first else ''}.\n")
     heads = ["before", "now"][-len(binaries):]
     print("| command | pairs | " + " | ".join(f"{head}: median s (least to most)" for head in heads) + " |")
     print("|---|---|" + "---|" * len(heads))
     for command, rows in found.items():
-        cells = []
-        for at in range(len(binaries)):
-            seconds = [row[2][at] for row in rows]
-            cells.append(f"{median(seconds):.2f} ({min(seconds):.2f} to {max(seconds):.2f})")
+        cells = [spread([row[2][at][0] for row in rows]) for at in range(len(binaries))]
         print(f"| {command} | {len(rows)} of {options.pairs} | " + " | ".join(cells) + " |")
     print("\n| soil, filter | " + " | ".join(found) + " |\n|---|" + "---|" * len(found))
     by_pair = {}
     for command, rows in found.items():
         for soil, name, seconds in rows:
-            by_pair.setdefault((soil, name), {})[command] = ", ".join(f"{s:.2f}" for s in seconds)
+            by_pair.setdefault((soil, name), {})[command] = ", ".join(f"{s:.2f}" for s, _ in seconds)
     for (soil, name), cells in by_pair.items():
         print(f"| {soil}, {name} | " + " | ".join(cells.get(command, "refused") for command in found) + " |")
 

@@ -209,6 +209,11 @@ impl Case {
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
+    /// Whether walks side by side leave room for so many bytes more.
+    pub fn has_room_beside(&self, bytes: u64) -> bool {
+        SIDE_BY_SIDE_BYTES.saturating_add(bytes) <= self.memory
+    }
+
     /// Whether there is room for the particles of the scene itself, in memory or on the disk.
     fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
         let columns = self.column_bytes(self.n_base);

@@ -78,6 +78,7 @@ pub fn main() -> ExitCode {
 /// Runs the program, once a process: its exit code. For whoever holds the command line in a library.
 pub fn main_with(start: Start) -> u8 {
     crate::store::platform::signals::outlive_large_files();
+    crate::store::platform::allocator::keep_memory();
     let words = &START.get_or_init(|| start).words;
     let arguments = match arguments(words) {
         Ok(arguments) => arguments,

@@ -14,6 +14,7 @@
 use std::sync::OnceLock;
 
 use libm::{exp, log, sqrt};
+use multiversion::multiversion;
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use crate::gradation::Gradation;
@@ -227,34 +228,54 @@ fn column(terms: &[[f64; TREND]], t: usize, of: &[f64]) -> f64 {
 }
 
 /// Cholesky's root of a positive definite matrix, both by the rows of their lower halves.
-fn root_of(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    for i in 0..rows.len() {
-        let (above, below) = rows.split_at_mut(i);
+///
+/// A row's numbers follow from one another, so each is taken off all that come after it as soon as it is
+/// known, by the columns of the root: the same products in the same order as number by number, many at a
+/// time.
+fn root_of(rows: Vec<Vec<f64>>) -> Root {
+    let mut root = Root { columns: rows.iter().map(|_| Vec::with_capacity(rows.len())).collect(), rows };
+    for i in 0..root.rows.len() {
+        let (above, below) = root.rows.split_at_mut(i);
         let row = &mut below[0];
-        for j in 0..i {
-            let sum: f64 = row[..j].iter().zip(&above[j][..j]).map(|(a, b)| a * b).sum();
-            row[j] = (row[j] - sum) / above[j][j];
-        }
+        eliminate(&root.columns[..i], above, &mut row[..i]);
         let sum: f64 = row[..i].iter().map(|a| a * a).sum();
         row[i] = sqrt(row[i] - sum);
+        for (column, value) in root.columns.iter_mut().zip(row.iter()) {
+            column.push(*value);
+        }
     }
-    rows
+    root
 }
 
-fn forward(root: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
-    for (i, row) in root.iter().enumerate() {
-        let sum: f64 = row[..i].iter().zip(&right[..i]).map(|(a, b)| a * b).sum();
-        right[i] = (right[i] - sum) / row[i];
+/// The lower half of a root.
+struct Root {
+    rows: Vec<Vec<f64>>,
+    /// Of each column what stands on the diagonal and below it, from there on.
+    columns: Vec<Vec<f64>>,
+}
+
+/// Solves the lower triangle for `right`, one equation after another.
+#[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
+fn eliminate(columns: &[Vec<f64>], rows: &[Vec<f64>], right: &mut [f64]) {
+    // As a sum begins.
+    let mut sums = vec![-0.0; right.len()];
+    for (i, column) in columns.iter().enumerate() {
+        right[i] = (right[i] - sums[i]) / rows[i][i];
+        let known = right[i];
+        sums[i + 1..].iter_mut().zip(&column[1..]).for_each(|(sum, a)| *sum += a * known);
     }
+}
+
+fn forward(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
+    eliminate(&root.columns, &root.rows, &mut right);
     right
 }
 
-fn back(root: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
-    for i in (0..root.len()).rev() {
-        right[i] /= root[i][i];
-        for j in 0..i {
-            right[j] -= root[i][j] * right[i];
-        }
+fn back(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
+    for (i, row) in root.rows.iter().enumerate().rev() {
+        right[i] /= row[i];
+        let known = right[i];
+        right[..i].iter_mut().zip(row).for_each(|(right, a)| *right -= a * known);
     }
     right
 }

@@ -189,11 +189,19 @@ impl Network {
     /// The finest constriction that `closed` leaves open (`f32::INFINITY` where none is): a base
     /// particle no coarser than it is *passive*, it can block nothing.
     pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
+        const TOGETHER: usize = 64;
         let mut finest = f32::INFINITY;
-        for (c, &d) in self.diameter.iter().enumerate() {
-            // Few are finer than all before: of the others it does not matter whether they are closed.
-            if d < finest && d > 0.0 && !closed(c) {
-                finest = d;
+        for (part, diameters) in self.diameter.chunks(TOGETHER).enumerate() {
+            // Bits of positive numbers rise with them; those of 0 become the largest.
+            let order = |d: f32| d.to_bits().wrapping_sub(1);
+            if diameters.iter().fold(u32::MAX, |least, &d| least.min(order(d))) >= order(finest) {
+                continue;
+            }
+            for (c, &d) in (part * TOGETHER..).zip(diameters) {
+                // Few are finer than all before: of the others it does not matter whether they are closed.
+                if d < finest && d > 0.0 && !closed(c) {
+                    finest = d;
+                }
             }
         }
         finest

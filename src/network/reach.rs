@@ -32,6 +32,9 @@ impl Network {
     /// Share of all constrictions that lie on a path from start to end through constrictions that
     /// `open` admits.
     pub fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
+        if let Some(shape) = self.shape {
+            return self.on_paths_of_lattice(shape, open) as f64 / self.passages().max(1) as f64;
+        }
         let reach = self.reach(&open);
         let mut on_path = 0u64;
         for void in (0..self.voids() as u32).filter(|&v| reach.from_start[v as usize]) {
@@ -42,6 +45,42 @@ impl Network {
             on_path += self.exits(void).filter(leads_out).count() as u64;
         }
         on_path as f64 / self.passages().max(1) as f64
+    }
+
+    /// The same as a number, of a lattice: layer by layer, as no path leads back into one that it left.
+    fn on_paths_of_lattice(&self, shape: [u32; 3], open: impl Fn(usize) -> bool) -> u64 {
+        let [nx, _, _, plane, voids] = lengths(shape);
+        let open = open_exits(voids, open);
+        let mut leads_out = vec![false; voids];
+        for v in (voids - plane..voids).filter(|&v| open[v] & ALONG_Z > 0) {
+            leads_out[v] = true;
+        }
+        spread_upstream(shape, &open, &mut leads_out);
+        let (mut reached, mut stack, mut on_path) = (vec![false; voids], Vec::new(), 0);
+        self.start.iter().for_each(|&v| reached[v as usize] = true);
+        for layer in (0..voids).step_by(plane) {
+            stack.extend((layer..layer + plane).filter(|&v| reached[v]));
+            while let Some(v) = stack.pop() {
+                let to_x = if v % nx == nx - 1 { v + 1 - nx } else { v + 1 };
+                let to_y = if v - layer >= plane - nx { v + nx - plane } else { v + nx };
+                for (after, along) in [(to_x, ALONG_X), (to_y, ALONG_Y)] {
+                    if open[v] & along > 0 {
+                        on_path += u64::from(leads_out[after]);
+                        if !std::mem::replace(&mut reached[after], true) {
+                            stack.push(after);
+                        }
+                    }
+                }
+                if open[v] & ALONG_Z > 0 {
+                    // Beyond the last layer is the end.
+                    on_path += u64::from(leads_out.get(v + plane).is_none_or(|&below| below));
+                    if let Some(below) = reached.get_mut(v + plane) {
+                        *below = true;
+                    }
+                }
+            }
+        }
+        on_path
     }
 
     /// The constrictions that an unlimited supply of particles of diameter `d` blocks, whatever the
@@ -93,32 +132,18 @@ impl Network {
     /// Voids from which constrictions that `passable` admits lead to any of `those`, which are among them.
     pub(crate) fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leads = vec![false; self.voids()];
-        let mut stack = those;
-        stack.iter().for_each(|&void| leads[void as usize] = true);
-        let mut look = |from: u32, exit: usize, stack: &mut Vec<u32>| {
-            if !leads[from as usize] && passable(exit) {
-                leads[from as usize] = true;
-                stack.push(from);
-            }
-        };
-        if let Some([nx, ny, _]) = self.shape {
-            let plane = nx * ny;
-            while let Some(void) = stack.pop() {
-                // The voids before it along x, y and z.
-                let by_x = if void % nx == 0 { void + nx - 1 } else { void - 1 };
-                let by_y = if void % plane < nx { void + plane - nx } else { void - nx };
-                look(by_x, 3 * by_x as usize, &mut stack);
-                look(by_y, 3 * by_y as usize + 1, &mut stack);
-                if let Some(by_z) = void.checked_sub(plane) {
-                    look(by_z, 3 * by_z as usize + 2, &mut stack);
-                }
-            }
-        } else {
-            let ((begin, entrances), upstream) = (self.entrances(), self.upstream());
-            while let Some(void) = stack.pop() {
-                for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize]
-                {
-                    look(upstream[entrance as usize], entrance as usize, &mut stack);
+        those.iter().for_each(|&void| leads[void as usize] = true);
+        if let Some(shape) = self.shape {
+            spread_upstream(shape, &open_exits(self.voids(), passable), &mut leads);
+            return leads;
+        }
+        let (mut stack, ((begin, entrances), upstream)) = (those, (self.entrances(), self.upstream()));
+        while let Some(void) = stack.pop() {
+            for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
+                let from = upstream[entrance as usize];
+                if !leads[from as usize] && passable(entrance as usize) {
+                    leads[from as usize] = true;
+                    stack.push(from);
                 }
             }
         }
@@ -143,6 +168,50 @@ impl Network {
             next[target as usize] += 1;
         }
         (begin, entrances)
+    }
+}
+
+/// Bits of the exits of a void of a lattice.
+const ALONG_X: u8 = 1;
+const ALONG_Y: u8 = 2;
+const ALONG_Z: u8 = 4;
+
+/// Voids of a lattice along x, y and z, in a layer, and in all.
+fn lengths(shape: [u32; 3]) -> [usize; 5] {
+    let [nx, ny, nz] = shape.map(|n| n as usize);
+    [nx, ny, nz, nx * ny, nx * ny * nz]
+}
+
+/// By void of a lattice: the bits of its exits that are open.
+fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
+    let of_void = |v| (0..3).fold(0, |bits, e| bits | u8::from(open(3 * v + e)) << e);
+    (0..voids).map(of_void).collect()
+}
+
+/// Adds the voids of a lattice from which open exits lead to those that are there: layer by layer, as none
+/// leads back into a layer, so that what is looked at lies close together.
+fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
+    let [nx, _, _, plane, voids] = lengths(shape);
+    let mut stack = Vec::new();
+    for layer in (0..voids).step_by(plane).rev() {
+        for v in layer..layer + plane {
+            let leads_down = || open[v] & ALONG_Z > 0 && leads.get(v + plane).is_some_and(|&below| below);
+            if leads[v] || leads_down() {
+                leads[v] = true;
+                stack.push(v);
+            }
+        }
+        while let Some(v) = stack.pop() {
+            // The voids before it along x and y.
+            let by_x = if v % nx == 0 { v + nx - 1 } else { v - 1 };
+            let by_y = if v - layer < nx { v + plane - nx } else { v - nx };
+            for (before, along) in [(by_x, ALONG_X), (by_y, ALONG_Y)] {
+                if open[before] & along > 0 && !leads[before] {
+                    leads[before] = true;
+                    stack.push(before);
+                }
+            }
+        }
     }
 }
 
@@ -179,6 +248,8 @@ mod tests {
                 let those = || vec![(closed * 5 % lattice.voids()) as u32, lattice.voids() as u32 - 1];
                 let [led, expected] = [&lattice, &network].map(|of| of.leading_to(those(), open));
                 assert_eq!(led, expected, "{shape:?}");
+                let [on_path, expected] = [&lattice, &network].map(|of| of.backbone_fraction(open));
+                assert_eq!(on_path.to_bits(), expected.to_bits(), "{shape:?}");
                 let [to_end, expected_end] = [&lattice, &network].map(|of| of.leading_to_end(open));
                 assert_eq!(to_end, expected_end, "{shape:?}");
                 some += [&led, &to_end].into_iter().flatten().filter(|&&leads| leads).count();

@@ -104,10 +104,10 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
                     br; span.small { "If not met, it argues against " (clean(&rule.speaks_against)) "." }
                 }
-                @if let Some(left) = rule.without_finer {
+                @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
-                        "Without its finest " (format!("{:.1}", left.percent)) " %, the greatest part that \
-                         fails, its D15F is " (unit.size(left.d15f)) "."
+                        "Without its finest " (format!("{:.1}", left.percent)) " %, the greatest part up \
+                         to 20 % that fails, its D15F is " (unit.size(left.d15f)) "."
                     }
                 }
                 @for text in [&rule.note, &rule.needs] {

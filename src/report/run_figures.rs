@@ -13,6 +13,7 @@ use super::names::{is_named, soil_name};
 use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
+use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 use crate::verdict::words::capital;
 
@@ -331,6 +332,12 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     );
     if gone.is_none() {
         caption.push_str(" Nothing left the filter.");
+    }
+    if let Some(row) = walks.base.first().filter(|row| row[1] > 0.0) {
+        caption.push_str(&format!(
+            " The base's curve alone has the {} % of it that is finer than its finest sieve.",
+            in_digits(row[1], 3)
+        ));
     }
     if all.is_empty() {
         caption.push_str(" Nothing was retained.");

@@ -3,9 +3,8 @@
 use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_of_end;
-use super::replicates::{
-    ReplicateContext, ReplicateResult, classed, concluded, each, some_replicates, values_by_run,
-};
+use super::replicates::{ReplicateContext, ReplicateResult, each, some_replicates, values_by_run};
+use super::summary::{classed, concluded};
 use crate::case::{Case, OtherCurve};
 use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
 use crate::outcome::record::{Classed, CurveEnd, CurveRange, Verdict};
@@ -25,7 +24,7 @@ pub struct BegunEnd<'a> {
 /// that is walked whatever comes of the case, where walks fit into the memory side by side.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
+/// As [`super::replicates::replicates_and`].
 pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
     // The parts before these are the sensitivity study's and the other readings'.
     let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
@@ -50,7 +49,7 @@ fn fit(case: &Case) -> bool {
 /// many as were walked with the curve itself. `None` where the curve is no range.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
+/// As [`super::replicates::replicates_and`].
 pub fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],

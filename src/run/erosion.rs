@@ -1,12 +1,14 @@
 //! What one run of a case erodes on one network, and nothing else of it: for studies that walk many cases.
 
+use std::borrow::Cow;
+
 use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::replicates::plan;
 use crate::case::Case;
 use crate::network::Network;
 use crate::outcome::Eroded;
-use crate::walk::{Clogged, SizeClasses, State, UnblockedExits, Walk, WalkControl};
+use crate::walk::{Clogged, PlainExits, SizeClasses, State, Walk, WalkControl};
 
 /// A run whose record is not wanted: one class of sizes, or as many as two.
 const SIZE_CLASSES: usize = 2;
@@ -19,7 +21,7 @@ const SIZE_CLASSES: usize = 2;
 /// A walk that goes wrong, or that was stopped; particles that do not fit.
 pub fn eroded(
     case: &Case,
-    (network, open): (&Network, Option<&UnblockedExits>),
+    (network, open): (&Network, Option<&PlainExits>),
     (seed, run): (u64, u64),
     clogged: Clogged,
     callbacks: &Callbacks,
@@ -30,7 +32,7 @@ pub fn eroded(
     let classes = SizeClasses::logarithmic(smallest, largest, SIZE_CLASSES);
     let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
     let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-    let mut walk = Walk::with_exits(network, &supply, &state, open);
+    let mut walk = Walk::with_exits(network, &supply, &state, open.map(Cow::Borrowed));
     walk.run(&mut state, &mut |_| match callbacks.is_stopped() {
         true => WalkControl::Stop,
         false => WalkControl::Continue,
@@ -58,7 +60,7 @@ mod tests {
             let network = case.network(seed).unwrap();
             let mut clogged = Clogged::none(&network);
             for run in &outcome.replicates[0].runs {
-                let open = UnblockedExits::new(&network);
+                let open = PlainExits::unblocked(&network);
                 let known = (&network, (base != "base.cu=3").then_some(&open));
                 let found = eroded(&case, known, (seed, run.run), clogged, &Callbacks::default()).unwrap();
                 assert_eq!(found.0.mass_fraction.to_bits(), run.eroded_mass_fraction.to_bits(), "{base}");
@@ -82,7 +84,7 @@ mod tests {
                 let case = Case::new(Scene::built_in(&settings).unwrap()).unwrap();
                 assert!(!case.begins_with_plain_exits());
                 let network = case.network(5).unwrap();
-                let known = UnblockedExits::new(&network);
+                let known = PlainExits::unblocked(&network);
                 let [a, b] = [None, Some(&known)].map(|open| {
                     let clogged = Clogged::none(&network);
                     eroded(&case, (&network, open), (5, 1), clogged, &Callbacks::default()).unwrap()

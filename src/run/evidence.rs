@@ -27,20 +27,18 @@ fn studied(case: &Case) -> Option<BaseSoil> {
     (soil.regraded_at_mm == case.regraded_from.as_ref().map(|(_, at)| *at)).then_some(soil)
 }
 
-/// Walks the margin of a case where it is asked for; `None` too where nothing could be said of it: the walk's
-/// boundary of soils of its kind is no measure of that of tests where their ratio scatters.
+/// Walks the margin of a case, of which this is the first replicate, where it is asked for; `None` too where
+/// nothing could be said of it: the walk's boundary of soils of its kind is no measure of that of tests where
+/// their ratio scatters.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
+/// As [`super::replicates::replicates_and`].
 pub fn walked(
     case: &Case,
-    replicates: &[ReplicateResult],
+    own: &ReplicateResult,
     context: &ReplicateContext,
 ) -> Result<Option<Margin>, RunError> {
-    match walks_margin(case) {
-        true => margin(case, replicates, context),
-        false => Ok(None),
-    }
+    walks_margin(case).then(|| margin(case, own, context)).transpose()
 }
 
 /// Whether the margin of a case is walked.

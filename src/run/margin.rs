@@ -22,6 +22,8 @@ const CLOSE: f64 = 1.04;
 const FARTHEST: [f64; 2] = [0.02, 8.0];
 /// More particles than this are walked one by one only where the case itself has as many.
 const MOST_PARTICLES: u64 = 20_000_000;
+/// What that many take: 8 bytes each, and as much to move them.
+pub const MOST_BYTES: u64 = 16 * MOST_PARTICLES;
 /// Voids across of the lattice, as in the study of real soils that the margin is compared with.
 const ACROSS: u64 = 20;
 /// As many sizes are walked at most, besides the case's own.
@@ -29,16 +31,11 @@ pub const MOST_WALKS: u64 = 16;
 /// Names the checkpoints of these walks, beyond those of all others.
 const FIRST_PART: u64 = 1 << 32;
 
-/// Walks the margin of a case of which these replicates were walked, with the first reading of its base.
+/// Walks the margin of a case of which this is the first replicate, with the first reading of its base.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
-pub fn margin(
-    case: &Case,
-    walked: &[ReplicateResult],
-    context: &ReplicateContext,
-) -> Result<Option<Margin>, RunError> {
-    let Some(own) = walked.first() else { return Ok(None) };
+/// As [`super::replicates::replicates_and`].
+pub fn margin(case: &Case, own: &ReplicateResult, context: &ReplicateContext) -> Result<Margin, RunError> {
     let mut margin = Margin { walks: vec![walk_of(1.0, own)] };
     let mut part = FIRST_PART;
     loop {
@@ -48,7 +45,7 @@ pub fn margin(
             .filter_map(|(part, &factor)| Some((part, factor, of_size(case, factor)?)))
             .collect();
         if cases.is_empty() {
-            return Ok(Some(margin));
+            return Ok(margin);
         }
         part += factors.len() as u64;
         context.tell(Event::MoreRuns { runs: cases.len() as u64 });
@@ -61,7 +58,7 @@ pub fn margin(
         margin.walks.extend(each(cases, fit, one)?);
         margin.walks.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         if !is_whole {
-            return Ok(Some(margin));
+            return Ok(margin);
         }
     }
 }

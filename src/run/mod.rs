@@ -40,6 +40,7 @@ mod reproduce;
 pub mod results;
 pub(crate) mod shared_networks;
 pub(crate) mod studies;
+mod summary;
 pub(crate) mod unfinished;
 pub(crate) mod walk;
 

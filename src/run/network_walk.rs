@@ -1,5 +1,6 @@
 //! Walks networks that are given, without a scene: what other programs built, or one that was built by hand.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -9,7 +10,8 @@ use rayon::prelude::*;
 use super::callbacks::{Callbacks, Event};
 use super::error::RunError;
 use super::machine::Machine;
-use super::replicates::{ReplicateResult, summarise};
+use super::replicates::ReplicateResult;
+use super::summary::summarise;
 use crate::case::{CaseError, PAPER_MASS_RATIO, in_words, replicate_seed};
 use crate::gradation::{Gradation, GradationError, SizeSampler, base_particles};
 use crate::network::Network;
@@ -256,13 +258,14 @@ impl NetworkWalk {
         let first = plan(&blocked);
         let (mut runs, mut below) = (Vec::new(), Vec::new());
         let (mut recorded, mut at_ends) = (Recorded::default(), Vec::new());
+        let mut exits = None;
         for run in 1..=self.runs {
             let begun = Instant::now();
             let supply = plan(&blocked).supply(sampler.clone(), self.n_base, self.increments, seed, run);
             let classes =
                 SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), self.wanted.size_classes);
             let mut state = State::new(network, &supply, classes, blocked, seed, run);
-            let mut walk = Walk::new(network, &supply, &state);
+            let mut walk = Walk::with_exits(network, &supply, &state, exits.take().map(Cow::Owned));
             let mut recorder = Recorder::default();
             walk.run(&mut state, &mut |state| {
                 recorder.observe(&self.wanted, state);
@@ -273,7 +276,8 @@ impl NetworkWalk {
                     false => WalkControl::Continue,
                 }
             })?;
-            let (end, flow) = walk.end(&state)?;
+            let (end, flow, left) = walk.end_with_exits(&state)?;
+            exits = left;
             let d15f = self.d15f_mm();
             let (d15f_mm, pan_fraction) = (d15f.unwrap_or(f64::NAN), self.base.pan_fraction());
             let of = RunId { replicate, run, d15f_mm, pan_fraction };

@@ -4,7 +4,8 @@
 use super::curve_range::{begin_ends, curve_range};
 use super::error::RunError;
 use super::evidence;
-use super::replicates::{ReplicateContext, ReplicateResult, other_readings, replicates};
+use super::margin::MOST_BYTES;
+use super::replicates::{ReplicateContext, ReplicateResult, other_readings, replicates_and};
 use crate::case::Case;
 use crate::outcome::record::{CurveRange, Margin};
 
@@ -24,18 +25,20 @@ impl OtherWalks {
     /// follows from.
     ///
     /// # Errors
-    /// As [`replicates`].
+    /// As [`super::replicates::replicates_and`].
     pub fn with_case(
         case: &Case,
         context: &ReplicateContext,
     ) -> Result<(Vec<ReplicateResult>, Self), RunError> {
-        // Ends fill the threads that would wait for the last replicate.
-        let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));
-        let (walked, begun) = (walked?, begun?);
+        // Ends and the margin do not wait for the last replicate.
+        let margin = |own: &ReplicateResult| evidence::walked(case, own, context);
+        let (walked, begun) =
+            rayon::join(|| replicates_and(case, context, MOST_BYTES, margin), || begin_ends(case, context));
+        let ((walked, margin), begun) = (walked?, begun?);
         let other = Self {
             readings: other_readings(case, context)?,
             range: curve_range(case, &walked, begun, context)?,
-            margin: evidence::walked(case, &walked, context)?,
+            margin,
         };
         Ok((walked, other))
     }

@@ -16,9 +16,9 @@ use super::shared_networks::{NetworkToWalk, SharedNetworks};
 use crate::case::{Case, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, NetworkError};
-use crate::outcome::record::{Classed, Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
+use crate::outcome::record::{Replicate, Run, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
-use crate::outcome::verdict::{below_by_interval, classify};
+use crate::outcome::verdict::classify;
 
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
@@ -26,7 +26,7 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{
-    Clogged, Engine, FlowRecord, RunPlan, Shortcut, SizeClasses, State, UnblockedExits, Walk, WalkControl,
+    Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl,
     from_words,
 };
 
@@ -68,45 +68,79 @@ pub struct ReplicateResult {
     pub(super) below: Vec<bool>,
 }
 
-/// Walks every replicate of the case: as many as the scene says, or until its rule stops.
+/// Walks every replicate of the case: as many as the scene says, or until its rule stops. `of_first` walks
+/// what else hangs on the first of them alone, and takes up to so many bytes: beside the others where walks fit
+/// into the memory side by side, and after them elsewhere.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
-pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
-    all_replicates(case, 0, context)
+pub fn replicates_and<R: Send>(
+    case: &Case,
+    context: &ReplicateContext,
+    bytes_of_first: u64,
+    of_first: impl FnOnce(&ReplicateResult) -> Result<R, RunError> + Send,
+) -> Result<(Vec<ReplicateResult>, R), RunError> {
+    let wanted = first_replicates(case);
+    tell_needs(case, wanted, context);
+    let rest = || some_replicates(case, 0, 2..=wanted, case.n_base, context);
+    let fits = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
+    if !fits || !case.has_room_beside(bytes_of_first) {
+        let walked = all_replicates(case, 0, Vec::new(), context)?;
+        let besides = of_first(&walked[0])?;
+        return Ok((walked, besides));
+    }
+    let first = || {
+        let first = walk_replicate(case, 0, 1, case.n_base, context)?;
+        let besides = of_first(&first)?;
+        Ok((first, besides))
+    };
+    let (first, rest): (Result<_, RunError>, _) = rayon::join(first, rest);
+    let (first, besides) = first?;
+    let mut walked = vec![first];
+    walked.extend(rest?);
+    Ok((all_replicates(case, 0, walked, context)?, besides))
+}
+
+/// Says that the verdict needs so many replicates, as far as is known.
+fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
+    let readings = !case.other_readings.is_empty() || !case.curve_ends.is_empty();
+    context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
 }
 
 /// The same for each other reading of the base's pan fraction, on the same networks.
 ///
 /// # Errors
-/// As [`replicates`].
+/// As [`replicates_and`].
 pub fn other_readings(
     case: &Case,
     context: &ReplicateContext,
 ) -> Result<Vec<Vec<ReplicateResult>>, RunError> {
     // The parts before are those of the sensitivity study.
     let parts = case.sensitivity_factors().len() as u64 + 1..;
-    parts.zip(&case.other_readings).map(|(part, other)| all_replicates(other, part, context)).collect()
+    parts
+        .zip(&case.other_readings)
+        .map(|(part, other)| all_replicates(other, part, Vec::new(), context))
+        .collect()
 }
 
+/// Goes on from those that are walked already, until there are enough.
 fn all_replicates(
     case: &Case,
     part: u64,
+    mut walked: Vec<ReplicateResult>,
     context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
-    let mut walked = Vec::new();
     let mut wanted = first_replicates(case);
     loop {
-        if part == 0 {
-            let readings = !case.other_readings.is_empty() || !case.curve_ends.is_empty();
-            context.tell(Event::VerdictNeeds { replicates: wanted, runs: case.scene.walk.runs, readings });
-        }
         let more = walked.len() as u64 + 1..=wanted;
         walked.extend(some_replicates(case, part, more, case.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
                 context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
                 wanted = next;
+                if part == 0 {
+                    tell_needs(case, wanted, context);
+                }
             }
             _ => return Ok(walked),
         }
@@ -181,7 +215,7 @@ pub(super) fn walk_replicate(
         done.runs.iter().for_each(|_| context.tell(Event::RunDone));
         done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
     }
-    let open = if done.complete { None } else { to_walk.exits(case) };
+    let mut exits = if done.complete { None } else { to_walk.exits(case).map(Cow::Borrowed) };
     while !done.complete {
         let of = RunId {
             replicate,
@@ -190,8 +224,11 @@ pub(super) fn walk_replicate(
             pan_fraction: case.pan_by_mass_only(),
         };
         let begun = Instant::now();
-        let walk = RunContext { case, network, open, id, of };
-        let (state, network, flow) = walk.run(clogged, &mut done, saved.take(), context)?;
+        let walk = RunContext { case, network, id, of };
+        let (state, network, flow, left) =
+            walk.run(clogged, exits.take(), &mut done, saved.take(), context)?;
+        // What the run leaves open is what the next begins with.
+        exits = left.map(Cow::Owned);
         let seconds = begun.elapsed().as_secs_f64();
         let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
         let recorder = std::mem::take(&mut done.recorder);
@@ -264,26 +301,29 @@ pub fn have_networks(case: &Case) -> Result<(), RunError> {
     each(replicates.collect(), fit, one).map(drop)
 }
 
+/// What is left of a run: its state, its network, the flow through it, and its exits.
+type RunEnd<'a> = (State, Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
+
 /// One run of one replicate.
 struct RunContext<'a> {
     case: &'a Case,
     network: &'a Network,
-    /// Its exits where nothing is blocked, if they are known.
-    open: Option<&'a UnblockedExits>,
     id: WalkId,
     of: RunId,
 }
 
 impl RunContext<'_> {
-    /// Walks from the start, or from where it was saved; the state, the network and the flow at the end.
+    /// Walks from the start, with the network's exits where they are known, or from where it was saved; the
+    /// state, the network, the flow and the exits at the end.
     fn run(
         &self,
         clogged: Clogged,
+        exits: Option<Cow<PlainExits>>,
         done: &mut Done,
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
-    ) -> Result<(State, Cow<'_, Network>, Option<FlowRecord>), RunError> {
-        let Self { case, network, open, id, of } = *self;
+    ) -> Result<RunEnd<'_>, RunError> {
+        let Self { case, network, id, of } = *self;
         let WalkId { part, seed, n_base, .. } = id;
         let clogged = match &saved {
             // What is left of constrictions now comes with the state.
@@ -304,7 +344,7 @@ impl RunContext<'_> {
             }
             state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
         }
-        let mut walk = Walk::with_exits(network, &supply, &state, open);
+        let mut walk = Walk::with_exits(network, &supply, &state, exits);
         let (mut last, mut failed) = (Instant::now(), None);
         let mut wanted = case.scene.record.wanted();
         // One replicate is picture enough.
@@ -333,13 +373,13 @@ impl RunContext<'_> {
             return Err(RunError::Save(error));
         }
         walked?;
-        let (end, flow) = walk.end(&state)?;
+        let (end, flow, exits) = walk.end_with_exits(&state)?;
         // The network outlives what the run was fed from.
         let network = match end {
             Cow::Borrowed(_) => Cow::Borrowed(network),
             Cow::Owned(directed) => Cow::Owned(directed),
         };
-        Ok((state, network, flow))
+        Ok((state, network, flow, exits))
     }
 }
 
@@ -376,55 +416,6 @@ pub fn said_by_walks<'a>(
     let replicates = walked.map(|w| &w.replicate).collect();
     let share = 1.0 / increments as f64;
     walks::findings(verdict, &Walked { replicates, clogged, base, share, layers, openings })
-}
-
-/// The verdict that the replicates support together, and their statistics by run.
-pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
-    let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
-    let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
-    let below = |run: usize| {
-        let summary = summaries.get(run)?;
-        let each: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
-        below_by_interval(&summary.eroded_mass_fraction, &each)
-    };
-    (classify(below(0), below(1)), summaries)
-}
-
-/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
-pub(super) fn concluded(
-    case: &Case,
-    walked: &[ReplicateResult],
-) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
-    let (verdict, summary) = summarise(walked);
-    let stopping = stopping(case, walked);
-    // A verdict that was to be certain is one at the level asked for.
-    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
-    (verdict, summary, stopping)
-}
-
-/// What the replicates are worth together, as a point of a study holds it.
-pub fn classed(walked: &[ReplicateResult]) -> Classed {
-    let (verdict, summaries) = summarise(walked);
-    let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();
-    Classed { replicates: walked.len() as u64, stopped_when_clear: false, verdict, runs }
-}
-
-fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
-    let of = |figure: fn(&crate::outcome::record::Run) -> f64| {
-        let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
-        Statistic::of_fraction(&values)
-    };
-    let largest: Vec<f64> =
-        walked.iter().filter_map(|w| w.replicate.runs[run].largest_eroded_over_d15f).collect();
-    RunSummary {
-        run: run as u64 + 1,
-        eroded_mass_fraction: of(|r| r.eroded_mass_fraction),
-        eroded_number_fraction: of(|r| r.eroded_number_fraction),
-        largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest)),
-        blocked_fraction: of(|r| r.blocked_fraction),
-        blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
-        backbone_fraction: of(|r| r.backbone_fraction),
-    }
 }
 
 #[cfg(test)]

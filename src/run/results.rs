@@ -8,8 +8,9 @@ use super::error::RunError;
 use super::evidence::evidence;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
-use super::replicates::{ReplicateResult, classed, concluded, said_by_walks, summarise};
+use super::replicates::{ReplicateResult, said_by_walks};
 use super::studies::Studies;
+use super::summary::{classed, concluded, summarise};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::record::{
     Classed, Confidence, ConstrictionsRecord, IfDispersive, Manifest, Outcome, PanBounds, PanReading,

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use crate::case::Case;
 use crate::network::{Network, NetworkError};
-use crate::walk::UnblockedExits;
+use crate::walk::PlainExits;
 
 /// Networks that are kept take no more than this (bytes), and no more than one part in so many of what the
 /// walks may take.
@@ -17,7 +17,7 @@ const MOST_BYTES: u64 = 1 << 27;
 const PART: u64 = 16;
 
 /// Which exits draws pick on a network of which nothing is blocked, once a case has worked them out.
-type KeptExits = Arc<OnceLock<UnblockedExits>>;
+type KeptExits = Arc<OnceLock<PlainExits>>;
 
 /// A network to walk, and its exits as far as somebody keeps them.
 pub struct NetworkToWalk {
@@ -34,11 +34,11 @@ impl NetworkToWalk {
 
     /// The exits that the first run of a case begins with: worked out by the first case that asks. `None`
     /// where nobody keeps them, or the case begins with others.
-    pub fn exits(&self, case: &Case) -> Option<&UnblockedExits> {
+    pub fn exits(&self, case: &Case) -> Option<&PlainExits> {
         let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
         if kept.get().is_none() {
             // Nobody waits here: two that work them out find the same bits.
-            let _ = kept.set(UnblockedExits::new(&self.network));
+            let _ = kept.set(PlainExits::unblocked(&self.network));
         }
         kept.get()
     }

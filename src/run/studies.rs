@@ -14,7 +14,8 @@ use rayon::prelude::*;
 use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_at_least;
-use super::replicates::{ReplicateContext, ReplicateResult, classed, values_by_run, walk_replicate};
+use super::replicates::{ReplicateContext, ReplicateResult, values_by_run, walk_replicate};
+use super::summary::classed;
 use crate::case::Case;
 use crate::outcome::early_stop::{clear, looks};
 use crate::outcome::record::{Classed, OfThickness, Sensitivity, Statistic, Verdict};
@@ -72,7 +73,7 @@ impl Studies {
     /// that was walked besides taken in.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates`].
+    /// As [`super::replicates::replicates_and`].
     pub fn walk(
         case: &Case,
         own: &[ReplicateResult],

@@ -65,11 +65,15 @@ impl Outcome {
         });
         match placing.collect::<Vec<_>>() {
             placing if placing.is_empty() => format!("{stable}, or have its internal stability tested"),
-            placing => format!(
-                "{stable} and does not segregate ({}); a test of this one's internal stability would not \
-                 settle its segregation",
-                listed(&placing)
-            ),
+            placing => {
+                let dry = !broken(&self.rules, RuleRole::Drainage).is_empty();
+                format!(
+                    "{stable} and does not segregate ({}); a test of this one's internal stability would not \
+                     settle its {}segregation",
+                    listed(&placing),
+                    if dry { "drainage or " } else { "" }
+                )
+            }
         }
     }
 

@@ -91,6 +91,12 @@ impl Washout<'_> {
         format!("its finest {} %", fixed(self.left.percent, 1))
     }
 
+    /// By which criterion it may lose that part; no more than the greatest part that may lie loose is looked at.
+    fn whose(&self) -> String {
+        let is_capped = self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9);
+        format!("by {}{}", named(self.by), if is_capped { "; more may go" } else { "" })
+    }
+
     /// D15F without that part.
     pub fn d15f(&self) -> String {
         let [value, _] = value_and_limit(self.left.d15f, self.least, false, 3);
@@ -111,11 +117,11 @@ impl Washout<'_> {
             format!(" and the boundary of continuing erosion ({})", against(rule, 3)[1])
         });
         format!(
-            "the filter is {}; without {} (by {}) its D15F is {}, \
+            "the filter is {}; without {} ({}) its D15F is {}, \
              {beyond}{continuing}",
             not_stable(&self.unstable),
             self.part(),
-            named(self.by),
+            self.whose(),
             self.d15f()
         )
     }

@@ -1,5 +1,7 @@
 //! Which exit a draw picks: thresholds by void, renewed where an exit closes or water turns.
 
+mod few;
+
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
 
@@ -8,6 +10,7 @@ use super::openings::Ways;
 use super::reads::Reads;
 use super::{Arching, Isa};
 use crate::network::Network;
+use few::FewExits;
 
 /// The exits of one void, as draws see them.
 #[derive(Clone, Copy)]
@@ -165,57 +168,6 @@ pub(super) struct General {
     pub beyond: Vec<(u32, f32)>,
 }
 
-/// Open exits of a void, where they are few.
-#[derive(Clone, Copy)]
-#[repr(align(32))]
-pub(super) struct FewExits {
-    /// Top sixteen bits of the threshold of each open exit but the last; the largest number after them.
-    pub top: [u16; FEW_EXITS],
-    /// Position of each open exit among all.
-    pub position: [u8; FEW_EXITS],
-    /// First exit of the void.
-    pub begin: u32,
-    /// Whether it has an open exit, and no more than fit in here.
-    pub is_few: bool,
-}
-
-/// Open exits that fit in a [`FewExits`].
-pub(super) const FEW_EXITS: usize = 8;
-
-impl FewExits {
-    const NONE: Self = Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, is_few: false };
-
-    /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
-    /// is the position of its last open one.
-    fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
-        // Which exits are open cannot be foreseen: one that is not leaves its place to the next.
-        let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
-        let (mut before, mut open) = (0, 0);
-        for (place, &threshold) in thresholds[..last].iter().enumerate() {
-            (top[open], position[open]) = ((threshold >> 48) as u16, place as u8);
-            open = (open + usize::from(threshold != before)).min(FEW_EXITS);
-            before = threshold;
-        }
-        (top[open], position[open]) = (u16::MAX, last as u8);
-        let is_few = open < FEW_EXITS && last <= usize::from(u8::MAX);
-        Self {
-            top: std::array::from_fn(|i| top[i]),
-            position: std::array::from_fn(|i| position[i]),
-            begin,
-            is_few,
-        }
-    }
-
-    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
-    #[inline(always)]
-    pub fn chosen(&self, draw: u16) -> Option<usize> {
-        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
-        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
-        // Thresholds rise, and there is none for the last exit.
-        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
-    }
-}
-
 /// Stands for "no open exit".
 pub(super) const NONE: u32 = u32::MAX;
 /// Stands for "no exit has been open since the flow was solved last": particles wait until it is solved
@@ -245,11 +197,24 @@ pub(super) struct OpenExits<'a> {
 impl ExitTable {
     /// The table for the constrictions that `blocked` leaves open.
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
-        let ways = Ways::Unblocked(blocked);
-        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
+        Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
+    }
+
+    /// The same, of which no void is set yet.
+    pub(super) fn empty(network: &Network, blocked: &BitSlice) -> Self {
+        let Some([nx, ny, _]) = network.shape() else { return Self::empty_general(network) };
         let finest = network.finest_open(|c| blocked[c]).to_bits();
-        let form = Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest));
-        Self::filled(network, ways, form)
+        Self::of_form(network, Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest)))
+    }
+
+    /// Classes anew, where many constrictions have closed since the table was made: those that are left may
+    /// be coarser than every class.
+    pub(super) fn class_anew(&mut self, network: &Network, blocked: &BitSlice) {
+        if let Form::Lattice(lattice) = &mut self.form
+            && !lattice.by_widths
+        {
+            lattice.class_anew(network.diameters(), blocked, network.finest_open(|c| blocked[c]));
+        }
     }
 
     /// The same for particles that arch or constrictions that leave openings: each particle is held against
@@ -258,25 +223,32 @@ impl ExitTable {
         let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
         let mut lattice = Lattice::new(network.voids(), nx, nx * ny, 0);
         (lattice.by_widths, lattice.classed) = (true, Vec::new());
-        Self::filled(network, ways, Form::Lattice(lattice))
+        Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
     }
 
     /// The same in the form that any network has.
     pub(super) fn general(network: &Network, ways: Ways) -> Self {
+        Self::empty_general(network).filled(network, ways)
+    }
+
+    fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
             last_open: vec![NONE; network.voids()],
             few: vec![FewExits::NONE; network.voids()],
             beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
         };
-        Self::filled(network, ways, Form::General(general))
+        Self::of_form(network, Form::General(general))
     }
 
-    fn filled(network: &Network, ways: Ways, form: Form) -> Self {
-        let mut table = Self { form, isa: Isa::chosen(), upstream: network.upstream() };
+    fn of_form(network: &Network, form: Form) -> Self {
+        Self { form, isa: Isa::chosen(), upstream: network.upstream() }
+    }
+
+    fn filled(mut self, network: &Network, ways: Ways) -> Self {
         let voids = 0..network.voids() as u32;
-        of_each(network, ways, voids, |exits| table.set(network, ways, exits));
-        table
+        of_each(network, ways, voids, |exits| self.set(network, ways, exits));
+        self
     }
 
     /// Renews a void of which an exit has just closed, is narrower, or leads elsewhere.
@@ -395,6 +367,14 @@ impl GeneralPart<'_> {
     }
 }
 
+/// The class of a void of which this is the finest open exit, as it stands in a word.
+#[inline]
+fn class_of(finest: f32, of_all: u32) -> u32 {
+    // Nothing opens again.
+    let class = finest.to_bits().checked_sub(of_all).expect("no open exit is finer") >> CLASS_SHIFT;
+    (class << 16).min(CLASS)
+}
+
 impl Lattice {
     fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
         let moves = std::array::from_fn(|index| match index {
@@ -416,11 +396,19 @@ impl Lattice {
     /// Both words of a void.
     fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
         self.set_plain(void, thresholds, last_open);
-        // Nothing opens again.
-        let class = finest.to_bits().checked_sub(self.finest).expect("no open exit is finer") >> CLASS_SHIFT;
-        let class = (class << 16).min(CLASS);
-        let plain = self.plain[void as usize];
+        let (class, plain) = (class_of(finest, self.finest), self.plain[void as usize]);
         self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
+    }
+
+    /// The class of every void, where no open exit is finer than this.
+    fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
+        self.finest = finest.to_bits();
+        let of_voids = diameters.as_chunks::<3>().0.iter().zip(&mut self.classed);
+        for (void, (diameters, word)) in of_voids.enumerate() {
+            let open = diameters.iter().zip(3 * void..).filter(|&(&d, c)| d > 0.0 && !blocked[c]);
+            let finest = open.map(|(&d, _)| d).fold(f32::INFINITY, f32::min);
+            *word = *word & !CLASS | class_of(finest, self.finest);
+        }
     }
 
     fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {

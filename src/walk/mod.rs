@@ -102,10 +102,13 @@ pub use threads::threads;
 
 use std::borrow::Cow;
 
+use bitvec::slice::BitSlice;
+use bitvec::vec::BitVec;
+
 use crate::network::{FlowError, Network};
 use directions::Directions;
 use merge::Events;
-use openings::Weighed;
+use openings::{Ways, Weighed};
 
 /// Whether a run goes on after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,19 +160,46 @@ pub struct Walk<'a> {
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
-/// Which exit a draw picks on a network of which nothing is blocked: worked out once for the first runs of
-/// many walks.
-pub struct UnblockedExits {
+/// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first
+/// runs of many walks, or left by a run to the next.
+#[derive(Clone)]
+pub struct PlainExits {
+    /// Number of blocked constrictions that they hold for: nothing opens again, so it names them.
+    blocked: u64,
     table: ExitTable,
-    shares: counts::Shares,
+    /// How passive particles are split, where there were any.
+    shares: Option<counts::Shares>,
 }
 
-impl UnblockedExits {
-    /// Those of this network.
-    pub fn new(network: &Network) -> Self {
-        let open = bitvec::vec::BitVec::repeat(false, network.constrictions());
-        let shares = counts::Shares::new(network, openings::Ways::Unblocked(&open));
-        Self { table: ExitTable::new(network, &open), shares }
+/// What is left of a walk: its network, how the permeability fell, and its exits.
+type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
+
+impl PlainExits {
+    /// Those of this network with nothing blocked.
+    pub fn unblocked(network: &Network) -> Self {
+        Self::new(network, &BitVec::<usize>::repeat(false, network.constrictions()), 0, true)
+    }
+
+    /// Of what `blocked` leaves open, so many in all; with or without the shares of passive particles.
+    fn new(network: &Network, blocked: &BitSlice, count: u64, with_shares: bool) -> Self {
+        let (ways, voids) = (Ways::Unblocked(blocked), 0..network.voids() as u32);
+        let mut table = ExitTable::empty(network, blocked);
+        let mut shares = with_shares.then(|| counts::Shares::empty(network));
+        exits::of_each(network, ways, voids, |of_void| {
+            table.set(network, ways, of_void);
+            if let Some(shares) = &mut shares {
+                shares.set(network, of_void);
+            }
+        });
+        Self { blocked: count, table, shares }
+    }
+
+    /// The same for a run that begins with them.
+    fn again(mut self, network: &Network, blocked: &BitSlice) -> Self {
+        if self.blocked > 0 {
+            self.table.class_anew(network, blocked);
+        }
+        self
     }
 }
 
@@ -179,16 +209,14 @@ impl<'a> Walk<'a> {
         Self::with_exits(network, supply, state, None)
     }
 
-    /// As [`Walk::new`], with the exits of this network, known already, where nothing is blocked in `state`
-    /// and nothing else hangs on who goes where.
+    /// As [`Walk::new`], with exits of this network that are known already; they are worked out where they
+    /// are those of another state, or more hangs on who goes where than what is blocked.
     pub fn with_exits(
         network: &'a Network,
         supply: &'a Supply,
         state: &State,
-        open: Option<&UnblockedExits>,
+        known: Option<Cow<PlainExits>>,
     ) -> Self {
-        let is_open = state.tally.blocked == 0 && !network.exit_rule().needs_flow();
-        let open = open.filter(|_| is_open && state.openings.is_none() && supply.arching().is_none());
         let mut network = Cow::Borrowed(network);
         let (mut directions, mut no_flow) = (None, None);
         if network.exit_rule().needs_flow() {
@@ -199,16 +227,24 @@ impl<'a> Walk<'a> {
         }
         let weighed = weighed(directions.as_ref());
         let ways = state.ways(weighed);
-        let table = match (supply.arching(), &state.openings) {
+        let (table, shares) = match (supply.arching(), &state.openings) {
             (None, None) => {
-                let known = open.map(|open| open.table.clone());
-                known.unwrap_or_else(|| ExitTable::new(&network, &state.blocked))
+                let of = |known: &Cow<PlainExits>| known.blocked == state.tally.blocked;
+                let PlainExits { table, shares, .. } =
+                    match known.filter(|known| !network.exit_rule().needs_flow() && of(known)) {
+                        Some(known) => known.into_owned().again(&network, &state.blocked),
+                        None => {
+                            let with_shares = !matches!(state.passive, Passive::OneByOne);
+                            PlainExits::new(&network, &state.blocked, state.tally.blocked, with_shares)
+                        }
+                    };
+                (table, shares)
             }
-            (Some(arching), _) if arching.of_void().is_some() => ExitTable::general(&network, ways),
-            _ => ExitTable::by_widths(&network, ways),
+            (Some(arching), _) if arching.of_void().is_some() => (ExitTable::general(&network, ways), None),
+            _ => (ExitTable::by_widths(&network, ways), None),
         };
         let trap = trapped::Search::new(&network, supply.arching());
-        let passive = counts::PassiveWalk::new(&network, supply, state, open.map(|open| &open.shares));
+        let passive = counts::PassiveWalk::new(&network, supply, state, shares);
         Self {
             network,
             directions,
@@ -228,7 +264,16 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// [`WalkError::Flow`].
     pub fn end(self, state: &State) -> Result<(Cow<'a, Network>, Option<FlowRecord>), WalkError> {
-        let Self { mut network, directions, no_flow, .. } = self;
+        let (network, record, _) = self.end_with_exits(state)?;
+        Ok((network, record))
+    }
+
+    /// The same, and the exits that the next run on this network may begin with.
+    ///
+    /// # Errors
+    /// [`WalkError::Flow`].
+    pub fn end_with_exits(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
+        let Self { mut network, directions, no_flow, supply, table, passive, .. } = self;
         let error = |source| WalkError::Flow { increment: state.increment, source };
         if let Some(source) = no_flow {
             return Err(error(source));
@@ -237,7 +282,13 @@ impl<'a> Walk<'a> {
             Some(directions) => Some(directions.end(network.to_mut(), state).map_err(error)?),
             None => None,
         };
-        Ok((network, record))
+        let is_plain = !network.exit_rule().needs_flow() && state.openings.is_none();
+        let exits = (is_plain && supply.arching().is_none()).then(|| PlainExits {
+            blocked: state.tally.blocked,
+            table,
+            shares: passive.map(counts::PassiveWalk::into_shares),
+        });
+        Ok((network, record, exits))
     }
 
     /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
@@ -289,10 +340,14 @@ impl<'a> Walk<'a> {
     /// This increment's share of the base starts, each particle on a start node, and every moving particle
     /// attempts one move, on the open set at the start of the increment.
     fn insert_and_step(&mut self, state: &mut State) {
-        kernel::step(&self.network, &self.table, self.supply, state, &mut self.events);
-        if let Some(passive) = &mut self.passive {
-            passive.insert(&self.network, self.supply, state);
-            passive.step(&self.network, state);
+        let Self { network, table, supply, events, passive, .. } = self;
+        let mut one_by_one = |state: &mut State| kernel::step(network, table, supply, state, events);
+        match passive {
+            Some(passive) => {
+                passive.insert(network, supply, state);
+                passive.step_beside(network, state, one_by_one);
+            }
+            None => one_by_one(state),
         }
     }
 

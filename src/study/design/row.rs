@@ -16,7 +16,7 @@ use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
 use crate::verdict::{Finding, finding};
-use crate::walk::{Clogged, UnblockedExits};
+use crate::walk::{Clogged, PlainExits};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -227,7 +227,7 @@ pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
     /// The network that was walked last, and its exits.
-    network: Option<(Network, UnblockedExits)>,
+    network: Option<(Network, PlainExits)>,
     /// What the first run left of the constrictions, by step, of each reading of the base.
     clogged: BTreeMap<i64, Vec<Clogged>>,
     callbacks: &'a Callbacks<'a>,
@@ -254,7 +254,7 @@ impl OneNetwork<'_> {
             Some(kept) => kept,
             None => {
                 let network = case.network(self.seed)?;
-                let open = UnblockedExits::new(&network);
+                let open = PlainExits::unblocked(&network);
                 (network, open)
             }
         };

@@ -41,6 +41,10 @@ use flow::Flow;
 pub(super) use shares::Shares;
 use sizes::PassiveSizes;
 
+/// Voids to move expectations in, and particles to move one by one, from which both take so long that an idle
+/// thread is worth waking.
+const WORTH_A_THREAD: usize = 1 << 14;
+
 /// The machinery of the passive particles of a run; rebuilt from network and state, and never stored.
 pub struct PassiveWalk<'a> {
     sizes: PassiveSizes<'a>,
@@ -66,9 +70,8 @@ struct Trap {
 impl<'a> PassiveWalk<'a> {
     /// Prepares to move the passive particles of `state`, by the shares of its open exits where they are
     /// known; `None` where there are none but one by one.
-    pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<&Shares>) -> Option<Self> {
-        let shares =
-            || known.cloned().unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
+    pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<Shares>) -> Option<Self> {
+        let shares = || known.unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
         let (shares, mover) = match &state.passive {
             Passive::OneByOne => return None,
             Passive::Counts(moving) => (shares(), Mover::Counts(Flow::new(network, moving))),
@@ -84,6 +87,11 @@ impl<'a> PassiveWalk<'a> {
             mover,
             trap: None,
         })
+    }
+
+    /// The shares of the exits that are open now.
+    pub fn into_shares(self) -> Shares {
+        self.shares
     }
 
     /// Uses the instructions of `isa`, to the same bits.
@@ -130,6 +138,37 @@ impl<'a> PassiveWalk<'a> {
                 self.count_expected(None, state);
             }
             _ => unreachable!("the mover was made for this state"),
+        }
+    }
+
+    /// [`Self::step`] after `one_by_one`, which neither reads nor changes passive particles: beside it where
+    /// both take long enough for two threads.
+    pub fn step_beside(
+        &mut self,
+        network: &Network,
+        state: &mut State,
+        one_by_one: impl FnOnce(&mut State) + Send,
+    ) {
+        let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
+        let is_long = network.voids() >= WORTH_A_THREAD && moving >= WORTH_A_THREAD as u64;
+        match (&mut self.mover, &mut state.passive) {
+            (Mover::Expected(flow), passive @ Passive::Expected(_))
+                if is_long && rayon::current_num_threads() > 1 =>
+            {
+                let mut apart = std::mem::replace(passive, Passive::OneByOne);
+                let shares = &self.shares;
+                let step = || match &mut apart {
+                    Passive::Expected(expected) => flow.step(network, shares, expected),
+                    _ => unreachable!("it was taken from the state"),
+                };
+                rayon::join(|| one_by_one(state), step);
+                state.passive = apart;
+                self.count_expected(None, state);
+            }
+            _ => {
+                one_by_one(state);
+                self.step(network, state);
+            }
         }
     }
 

@@ -43,16 +43,21 @@ pub(in crate::walk) struct Shares {
 impl Shares {
     /// The shares of the constrictions that are open.
     pub fn new(network: &Network, ways: Ways) -> Self {
-        let mut shares = Self {
+        let mut shares = Self::empty(network);
+        exits::of_each(network, ways, 0..network.voids() as u32, |exits| shares.set(network, exits));
+        shares
+    }
+
+    /// The same, of which no void is set yet.
+    pub fn empty(network: &Network) -> Self {
+        Self {
             probability: vec![0; network.constrictions()],
             on: vec![1; network.constrictions()],
             way: vec![Way::None; network.voids()],
             shut: vec![0; network.voids().div_ceil(64)],
             of_three: vec![0; network.voids().div_ceil(64)],
             tops: vec![[0; 2]; network.voids()],
-        };
-        exits::of_each(network, ways, 0..network.voids() as u32, |exits| shares.set(network, exits));
-        shares
+        }
     }
 
     /// Renews the shares of one void.

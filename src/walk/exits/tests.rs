@@ -1,3 +1,4 @@
+use super::few::FEW_EXITS;
 use super::*;
 use bitvec::prelude::*;
 
@@ -115,4 +116,36 @@ fn nothing_is_left_of_a_blocked_giant() {
         let (t, last) = of([scale, 1.0, scale], [false; 3]);
         assert!(t[0] <= t[1] && last == Some(2));
     }
+}
+
+/// A table whose voids were renewed one after another as constrictions closed, and classed anew, is the one
+/// that is made of what is left open.
+#[test]
+fn a_table_that_a_run_leaves_is_that_of_the_next() {
+    let shape = [7, 5, 4];
+    let count = Network::lattice_constrictions(shape).unwrap();
+    let diameters =
+        (0..count).map(|c| if c % 41 == 0 { 0.0 } else { 0.2 + (c * 7919 % 1009) as f32 / 100.0 });
+    let network = Network::cubic_from_diameters(shape, diameters.collect(), 1.0).unwrap();
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    let mut table = ExitTable::new(&network, &blocked);
+    let mut classes = [0; 2];
+    for coarsest in [0.25, 1.0, 4.0, 20.0] {
+        for c in (0..count).filter(|&c| network.diameters()[c] < coarsest && c % 17 > 0 || c % 29 == 0) {
+            if !blocked.replace(c, true) {
+                let ways = Ways::Unblocked(&blocked);
+                of_each(&network, ways, [(c / 3) as u32], |exits| table.set(&network, ways, exits));
+            }
+        }
+        let fresh = ExitTable::new(&network, &blocked);
+        let words = |table: &ExitTable| match &table.form {
+            Form::Lattice(lattice) => (lattice.plain.clone(), lattice.classed.clone(), lattice.finest),
+            Form::General(_) => unreachable!("a lattice"),
+        };
+        classes[0] += usize::from(words(&table) != words(&fresh));
+        table.class_anew(&network, &blocked);
+        assert_eq!(words(&table), words(&fresh), "{coarsest}");
+        classes[1] += 1;
+    }
+    assert!(classes[0] > 0 && classes[1] == 4, "{classes:?}");
 }

@@ -77,7 +77,8 @@ impl ExpectedFlow {
             ByNetwork::Lattice(flow) => flow.step(expected, &mut self.holding),
         }
         if self.holding.len() > known {
-            self.holding.sort_unstable();
+            // Two runs, each of which rises: what was known, and what is new.
+            self.holding.sort();
         }
         self.rests = resting(&self.holding, expected);
         if matches!(self.by_network, ByNetwork::Lattice(_)) {

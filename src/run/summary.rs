@@ -1,0 +1,52 @@
+//! What the replicates of a case are worth together.
+
+use super::replicates::{ReplicateResult, stopping};
+use crate::case::Case;
+use crate::outcome::record::{Classed, RunSummary, Statistic, Stopping, Verdict};
+use crate::outcome::verdict::{below_by_interval, classify};
+
+/// The verdict that the replicates support together, and their statistics by run.
+pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
+    let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
+    let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
+    let below = |run: usize| {
+        let summary = summaries.get(run)?;
+        let each: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
+        below_by_interval(&summary.eroded_mass_fraction, &each)
+    };
+    (classify(below(0), below(1)), summaries)
+}
+
+/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
+pub fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
+    let (verdict, summary) = summarise(walked);
+    let stopping = stopping(case, walked);
+    // A verdict that was to be certain is one at the level asked for.
+    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
+    (verdict, summary, stopping)
+}
+
+/// What the replicates are worth together, as a point of a study holds it.
+pub fn classed(walked: &[ReplicateResult]) -> Classed {
+    let (verdict, summaries) = summarise(walked);
+    let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();
+    Classed { replicates: walked.len() as u64, stopped_when_clear: false, verdict, runs }
+}
+
+fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
+    let of = |figure: fn(&crate::outcome::record::Run) -> f64| {
+        let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
+        Statistic::of_fraction(&values)
+    };
+    let largest: Vec<f64> =
+        walked.iter().filter_map(|w| w.replicate.runs[run].largest_eroded_over_d15f).collect();
+    RunSummary {
+        run: run as u64 + 1,
+        eroded_mass_fraction: of(|r| r.eroded_mass_fraction),
+        eroded_number_fraction: of(|r| r.eroded_number_fraction),
+        largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest)),
+        blocked_fraction: of(|r| r.blocked_fraction),
+        blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
+        backbone_fraction: of(|r| r.backbone_fraction),
+    }
+}

@@ -1,0 +1,53 @@
+//! The exits of a void where few are open: all that a draw needs of them, side by side.
+
+/// Open exits of a void, where they are few.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub struct FewExits {
+    /// Top sixteen bits of the threshold of each open exit but the last; the largest number after them.
+    pub top: [u16; FEW_EXITS],
+    /// Position of each open exit among all.
+    pub position: [u8; FEW_EXITS],
+    /// First exit of the void.
+    pub begin: u32,
+    /// Whether it has an open exit, and no more than fit in here.
+    pub is_few: bool,
+}
+
+/// Open exits that fit in a [`FewExits`].
+pub const FEW_EXITS: usize = 8;
+
+impl FewExits {
+    pub const NONE: Self =
+        Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, is_few: false };
+
+    /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
+    /// is the position of its last open one.
+    pub fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
+        // Which exits are open cannot be foreseen: one that is not leaves its place to the next.
+        let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
+        let (mut before, mut open) = (0, 0);
+        for (place, &threshold) in thresholds[..last].iter().enumerate() {
+            (top[open], position[open]) = ((threshold >> 48) as u16, place as u8);
+            open = (open + usize::from(threshold != before)).min(FEW_EXITS);
+            before = threshold;
+        }
+        (top[open], position[open]) = (u16::MAX, last as u8);
+        let is_few = open < FEW_EXITS && last <= usize::from(u8::MAX);
+        Self {
+            top: std::array::from_fn(|i| top[i]),
+            position: std::array::from_fn(|i| position[i]),
+            begin,
+            is_few,
+        }
+    }
+
+    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
+    #[inline(always)]
+    pub fn chosen(&self, draw: u16) -> Option<usize> {
+        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
+        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
+        // Thresholds rise, and there is none for the last exit.
+        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
+    }
+}
