@@ -69,8 +69,8 @@ pub struct ReplicateResult {
 }
 
 /// Walks every replicate of the case: as many as the scene says, or until its rule stops. `of_first` walks
-/// what else hangs on the first of them alone, and takes up to so many bytes: beside the others where walks fit
-/// into the memory side by side, and after them elsewhere.
+/// what else hangs on the first of them alone, and takes up to so many bytes: beside the others where walks
+/// fit into the memory side by side, and after them elsewhere.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.

@@ -91,7 +91,7 @@ impl Washout<'_> {
         format!("its finest {} %", fixed(self.left.percent, 1))
     }
 
-    /// By which criterion it may lose that part; no more than the greatest part that may lie loose is looked at.
+    /// By which criterion it may lose that part; no more is looked at than may lie loose.
     fn whose(&self) -> String {
         let is_capped = self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9);
         format!("by {}{}", named(self.by), if is_capped { "; more may go" } else { "" })

@@ -1,7 +1,7 @@
 //! Drawing start nodes and diameters with wide vectors: portable code, compiled for each instruction set.
 //!
-//! Each step is a loop over a whole batch: so it becomes vector code, and no particle waits for another. Masses
-//! alone are added one after another, as their order is part of the result.
+//! Each step is a loop over a whole batch: so it becomes vector code, and no particle waits for another.
+//! Masses alone are added one after another, as their order is part of the result.
 
 use super::sizes::cube;
 use super::{Isa, Supply};
