@@ -18,7 +18,7 @@ from statistics import median
 CACHE = {"second": "second cache", "third": "third cache"}
 
 INSERTED = "the inverse cube root, then random words and the sum of masses (parts below)"
-STEP = "random reads of the table; portable code: arithmetic in vectors of four, which hand-written SSE2 has no faster"
+STEP = "random reads of the table; portable code: arithmetic in vectors of four, which hand-written SSE2 has 2 to 6 % faster"
 
 #: Kernel: what an item is; what it takes; what holds it up next.
 KERNELS = {

@@ -535,7 +535,7 @@ def page(cells, name, head):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
-    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12; graphs by area and dense filters of Cu 6 with `marin-2018` by c8430d8.", help="date, machine and commit of the walks")
+    parser.add_argument("--of", default="2026-11-25, AMD EPYC, program of commit ddfd4ba with the script of b1fdde1, later cells of db5594f. Arches and filters of Cu 6 are of 2026-11-26: `arches.csv` by commits eda8e41 and, dense and broad filters with bases of Cu 3 and 4.5 and Cu 6 with laws, 8d84574; `laboratory.csv`, `openings.csv`, `arches-shares.csv` and the 120 layers of `arches.csv` by 9225e12; graphs by area, `laboratory-increments.csv` and dense filters of Cu 6 with `marin-2018` by c8430d8.", help="date, machine and commit of the walks")
     options = parser.parse_args()
     cells = Cells(options.out)
     Path(f"{options.out}.svg").write_text(figure(cells))
