@@ -169,7 +169,7 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
             @if let Some(margin) = &said.margin { p { (unbroken(margin)) "." } }
             @if let Some(dispersive) = &said.if_dispersive { p { b { (clean(dispersive)) "." } } }
             @if design.confidence != Confidence::Within {
-                p { b { (capital(design.confidence.words())) } "." }
+                p { "Of the walk: " b { (design.confidence.words()) } "." }
             }
             @if let Some((row, held)) = &found {
                 @if let Some(base) = design.base.size() { p.lead { (base.words()) "." } }
@@ -263,7 +263,7 @@ fn in_doubt(design: &Design) -> Markup {
             p { "The limit of practice sets them. " (design.walk_beside_practice()) }
         }
         @if is_shown {
-            p { b { (capital(design.confidence.words())) } ": the findings on the first page say why." }
+            p { "Of the walk: " b { (design.confidence.words()) } "; the findings say why." }
         }
     }
 }
