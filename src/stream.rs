@@ -324,7 +324,7 @@ pub fn below(word: u64, n: u64) -> u64 {
 #[inline(always)]
 pub fn below_32(word: u64, n: u32) -> u32 {
     let (high, low) = (word >> 32, word & u64::from(u32::MAX));
-    ((high * u64::from(n) + (low * u64::from(n) >> 32)) >> 32) as u32
+    ((high * u64::from(n) + ((low * u64::from(n)) >> 32)) >> 32) as u32
 }
 
 /// `word` as an f64 strictly between 0 and 1 (53 bits, centred).
@@ -332,7 +332,7 @@ pub fn below_32(word: u64, n: u32) -> u32 {
 pub fn unit(word: u64) -> f64 {
     // As the mantissa of a number from 1 to 2, of which all but half of the last bit is taken: exact, and
     // many machines have no instruction that makes floats of several 64-bit integers.
-    f64::from_bits(1.0f64.to_bits() | word >> 12) - (1.0 - f64::EPSILON / 2.0)
+    f64::from_bits(1.0f64.to_bits() | (word >> 12)) - (1.0 - f64::EPSILON / 2.0)
 }
 
 #[cfg(test)]
