@@ -143,7 +143,7 @@ fn a_rule_that_is_met_was_judged_for_these_gradations_alone() {
     let mut plan = Plan::usual();
     let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
     let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
-    let said = |plan: &Plan| words(&made(plan).0).matches("Judged for these two gradations alone: ").count();
+    let said = |plan: &Plan| words(&made(plan).0).matches("Judged for these two gradations alone. ").count();
     for (filter, times) in [([(1.0, 0.0), (3.0, 100.0)], 1), ([(8.0, 0.0), (16.0, 100.0)], 0)] {
         plan.outcome.rules = PairRules::of(&sand, &soil(&filter)).rules;
         assert_eq!(said(&plan), times, "{filter:?}");
@@ -177,7 +177,7 @@ fn a_washout_is_said_once_and_a_broad_base_among_the_first() {
     let ids: Vec<&str> = foremost.iter().map(|finding| &*finding.id).collect();
     assert_eq!((ids, more), (vec!["one", "two", "broad_base"], 1));
     let next = plan.outcome.next_in_words();
-    assert!(next.starts_with("take a filter with a D15F of at most 2.02 mm"), "{next}");
+    assert!(next.starts_with("take a filter with a D15F of at most 2.03 mm"), "{next}");
     assert!(next.contains(" and does not segregate (Cu of the filter "), "{next}");
     assert!(next.contains("; a test of this one's internal stability would not settle its "), "{next}");
 }
@@ -395,7 +395,7 @@ fn the_first_printed_sheet_is_complete() {
         plan.outcome.rules = pair.rules;
         let long = "The answer depends on the 12 % of the base that is finer than its finest sieve. With all of it \
                     finer than every constriction the verdict is no erosion, with all of it 0.075 mm in size it is \
-                    continuing erosion; the finest constriction is 0.05 mm. A hydrometer test would settle this part";
+                    continuing erosion; the finest constriction is 0.05 mm. A hydrometer test would decide";
         let made_up = (1..=findings).map(|n| format!("{long} ({n})."));
         plan.outcome.warnings = made_up.chain(pair.warnings).take(findings).collect();
         let rows = |soil: &Gradation| soil.points().iter().map(|&(size, percent)| [size, percent]).collect();
