@@ -421,7 +421,8 @@ fn the_first_printed_sheet_is_complete() {
             // What both rules of drainage ask for is said once.
             let is_said_once = |id: &str| id == "permeability-em-1901" && limit(id) == limit("permeability");
             let listed = rules.iter().filter(|rule| rule.role != RuleRole::Walk && !is_said_once(&rule.id));
-            let names = listed.map(|rule| &*rule.name);
+            // The end of a long name stands on a second line, behind the cells beside it.
+            let names = listed.map(|rule| rule.name.split_at(rule.name.floor_char_boundary(50)).0);
             for part in
                 names.chain(["Figure 1.", "D5 ", "D95 ", "Group by ASTM D2487", "The model leaves out: "])
             {
