@@ -83,6 +83,12 @@ impl Gradation {
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
     }
 
+    /// The same from rows as records hold them: size (mm), percent finer by mass.
+    pub(crate) fn of_rows(rows: &[[f64; 2]]) -> Result<Gradation, GradationError> {
+        let points: Vec<(f64, f64)> = rows.iter().map(|&[size, percent]| (size, percent)).collect();
+        Gradation::from_points(&points, None)
+    }
+
     /// A curve from checked points.
     pub(super) fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
         let log_ratio: Vec<f64> = size_mm.windows(2).map(|w| libm::log(w[1] / w[0])).collect();

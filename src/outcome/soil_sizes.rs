@@ -37,8 +37,7 @@ const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", |soil, _|
 /// Each of them of a soil, by its name: `None` where the sieves do not tell. Without a unit there are neither
 /// fines nor a group.
 pub fn sizes_of(rows: &[[f64; 2]], unit: SizeUnit) -> Vec<(&'static str, Option<String>)> {
-    let points: Vec<(f64, f64)> = rows.iter().map(|row| (row[0], row[1])).collect();
-    let soil = Gradation::from_points(&points, None).ok();
+    let soil = Gradation::of_rows(rows).ok();
     let of_unit = if unit == SizeUnit::D0f { &[] } else { &OF_UNIT[..] };
     SIZES
         .iter()

@@ -157,17 +157,16 @@ impl<'a> GivenSoils<'a> {
         let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
         let mut figure = Figure::new(title, what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
         if let Some((fine, coarse)) = &sides {
-            let (fine, coarse) = (points(fine), points(coarse));
-            let outline = fine.iter().chain(coarse.iter().rev()).copied().collect();
+            let outline = fine.iter().chain(coarse.iter().rev()).map(|&[x, y]| (x, y)).collect();
             figure.add(Area::new(outline, GREEN, 0.15).label("band"));
-            figure.add(Line::new(fine, GREEN).width(2.6).label("fine side"));
-            figure.add(Line::new(coarse, BLUE).width(2.6).label("coarse side"));
+            figure.add(Line::of_rows(fine, GREEN).width(2.6).label("fine side"));
+            figure.add(Line::of_rows(coarse, BLUE).width(2.6).label("coarse side"));
         }
         for curve in drawn {
             curve.draw(&mut figure, if self.curves.len() == 1 { "base" } else { curve.name });
         }
         if !filter.is_empty() {
-            let line = Line::new(points(filter), BLACK).width(1.4).dash(Dash::Dotted);
+            let line = Line::of_rows(filter, BLACK).width(1.4).dash(Dash::Dotted);
             figure.add(line.label("filter,\nas given"));
         }
         Some(Drawn::new("specification", figure, self.caption(band.is_some(), words, drawn.len())))
@@ -207,16 +206,12 @@ impl<'a> GivenCurve<'a> {
     fn draw(&self, figure: &mut Figure, name: &str) {
         let name = shorten(name, 24);
         match self.regraded.is_empty() {
-            true => figure.add(Line::new(points(self.sampled), VERMILLION).label(&name)),
+            true => figure.add(Line::of_rows(self.sampled, VERMILLION).label(&name)),
             false => {
-                let sampled = Line::new(points(self.sampled), VERMILLION).width(1.4).dash(Dash::Dashed);
+                let sampled = Line::of_rows(self.sampled, VERMILLION).width(1.4).dash(Dash::Dashed);
                 figure.add(sampled.label(&format!("{name},\nas sampled")));
-                figure.add(Line::new(points(self.regraded), VERMILLION).label(&format!("{name},\nregraded")));
+                figure.add(Line::of_rows(self.regraded, VERMILLION).label(&format!("{name},\nregraded")));
             }
         }
     }
-}
-
-fn points(rows: &[[f64; 2]]) -> Vec<(f64, f64)> {
-    rows.iter().map(|row| (row[0], row[1])).collect()
 }

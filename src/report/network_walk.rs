@@ -110,14 +110,13 @@ fn replicate(record: &NetworkWalkRecord) -> [&'static str; 2] {
 /// The base, and the diameters of the constrictions.
 fn sizes(record: &NetworkWalkRecord) -> Drawn {
     let (base, network) = (&record.base.gradation, &record.network.diameters);
-    let points = |rows: &[[f64; 2]]| rows.iter().map(|row| (row[0], row[1])).collect();
     let x = size_axis(false, base.iter().chain(network).map(|row| row[0]));
     let what = "Percent finer against size for the base (by mass) and the constrictions (by number)";
     let y = Axis::percent("Percent finer (%)");
     let mut figure =
         Figure::new("Base and constrictions", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0));
-    figure.add(Line::new(points(base), VERMILLION).width(2.6).label("base\n(by mass)"));
-    let constrictions = Line::new(points(network), BLUE).dash(Dash::Dashed);
+    figure.add(Line::of_rows(base, VERMILLION).width(2.6).label("base\n(by mass)"));
+    let constrictions = Line::of_rows(network, BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
     let caption = "Percent finer by mass of the base, and percent smaller by number of the network’s open \
                    constrictions. Base particles pass a constriction that is no smaller than they are.";

@@ -46,24 +46,23 @@ fn dc(summary: &Summary, percent: f64) -> Option<f64> {
 
 /// Gradation and constriction curve together.
 fn curves(packed: &Packed) -> Drawn {
-    let gradation: Vec<(f64, f64)> = packed.record.gradation.iter().map(|row| (row[0], row[1])).collect();
+    let gradation = &packed.record.gradation;
     let constrictions: Vec<(f64, f64)> =
         packed.curve.iter().map(|row| (row.diameter_mm, row.percent_smaller)).collect();
     let low = constrictions.first().map_or(0.1, |p| p.0);
-    let high = gradation.last().map_or(1.0, |p| p.0);
+    let high = gradation.last().map_or(1.0, |row| row[0]);
     let x = Axis::log("Diameter (mm)", low, high);
     let what = "Percent finer against size: the grains by mass, the constrictions by number";
     let mut figure =
         Figure::new("Gradation and constriction curve", what, "", x, Axis::percent("Percent finer (%)"));
-    figure.add(Line::new(gradation, BLUE).width(2.5).label("grains, by mass"));
+    figure.add(Line::of_rows(gradation, BLUE).width(2.5).label("grains, by mass"));
     figure.add(
         Line::new(constrictions, VERMILLION).width(2.5).dash(Dash::Dashed).label("constrictions,\nby number"),
     );
     for (rows, name) in
         packed.record.inscribed.iter().zip(["inscribed circles, dense", "inscribed circles, loose"])
     {
-        let guess = rows.iter().map(|row| (row[0], row[1])).collect();
-        figure.add(Line::new(guess, GREY).width(1.2).dash(Dash::Dotted).label(name));
+        figure.add(Line::of_rows(rows, GREY).width(1.2).dash(Dash::Dotted).label(name));
     }
     for percent in [5.0, 50.0] {
         if let Some(d) = dc(&packed.summary, percent) {

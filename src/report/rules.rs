@@ -106,8 +106,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 }
                 @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
-                        "Without its finest " (format!("{:.1}", left.percent)) " %, the greatest part up \
-                         to 20 % that fails, its D15F is " (unit.size(left.d15f)) "."
+                        "Without its finest " (format!("{:.1}", left.percent)) " % its D15F is "
+                        (unit.size(left.d15f)) "."
                     }
                 }
                 @for text in [&rule.note, &rule.needs] {

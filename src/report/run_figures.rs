@@ -46,11 +46,6 @@ pub(super) fn size_axis(scale_free: bool, sizes: impl Iterator<Item = f64>) -> A
     Axis::log(if scale_free { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
-/// Rows of (size, percent finer) as points.
-fn points(rows: &[[f64; 2]]) -> Vec<(f64, f64)> {
-    rows.iter().map(|row| (row[0], row[1])).collect()
-}
-
 /// The upper end of an interval, or the mean where there is none.
 pub(super) fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
@@ -127,13 +122,13 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         _ => name("base", &base.name),
     };
     if let Some(before) = sampled {
-        let line = Line::new(points(&before.gradation), VERMILLION).width(1.4).dash(Dash::Dashed);
+        let line = Line::of_rows(&before.gradation, VERMILLION).width(1.4).dash(Dash::Dashed);
         figure.add(line.label("base as sampled,\nnot walked"));
     }
-    figure.add(Line::new(points(&base.gradation), VERMILLION).width(2.6).label(&walked));
-    let constrictions = Line::new(points(&filter.constrictions), BLUE).dash(Dash::Dashed);
+    figure.add(Line::of_rows(&base.gradation, VERMILLION).width(2.6).label(&walked));
+    let constrictions = Line::of_rows(&filter.constrictions, BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
-    figure.add(Line::new(points(&filter.gradation), BLACK).width(2.6).label(&name("filter", &filter.name)));
+    figure.add(Line::of_rows(&filter.gradation, BLACK).width(2.6).label(&name("filter", &filter.name)));
     let mark = |at: f64, percent: f64, colour, shape, text: &str| {
         let label = format!("{text} = {}", unit.size(at));
         Point::new(at, percent, colour, shape).dropped().label(&label)
@@ -315,7 +310,7 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
         .sizes((720.0, 460.0), (358.0, 480.0));
     let curve =
         |rows: &[SizeRow]| rows.iter().map(|row| (row.diameter_mm, row.percent_finer_by_mass)).collect();
-    figure.add(Line::new(points(base), VERMILLION).width(2.6).label("base"));
+    figure.add(Line::of_rows(base, VERMILLION).width(2.6).label("base"));
     for (index, (increment, rows)) in chosen.iter().enumerate() {
         let end = if index + 1 == chosen.len() { ", the end" } else { "" };
         let label = format!("retained, increment {}{end}", whole(*increment));

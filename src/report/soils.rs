@@ -20,10 +20,9 @@ pub fn soils_figure<'a>(
     let mut figure = Figure::new("Sieve curves", &what, "", x, y).sieves();
     let colours = [BLACK, VERMILLION, BLUE, GREEN, PURPLE, ORANGE, GREY];
     let dashes = [Dash::Solid, Dash::Dashed];
-    for (index, ((_, points), name)) in soils.iter().zip(&names).enumerate() {
+    for (index, ((_, rows), name)) in soils.iter().zip(&names).enumerate() {
         let dash = dashes[index / colours.len() % dashes.len()];
-        let line =
-            Line::new(points.iter().map(|row| (row[0], row[1])).collect(), colours[index % colours.len()]);
+        let line = Line::of_rows(rows, colours[index % colours.len()]);
         figure.add(line.dash(dash).label(name));
     }
     figure.file()

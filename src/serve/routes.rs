@@ -112,8 +112,7 @@ type Problem = (u16, String);
 /// The constriction curves of a filter, loose and dense, by their names; none where the library has none like
 /// it.
 fn of_library(points: &[[f64; 2]]) -> Vec<(String, Vec<[f64; 2]>)> {
-    let points: Vec<(f64, f64)> = points.iter().map(|point| (point[0], point[1])).collect();
-    let Ok(filter) = Gradation::from_points(&points, None) else { return Vec::new() };
+    let Ok(filter) = Gradation::of_rows(points) else { return Vec::new() };
     let curve = |density: LibraryDensity| {
         let found = LibraryFilter::find(&filter, density).ok()??.found;
         let name = format!("constrictions, {}, by number", density.name());

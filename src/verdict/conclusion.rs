@@ -103,10 +103,9 @@ impl Outcome {
     fn openings_of_few(&self) -> Option<String> {
         let filter = &self.inputs.filter;
         let is_guessed = self.findings.iter().any(|finding| finding.id == GUESSED_CONSTRICTIONS);
-        let points: Vec<(f64, f64)> = filter.gradation.iter().map(|row| (row[0], row[1])).collect();
-        let curve = Gradation::from_points(&points, None).ok().filter(|_| is_guessed)?;
+        let curve = Gradation::of_rows(&filter.gradation).ok().filter(|_| is_guessed)?;
         // The pan fraction is not walked.
-        let finer = curve.percent_finer_by_mass(filter.d50_by_number_mm) - points.first()?.1;
+        let finer = curve.percent_finer_by_mass(filter.d50_by_number_mm) - filter.gradation.first()?[1];
         (0.0..FEW_PERCENT).contains(&finer).then(|| {
             format!(
                 " (half of the filter's grains by number, which set the openings walked, are {} % of its \

@@ -140,8 +140,7 @@ impl Design {
     pub fn judged_filter_in_words(&self) -> Option<String> {
         let d15f_mm = self.rules_at * self.base.d85_mm.filter(|_| !self.inverse)?;
         let specification = self.specification.as_ref().filter(|of| of.band.is_some())?;
-        let points: Vec<(f64, f64)> = self.filter_gradation.iter().map(|of| (of[0], of[1])).collect();
-        let given = Gradation::from_points(&points, None).ok()?;
+        let given = Gradation::of_rows(&self.filter_gradation).ok()?;
         let judged = given.scaled(d15f_mm / self.filter_d15_mm?).ok()?;
         // What is finer than its finest sieve is not known.
         let known = specification.limits.iter().filter(|limit| limit.opening_mm >= judged.smallest_mm());

@@ -9,7 +9,7 @@ use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
 use crate::outcome::rules::{
-    DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority,
+    DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority_in_brief,
 };
 use crate::outcome::undecided::UndecidedBy;
 
@@ -46,15 +46,14 @@ impl Outcome {
     fn of_stability(&self) -> String {
         let mut whose: Vec<String> = Vec::new();
         for rule in broken(&self.rules, RuleRole::Stability) {
-            // The year of a source stands in the table of rules.
-            let name = authority(rule).split(" (").next().unwrap_or_default().to_owned();
-            if !whose.contains(&name) {
-                whose.push(name);
+            let name = authority_in_brief(rule);
+            if !whose.iter().any(|of| of == name) {
+                whose.push(name.to_owned());
             }
         }
         let finer = match self.greatest() {
             Some((limit, false)) => {
-                self.sized(limit, self.if_dispersive_in_brief(limit)) + " that is stable by "
+                self.sized(limit, [self.if_dispersive_in_brief(limit)]) + " that is stable by "
             }
             _ => "take a filter that is stable by ".into(),
         };
@@ -142,12 +141,10 @@ impl Outcome {
     }
 
     /// The most of a limit that is stricter if the base is dispersive, where a test of that follows.
-    fn if_dispersive_in_brief(&self, most: f64) -> [Option<String>; 1] {
-        let stricter = self.if_dispersive.filter(|of| of.d15f_max_mm < most);
-        [stricter.map(|of| {
-            let at_most = if of.at_most { "at most " } else { "" };
-            format!("{at_most}{} mm if the base is dispersive", rounded_down(of.d15f_max_mm))
-        })]
+    fn if_dispersive_in_brief(&self, most: f64) -> Option<String> {
+        let stricter = self.if_dispersive.filter(|of| of.d15f_max_mm < most)?;
+        let at_most = if stricter.at_most { "at most " } else { "" };
+        Some(format!("{at_most}{} mm if the base is dispersive", rounded_down(stricter.d15f_max_mm)))
     }
 
     /// The floor of the limit of design, where it lies beyond what tests held.

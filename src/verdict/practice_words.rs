@@ -50,9 +50,7 @@ impl Outcome {
             if self.inputs.scale_free || without_margin(&self.rules).is_some() {
                 return None;
             }
-            let points: Vec<(f64, f64)> =
-                self.inputs.base.gradation.iter().map(|row| (row[0], row[1])).collect();
-            let soil = BaseSoil::of(&Gradation::from_points(&points, None).ok()?, false);
+            let soil = BaseSoil::of(&Gradation::of_rows(&self.inputs.base.gradation).ok()?, false);
             Evidence::of(&soil, self.inputs.filter.d15_mm, Some(CU_OF_C33), None)
         })?;
         let side = if of.errs_unsafely() { "unsafe" } else { "safe" };

@@ -13,7 +13,7 @@ use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::limits;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
 use crate::outcome::rules::{
-    DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
+    DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS_NO_EROSION, authority_in_brief,
 };
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
@@ -94,7 +94,7 @@ impl Washout<'_> {
     /// By which criterion it may lose that part; no more is looked at than may lie loose.
     fn whose(&self) -> String {
         let is_capped = self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9);
-        format!("by {}{}", named(self.by), if is_capped { "; more may go" } else { "" })
+        format!("by {}{}", authority_in_brief(self.by), if is_capped { "; more may go" } else { "" })
     }
 
     /// D15F without that part.
@@ -137,16 +137,11 @@ impl Washout<'_> {
     }
 }
 
-/// Whose criterion it is; the year of a source stands in the table of rules.
-fn named(rule: &AppliedRule) -> &str {
-    authority(rule).split(" (").next().unwrap_or_default()
-}
-
 /// By which of these criteria, none of which is met, a filter is not internally stable.
 pub(super) fn not_stable(unstable: &[&AppliedRule]) -> String {
     let each = unstable.iter().map(|rule| {
         let [value, limit] = against(rule, 3);
-        format!("{} ({}, limit {limit})", named(rule), bounded(rule, &value))
+        format!("{} ({}, limit {limit})", authority_in_brief(rule), bounded(rule, &value))
     });
     format!("not internally stable by {}", listed(&each.collect::<Vec<_>>()))
 }

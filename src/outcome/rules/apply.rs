@@ -23,6 +23,11 @@ pub fn authority(rule: &AppliedRule) -> &str {
     known.into_iter().find(|of| !of.is_empty()).unwrap_or(&rule.name)
 }
 
+/// The same without the year of its source, which stands in the table of rules.
+pub(crate) fn authority_in_brief(rule: &AppliedRule) -> &str {
+    authority(rule).split(" (").next().unwrap_or_default()
+}
+
 /// Whether an authority states a rule, by the rule's own entry in [`RULES`]. All authorities together state
 /// every rule.
 ///

@@ -19,6 +19,7 @@ pub use all::{
     CONSTRICTED_EXIT, DESIGN, FILTER_FINES, KENNEY_LAU, KEZDI, LI_FANNIN, PAPER_CONTINUING, PAPER_NO_EROSION,
     PERMEABILITY, PERMEABILITY_LEAST, RULES, TERZAGHI, TESTS_CONTINUING, TESTS_NO_EROSION,
 };
+pub(crate) use apply::authority_in_brief;
 pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
 pub use authority::Authority;
 pub use base::BaseSoil;

@@ -33,6 +33,11 @@ impl Line {
         Line { points, true_x: None, colour, width, dash, opacity, stays: false, label: None }
     }
 
+    /// The same through rows as records hold them: x, y.
+    pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
+        Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
+    }
+
     /// With the values along x that a pointer shows, where the points are drawn beside them.
     pub fn true_x(mut self, values: Vec<f64>) -> Line {
         self.true_x = Some(values);

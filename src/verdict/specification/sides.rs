@@ -26,8 +26,7 @@ impl Side {
     /// a limit of fines, and no part of a gradation.
     pub fn both(band: &SizeBand) -> [Self; 2] {
         [("fine", &band.fine_side), ("coarse", &band.coarse_side)].map(|(name, points)| {
-            let points: Vec<(f64, f64)> = points.iter().map(|of| (of[0], of[1])).collect();
-            let soil = Gradation::from_points(&points, None).ok();
+            let soil = Gradation::of_rows(points).ok();
             let kezdi = soil.as_ref().and_then(Gradation::kezdi);
             Self { name, kezdi, kenney_lau: soil.as_ref().and_then(Gradation::kenney_lau) }
         })

@@ -230,7 +230,7 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
     ];
     for points in bases {
         let band = of(points).band.unwrap();
-        let side = |rows: &[[f64; 2]]| soil(&rows.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>());
+        let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
         let sides =
             [("fine".to_owned(), side(&band.fine_side)), ("coarse".to_owned(), side(&band.coarse_side))];
         // A hair finer, so that no rounding breaks the limit itself.
@@ -393,7 +393,7 @@ fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
             let of = Specification::of("sand", &[("sand".into(), sand.clone())], options);
             unstable += of.findings.iter().filter(|of| of.finding.id == "unstable_side").count();
             for side in of.band.iter().flat_map(|band| [&band.fine_side, &band.coarse_side]) {
-                let side = soil(&side.iter().map(|row| (row[0], row[1])).collect::<Vec<_>>());
+                let side = Gradation::of_rows(side).unwrap();
                 let side = side.scaled(1.0 - 1e-9).unwrap();
                 let rules = PairRules::of(&sand, &side).rules;
                 assert!(washout(&rules).is_none(), "{walked} {:?}", washout(&rules).map(|of| of.in_words()));
