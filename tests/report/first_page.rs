@@ -5,8 +5,7 @@ use std::process::Command;
 
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{
-    Classed, Confidence, Direction, FindingRecord, Outcome, PanBounds, PanReading, PanSize, RuleQuantity,
-    RuleRole, SampledBase, Statistic, Topic, Verdict, Weight,
+    Direction, FindingRecord, RuleQuantity, RuleRole, SampledBase, Topic, Weight,
 };
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
@@ -491,92 +490,4 @@ fn every_figure_of_a_run_is_on_the_list_of_what_a_replaced_run_leaves() {
     let mut listed = FolderKind::Run.figures().to_vec();
     listed.sort_unstable();
     assert_eq!(drawn, listed);
-}
-
-/// What the walk is worth stands beside its class, on the first page.
-#[test]
-fn the_line_of_the_walk_says_where_it_cannot_be_relied_on() {
-    let walk = |change: &dyn Fn(&mut Outcome)| {
-        let mut plan = Plan::usual();
-        plan.outcome.verdict = Verdict::None;
-        change(&mut plan.outcome);
-        plan.outcome.walk_in_words()
-    };
-    let said = walk(&|_| ());
-    for doubt in ["open path", "beyond the boundary", "unsafe side"] {
-        assert!(!said.contains(doubt), "{doubt}: {said}");
-    }
-    let closed = walk(&|outcome| {
-        outcome.replicates.iter_mut().skip(1).for_each(|of| of.runs[1].backbone_fraction = 0.0);
-    });
-    let of = Plan::usual().outcome.replicates.len();
-    let closed_in = of - 1;
-    let said = format!(
-        ". No open path for base particles is left in {closed_in} of {of} networks after the second run; this \
-         says nothing of the filter's drainage"
-    );
-    assert!(closed.ends_with(&said), "{closed}");
-    // Readings of the base's finest part were walked with the curve itself.
-    let read = walk(&|outcome| {
-        let first = |high| Statistic { mean: 0.105, sd: None, low: Some(0.091), high: Some(high) };
-        let runs = vec![first(0.118)];
-        let walked = Classed { replicates: 10, stopped_when_clear: false, verdict: Verdict::Some, runs };
-        let reading = PanReading { taken_as: PanSize::Passive, n_base: 100, walked, stopping: None };
-        outcome.summary[0].eroded_mass_fraction = first(0.11);
-        outcome.curve_range = None;
-        outcome.pan_bounds = Some(PanBounds {
-            mass_fraction: 0.4,
-            finest_sieve_mm: 0.075,
-            finest_constriction_mm: 0.0121,
-            readings: vec![reading],
-        });
-    });
-    let said = ", and up to 11.8 % in the first run over the readings of the base's finest part";
-    assert!(read.contains(said), "{read}");
-    let beyond = walk(&|outcome| {
-        let rule = &mut outcome.rules[0];
-        (rule.id, rule.unit, rule.at_least) = ("paper-no-erosion".into(), String::new(), false);
-        (rule.met, rule.value, rule.limit) = (Some(false), Some(5.58), Some(5.0));
-    });
-    let said = "; beyond the boundary of no erosion of the network with which the model was published \
-                (Shire & O'Sullivan: D15F/D85B 5.58 > 5.00)";
-    assert!(beyond.contains(said), "{beyond}");
-    let finding = |verdict: Verdict| {
-        walk(&|outcome| {
-            outcome.verdict = verdict;
-            outcome.findings = vec![FindingRecord {
-                id: "evidence_unsafe".into(),
-                direction: Direction::Unsafe,
-                ..FindingRecord::of_earlier("For filters like this the walk errs on the unsafe side.")
-            }];
-        })
-    };
-    let said = "; the walk errs on the unsafe side for this pair";
-    assert!(finding(Verdict::None).contains(said) && finding(Verdict::Some).contains(said));
-    assert!(!finding(Verdict::Continuing).contains(said));
-}
-
-/// The class that another amount of base gives stands in the headline, and in no other words.
-#[test]
-fn a_walk_whose_class_follows_from_the_amount_of_base_does_not_agree() {
-    let mut plan = Plan::usual();
-    let outcome = &mut plan.outcome;
-    (outcome.verdict, outcome.confidence) = (Verdict::None, Confidence::Outside);
-    let rule = &mut outcome.rules[0];
-    (rule.id, rule.role) = ("sherard-dunnigan".into(), RuleRole::Retention);
-    (rule.quantity, rule.applies, rule.met) = (RuleQuantity::D15F, true, Some(true));
-    outcome.rules.truncate(1);
-    for row in &mut outcome.sensitivity {
-        row.walked.verdict = if row.factor < 0.5 { Verdict::Some } else { Verdict::None };
-    }
-    assert_eq!(
-        outcome.headline(),
-        "holds by practice; the walk: no erosion with base of 5 % of the filter's mass, some erosion with \
-         1.25 %"
-    );
-    outcome.sensitivity.clear();
-    assert_eq!(
-        outcome.headline(),
-        "holds by practice; no erosion in the walk, outside the range in which it was checked"
-    );
 }

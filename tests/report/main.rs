@@ -4,6 +4,7 @@ mod campaign;
 mod first_page;
 mod folder;
 mod in_memory;
+mod walk;
 
 use std::fs;
 use std::path::Path;

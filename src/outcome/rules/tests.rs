@@ -296,6 +296,26 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     assert!(close(find("paper-no-erosion").value, d15f / 0.2));
 }
 
+/// Of Kenney's tests a walk far finer than they were is no check; nor is one of a base that is all as fine.
+#[test]
+fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
+    let filter = filter(4.0);
+    let note = |largest: f64, base: &Gradation| {
+        let inputs =
+            RuleInputs { largest_eroded_over_d15f: Some(largest), ..RuleInputs::of_soils(base, &filter) };
+        let rules = apply(&inputs);
+        rules.iter().find(|rule| rule.id == "kenney-controlling").unwrap().note.to_string()
+    };
+    let coarse = base(5.0, 0.5);
+    let far = note(0.016, &coarse);
+    assert!(far.contains("13 times finer: the openings walked are not those of such tests"), "{far}");
+    let fine = Gradation::linear_from_dx(85.0, 0.04, 1.5).unwrap();
+    assert!(fine.largest_mm() / 4.0 < 0.02);
+    for said in [note(0.021, &coarse), note(0.19, &coarse), note(0.01, &fine)] {
+        assert!(said.contains("checks the walk") && !said.contains("times finer"), "{said}");
+    }
+}
+
 /// 25 % finer than 0.3 mm, and D85B 0.3 x (1/0.3)^(60/75) = 0.786 mm: whatever its fines, the limit of design
 /// is at most 4 D85B = 3.144 mm, and tests saw no erosion up to 7 D85B = 5.502 mm at most.
 #[test]
