@@ -125,7 +125,7 @@ fn openings_that_little_of_the_filter_sets_are_said_where_practice_contradicts_t
 }
 
 #[test]
-fn a_void_ratio_that_nobody_gave_is_said_to_be_the_librarys() {
+fn a_void_ratio_that_nobody_gave_is_said_to_be_of_the_library() {
     let said = |id: &str| {
         let mut plan = Plan::usual();
         plan.outcome.inputs.filter.void_ratio = Some(0.553);
