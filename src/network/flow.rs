@@ -36,6 +36,17 @@ const CLOSELY: f64 = 1e-8;
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
 
+/// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less known
+/// than [`KNOWN`], so that every solution would be done again, to what rounding allows.
+const THICK: usize = 400;
+
+/// The residual of a thick network, as part of what flows in.
+const CONVERGED_THICK: f64 = 1e-12;
+
+/// A factor of a thick network is kept until more than one in so many exits have closed: its rounds cost more
+/// beside making another.
+const KEPT_UNTIL_THICK: usize = 300;
+
 /// Voids that a thread looks at one after another.
 const VOIDS_TOGETHER: usize = 1 << 13;
 
@@ -196,7 +207,8 @@ impl Flow {
         }
         let leads_through = meets.contains(&THROUGH);
         let is_passed = leads_through && (!leaks || self.meets(is_open).contains(&THROUGH));
-        self.find_pressures(network, &meets, CONVERGED)?;
+        let within = if is_thick(network) { CONVERGED_THICK } else { CONVERGED };
+        self.find_pressures(network, &meets, within)?;
         if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
             // Where they come no closer in time, what there is has to do.
             let _ = self.find_pressures(network, &meets, CLOSEST);
@@ -240,9 +252,10 @@ impl Flow {
 
     /// Keeps the factor where few exits have changed since it was made, and none has opened again.
     fn keep_factor(&mut self, network: &Network, changed: usize, is_open_again: bool) {
+        let kept_until = if is_thick(network) { KEPT_UNTIL_THICK } else { KEPT_UNTIL };
         if let Some(kept) = &mut self.kept {
             kept.closed += changed;
-            if is_open_again || kept.closed * KEPT_UNTIL > network.constrictions() {
+            if is_open_again || kept.closed * kept_until > network.constrictions() {
                 self.kept = None;
             }
         }
@@ -360,6 +373,10 @@ impl Flow {
 /// Conductance of an exit while it is open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
+}
+
+fn is_thick(network: &Network) -> bool {
+    network.layers() >= THICK
 }
 
 #[cfg(test)]

@@ -131,6 +131,28 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
+/// A thick network that clogs is known after one solution, though with the residual of a thin one it is not.
+#[test]
+fn a_thick_network_is_solved_once() {
+    let [n, layers] = [16, THICK as u32];
+    let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    let mut flow = Flow::new(&network);
+    for step in [1009, 211, 37] {
+        (0..network.constrictions()).step_by(step).for_each(|c| {
+            network.set_blocked(&mut blocked, c, true);
+        });
+        let found = flow.solve(&network, &blocked).unwrap().conductance;
+        assert_eq!(flow.accuracy, CONVERGED_THICK);
+        assert!(flow.is_known(&network) && flow.missing < 0.1 * KNOWN * found, "{} of {found}", flow.missing);
+        let mut closely = Flow::new(&network);
+        let exact = closely.solve_closely(&network, &blocked).unwrap().conductance;
+        assert!((found / exact - 1.0).abs() < KNOWN, "{found} for {exact}");
+    }
+}
+
 /// Parts that shrink a few at a time, solved with a factor that is kept: pressures are those that are
 /// found without it. What is blocked afterwards is solved without those parts.
 #[test]
