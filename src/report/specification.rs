@@ -184,14 +184,12 @@ fn limits(of: &Specification) -> Markup {
             .render())
         @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
         @if of.if_dispersive_in_words(DESIGN_AGAIN).is_some() {
-            p {
-                b { "Valid only for a base that tests show not to be dispersive." }
-                " The maximum D90F is still to be set."
-            }
+            p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
             "Percent finer by mass, rounded into the band. At most 5 % may be finer than \
-             0.075 mm, and these fines must not be plastic. Segregation is not checked: see its step."
+             0.075 mm, and these fines must not be plastic. Segregation is not checked: the maximum D90F is still \
+             to be set (see its step)."
         }
     }
 }

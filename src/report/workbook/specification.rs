@@ -7,7 +7,7 @@ use crate::outcome::design::{Design, Specification};
 /// What the page says too.
 const CAUTIONS: [(&str, &str); 3] = [
     ("Fines", "At most 5 % may be finer than 0.075 mm, and these fines must not be plastic."),
-    ("Segregation", "Segregation is not checked: see its step."),
+    ("Segregation", "Segregation is not checked: the maximum D90F is still to be set (see its step)."),
     ("Use", "It does not replace a filter test or a designer’s judgement."),
 ];
 
