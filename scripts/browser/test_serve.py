@@ -21,7 +21,7 @@ SMALL = "network.nx=8\nnetwork.ny=8\nnetwork.nz=10\nrecord.sensitivity=[]"
 PATIENCE = float(os.environ.get("PATIENCE", "1"))
 
 # A run that does not end while it is looked at.
-LONG = "network.nx=12\nnetwork.ny=12\nnetwork.nz=20\nreplicates=2000\nrecord.sensitivity=[]"
+LONG = "network.nx=36\nnetwork.ny=36\nnetwork.nz=20\nreplicates=2000\nrecord.sensitivity=[]"
 
 WIDE = "document.documentElement.scrollWidth > document.documentElement.clientWidth"
 
