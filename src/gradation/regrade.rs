@@ -38,6 +38,8 @@ pub struct RegradeReason {
 pub enum RegradeCause {
     /// It has a gap that begins at this size (mm).
     Gap(f64),
+    /// It has a gap that begins at this size (mm), and what is finer would be regraded for its gravel.
+    GapAmongGravel(f64),
     /// It has gravel and many fines.
     GravelAndFines,
     /// It has gravel and is broadly graded.
@@ -58,7 +60,9 @@ impl Gradation {
     /// Regrading is that of the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
     /// Gradation), after Sherard and Dunnigan (1989): a gap-graded soil at its gap; a soil with grains
     /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is not
-    /// broadly graded. Every percent is divided by that passing.
+    /// broadly graded. Where what is finer than a gap has such grains, and fines or a gradation of which it
+    /// asks the same, it is regraded on No. 4 too: the manual stops at the gap, whose limit is coarser. Every
+    /// percent is divided by that passing.
     ///
     /// ```
     /// use voidwalk::gradation::Gradation;
@@ -83,9 +87,16 @@ impl Gradation {
 
     /// The size on which practice regrades this base, and why.
     fn regrading(&self) -> (Option<f64>, RegradeCause) {
-        if let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) {
-            return (Some(from_mm), RegradeCause::Gap(from_mm));
+        let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) else { return self.regrading_for_gravel() };
+        let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
+        match finer.and_then(|finer| finer.regrading_for_gravel().0) {
+            Some(no_4) => (Some(no_4), RegradeCause::GapAmongGravel(from_mm)),
+            None => (Some(from_mm), RegradeCause::Gap(from_mm)),
         }
+    }
+
+    /// The same of a soil without a gap.
+    fn regrading_for_gravel(&self) -> (Option<f64>, RegradeCause) {
         if self.largest_mm() <= GRAVEL_MM {
             return (None, RegradeCause::NoGravel);
         }
@@ -153,6 +164,18 @@ mod tests {
         // A gap: the part finer than it.
         let gap = regraded(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
         assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
+    }
+
+    /// A gap from 12.5 to 50 mm: 65 % is finer, of which a third is gravel. With fines its limit is that of
+    /// what passes No. 4; a narrow gravel below a gap is left whole.
+    #[test]
+    fn a_gap_among_gravel_regrades_on_no_4_too() {
+        let till =
+            regraded(&[(0.075, 20.0), (0.5, 35.0), (4.75, 43.0), (12.5, 65.0), (50.0, 66.0), (75.0, 100.0)]);
+        assert_eq!((till.at_mm, till.why.cause), (Some(4.75), RegradeCause::GapAmongGravel(12.5)));
+        assert!((till.gradation.percent_finer_by_mass(0.075) - 100.0 * 20.0 / 43.0).abs() < 1e-9);
+        let gravel = regraded(&[(4.0, 0.0), (12.5, 65.0), (50.0, 66.0), (75.0, 100.0)]);
+        assert_eq!((gravel.at_mm, gravel.why.cause), (Some(12.5), RegradeCause::Gap(12.5)));
     }
 
     #[test]

@@ -9,7 +9,8 @@ use crate::outcome::design::band::retention;
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, Confidence, Outcome, RuleQuantity, RuleRole, Verdict};
 use crate::outcome::rules::{
-    DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, PERMEABILITY, TESTS_CONTINUING, authority_in_brief,
+    DESIGN, DESIGN_FLOOR_MM, FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING,
+    authority_in_brief,
 };
 use crate::outcome::undecided::UndecidedBy;
 
@@ -32,10 +33,12 @@ impl Outcome {
             }
             Standing::WashedOut | Standing::Unstable => self.of_stability() + &test,
             Standing::Unknown(needs) => format!("get {needs}{test}"),
-            Standing::Met | Standing::NoRules => match self.of_drainage().or_else(|| self.of_placing()) {
+            Standing::Met | Standing::NoRules => match self.of_drainage() {
                 Some(said) => said + &test,
                 // Of "no erosion" the test comes first.
-                None if self.verdict == Verdict::None => self.of_walk() + &self.of_fines(),
+                None if self.verdict == Verdict::None => {
+                    self.of_placing() + &self.of_walk() + &self.of_fines()
+                }
                 None => self.of_walk() + &self.of_fines() + &test,
             },
         }
@@ -240,9 +243,20 @@ impl Outcome {
         })
     }
 
-    fn of_placing(&self) -> Option<String> {
-        (self.verdict == Verdict::None && !broken(&self.rules, RuleRole::Placing).is_empty())
-            .then(|| "narrow the filter's range of sizes, or specify how it is placed".into())
+    /// What to do about a filter that may segregate, before what follows.
+    fn of_placing(&self) -> String {
+        let broken = broken(&self.rules, RuleRole::Placing);
+        let (cobbles, wide): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+            broken.into_iter().partition(|rule| rule.id == FILTER_GREATEST_SIZE);
+        let cobbles = cobbles.first().and_then(|rule| rule.limit);
+        let cobbles =
+            cobbles.map(|limit| format!("take out the grains coarser than {} mm; ", in_digits(limit, 3)));
+        let wide = if wide.is_empty() {
+            ""
+        } else {
+            "narrow the filter's range of sizes, or specify how it is placed; "
+        };
+        cobbles.unwrap_or_default() + wide
     }
 
     fn of_walk(&self) -> String {
@@ -269,7 +283,7 @@ impl Outcome {
     /// Whether the next step is to have the pair tested, and says why the model is no check of it.
     pub(super) fn names_why_tested(&self) -> bool {
         let is_of_walk = matches!(standing(&self.rules), Standing::Met | Standing::NoRules)
-            && self.of_drainage().or_else(|| self.of_placing()).is_none();
+            && self.of_drainage().is_none();
         is_of_walk && self.verdict == Verdict::None && self.undecided_by().is_none()
     }
 

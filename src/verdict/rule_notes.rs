@@ -150,6 +150,11 @@ impl RegradeReason {
             RegradeCause::Gap(from) => {
                 &*format!("gap-graded: next to nothing between {} mm and four times that", fixed(from, 3))
             }
+            RegradeCause::GapAmongGravel(from) => &*format!(
+                "gap-graded: next to nothing between {} mm and four times that; what is finer has gravel, and 15 % \
+                 fines or more or a broad gradation",
+                fixed(from, 3)
+            ),
             RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
             RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
             RegradeCause::GravelOfUnknownCu => {
@@ -249,6 +254,7 @@ mod tests {
         for size in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for (cause, begin) in [
                 (RegradeCause::Gap(size), "gap-graded: next to nothing between "),
+                (RegradeCause::GapAmongGravel(size), "gap-graded: next to nothing between "),
                 (RegradeCause::GravelAndFines, "grains coarser than No. 4 (4.75 mm) and 15 %"),
                 (RegradeCause::BroadGravel, "broadly graded, with grains"),
                 (RegradeCause::GravelOfUnknownCu, "grains coarser than No. 4 (4.75 mm), and Cu"),

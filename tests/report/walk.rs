@@ -1,9 +1,11 @@
 //! What a page says of the walk: where it can be relied on, and what it was made with.
 
+use voidwalk::Gradation;
 use voidwalk::outcome::record::{
     Classed, Confidence, Direction, FindingRecord, Outcome, PanBounds, PanReading, PanSize, RuleQuantity,
     RuleRole, Statistic, Verdict,
 };
+use voidwalk::verdict::PairRules;
 
 use super::folder::Plan;
 use super::{made, words};
@@ -149,4 +151,24 @@ fn the_figure_of_what_left_says_what_only_the_curve_of_the_base_has() {
     let only = " The base's curve alone has the 12.5 % of it that is finer than its finest sieve.";
     assert!(said(12.5).contains(only));
     assert!(!said(0.0).contains("The base's curve alone"));
+}
+
+/// A filter that may segregate is mended first; the tests that its walk asks for stay.
+#[test]
+fn what_is_wrong_with_placing_is_said_before_what_is_to_be_tested() {
+    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let base = soil(&[(0.075, 20.0), (0.2, 50.0), (0.6, 100.0)]);
+    let next = |filter: &[(f64, f64)]| {
+        let mut outcome = Plan::usual().outcome;
+        (outcome.verdict, outcome.confidence) = (Verdict::None, Confidence::Outside);
+        outcome.rules = PairRules::of(&base, &soil(filter)).rules;
+        outcome.findings.clear();
+        outcome.next_in_words()
+    };
+    let tests = next(&[(0.5, 0.0), (1.5, 100.0)]);
+    assert!(tests.contains("have this pair tested"), "{tests}");
+    let wide = next(&[(0.5, 0.0), (0.8, 15.0), (1.8, 30.0), (4.0, 50.0), (9.0, 65.0), (20.0, 100.0)]);
+    assert_eq!(wide, format!("narrow the filter's range of sizes, or specify how it is placed; {tests}"));
+    let cobbles = next(&[(0.5, 0.0), (0.8, 15.0), (3.0, 99.0), (100.0, 100.0)]);
+    assert_eq!(cobbles, format!("take out the grains coarser than 75 mm; {tests}"));
 }

@@ -23,6 +23,9 @@ pub const PERMEABILITY: &str = "permeability";
 /// The rule by which a filter has few fines.
 pub const FILTER_FINES: &str = "filter-fines";
 
+/// The rule by which a filter has no cobbles.
+pub const FILTER_GREATEST_SIZE: &str = "filter-greatest-size";
+
 /// The minimum D15F that an older manual asks for.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
 
@@ -194,7 +197,7 @@ pub const RULES: &[FilterRule] = &[
         judge: drainage::fines,
     },
     FilterRule {
-        id: "filter-greatest-size",
+        id: FILTER_GREATEST_SIZE,
         authority: "",
         stated_by: &[],
         says: "The filter has no cobbles",
