@@ -89,7 +89,8 @@ impl Gradation {
     fn regrading(&self) -> (Option<f64>, RegradeCause) {
         let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) else { return self.regrading_for_gravel() };
         let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
-        match finer.and_then(|finer| finer.regrading_for_gravel().0) {
+        let no_4 = finer.and_then(|finer| finer.regrading_for_gravel().0);
+        match no_4.filter(|no_4| self.passing(*no_4).is_some()) {
             Some(no_4) => (Some(no_4), RegradeCause::GapAmongGravel(from_mm)),
             None => (Some(from_mm), RegradeCause::Gap(from_mm)),
         }
@@ -176,6 +177,9 @@ mod tests {
         assert!((till.gradation.percent_finer_by_mass(0.075) - 100.0 * 20.0 / 43.0).abs() < 1e-9);
         let gravel = regraded(&[(4.0, 0.0), (12.5, 65.0), (50.0, 66.0), (75.0, 100.0)]);
         assert_eq!((gravel.at_mm, gravel.why.cause), (Some(12.5), RegradeCause::Gap(12.5)));
+        // Broad, but nothing passes No. 4.
+        let coarse = regraded(&[(5.0, 0.0), (10.0, 5.0), (40.0, 70.0), (160.0, 71.0), (200.0, 100.0)]);
+        assert_eq!(coarse.at_mm, Some(40.0));
     }
 
     #[test]

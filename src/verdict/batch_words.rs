@@ -90,8 +90,16 @@ fn of_dispersion(rows: &[&WalkedRow]) -> Option<String> {
         true => String::new(),
         false => format!("; if it is, practice allows less for {}", broken.join(", ")),
     };
-    let said =
-        format!("not known whether dispersive: {} {samples} with 15 % fines or more{then}", open.len());
+    // Those that erode are not held, dispersive or not.
+    let is_open = |row: &&&WalkedRow| row.walk.as_ref().is_some_and(|walk| walk.if_dispersive.is_some());
+    let beside = match rows.iter().filter(is_open).count() > open.len() {
+        true => ", beside those that erode in the walk",
+        false => "",
+    };
+    let said = format!(
+        "not known whether dispersive: {} {samples} with 15 % fines or more{beside}{then}",
+        open.len()
+    );
     (!open.is_empty()).then_some(said)
 }
 
@@ -212,8 +220,8 @@ mod tests {
         ];
         assert_eq!(
             of_dispersion(&rows.each_ref()).unwrap(),
-            "not known whether dispersive: 2 samples with 15 % fines or more; if it is, practice allows less \
-             for A (D15F at most 0.500 mm)"
+            "not known whether dispersive: 2 samples with 15 % fines or more, beside those that erode in the \
+             walk; if it is, practice allows less for A (D15F at most 0.500 mm)"
         );
         let said = of_dispersion(&[&rows[1]]).unwrap();
         assert_eq!(said, "not known whether dispersive: 1 sample with 15 % fines or more");

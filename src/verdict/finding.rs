@@ -497,7 +497,7 @@ findings! {
     /// A broadly graded base for which a filter is specified.
     broad_base(cu: Text): Base, Unsafe, Note;
         "grading of the base", "design.md",
-        "The base is broadly graded (Cu {cu}): its finer part may move between its coarse grains.";
+        "The base is broadly graded (Cu {cu} as sampled): its finer part may move between its coarse grains.";
     /// A base with a gap for which a filter is specified.
     gap_of_base(within: Percent, from: Mm, to: Mm): Base, Unsafe, Note;
         "gap of the base", "design.md",

@@ -91,8 +91,10 @@ impl ReadCurve {
             return Some(finding::gap_of_base(of.within, of.from_mm, to));
         }
         let also = self.greatest_regraded_on(of.from_mm).map(|limit| {
-            let [size, limit] = [significant(of.from_mm), rounded_down(limit)];
-            format!("; regraded on {size} mm instead, the maximum D15F by practice would be {limit} mm")
+            let (size, said) = (significant(of.from_mm), rounded_down(limit));
+            let is_same = self.of.d15f_max_mm.is_some_and(|most| rounded_down(most) == said);
+            let said = if is_same { "the same".to_owned() } else { format!("{said} mm") };
+            format!("; regraded on {size} mm instead, the maximum D15F by practice would be {said}")
         });
         Some(finding::flat_base(of.from_mm, to, of.within, &also.unwrap_or_default()))
     }

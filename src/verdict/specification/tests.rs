@@ -147,7 +147,7 @@ fn what_is_wrong_with_the_base_itself_is_among_the_findings() {
     // Regraded on 0.6 mm: 49.2 % of fines, and so 0.7 mm.
     assert!(
         said[2].ends_with(
-            "look at the curve; regraded on 0.600 mm instead, the maximum D15F by practice would be 0.700 mm."
+            "look at the curve; regraded on 0.600 mm instead, the maximum D15F by practice would be the same."
         ),
         "{said:?}"
     );
