@@ -43,7 +43,7 @@ KERNELS = {
     "lattice": (
         "constriction",
         {"bytes": 11, "cache": "third", "operations": 6, "divisions": 2, "words": 1},
-        "not taken apart since a search became a look-up",
+        "words that wait for one another, a look-up in the curve, memory written for the first time (parts below)",
     ),
     "flow, from nothing": (
         "constriction",
@@ -55,8 +55,8 @@ KERNELS = {
         {"bytes": 320, "cache": "second", "operations": 460, "divisions": 18, "roots": 12},
         "which pairs touch, gathers and scatters, motion: the law is a tenth (parts below)",
     ),
-    "triangulation": ("grain", None, "not taken apart"),
-    "constrictions": ("grain", None, "not taken apart"),
+    "triangulation": ("grain", None, "which facets meet, and the cavity of each grain: exact tests are a quarter (parts below)"),
+    "constrictions": ("grain", None, "discs between grains, and which voids they join (parts below)"),
 }
 
 SHOWN = ["bytes", "reads", "operations", "divisions", "roots", "in order", "words"]
