@@ -34,6 +34,8 @@ pub mod text;
 
 pub mod stream;
 
+mod stack;
+
 pub mod store;
 
 pub mod schema;

@@ -18,6 +18,8 @@ use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::shares::{Shares, Way};
 use super::sizes::fraction;
 use crate::network::{END, Network};
+#[cfg(target_arch = "x86_64")]
+use crate::stack::begin_at_a_line;
 use crate::stream::{Key, below};
 use crate::walk::Isa;
 
@@ -225,6 +227,7 @@ fn step(isa: Isa, worker: &mut Worker, block: Block) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
 fn with_avx512(worker: &mut Worker, block: Block) {
+    begin_at_a_line();
     // SAFETY: this is called where the machine has AVX-512 only.
     unsafe { worker.step::<Avx512>(block) };
 }
@@ -232,6 +235,7 @@ fn with_avx512(worker: &mut Worker, block: Block) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2(worker: &mut Worker, block: Block) {
+    begin_at_a_line();
     // SAFETY: this is called where the machine has AVX2 only.
     unsafe { worker.step::<Avx2>(block) };
 }
