@@ -34,8 +34,6 @@ pub mod text;
 
 pub mod stream;
 
-mod stack;
-
 pub mod store;
 
 pub mod schema;

@@ -34,7 +34,6 @@
 //! unit.
 
 use super::neighbours::{Aspect, GrainChunk, Reach, nearest};
-use crate::stack::begin_at_a_line;
 use multiversion::multiversion;
 
 /// Contacts computed together.
@@ -195,7 +194,6 @@ pub(super) fn pass(
     force: &mut [[f64; 4]],
     torque: &mut [[f64; 4]],
 ) {
-    begin_at_a_line();
     match (law.friction > 0.0, law.hertz) {
         (true, true) => sweep::<true, true>(chunk, work, grains, law, now, force, torque),
         (true, false) => sweep::<true, false>(chunk, work, grains, law, now, force, torque),

@@ -6,8 +6,6 @@
 use super::sizes::cube;
 use super::{Isa, Supply};
 use crate::network::Network;
-#[cfg(target_arch = "x86_64")]
-use crate::stack::begin_at_a_line;
 use crate::stream::{Key, LANES, Lanes, below, below_32};
 
 /// Particles drawn at a time.
@@ -114,14 +112,12 @@ fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
 fn with_avx512(drawing: Drawing) -> Drawn {
-    begin_at_a_line();
     drawing.draw_by(|lanes, words| words.iter_mut().for_each(|block| *block = lanes.next_block()))
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2(drawing: Drawing) -> Drawn {
-    begin_at_a_line();
     drawing.draw_by(|lanes, words| lanes.next_blocks_avx2(words))
 }
 

@@ -7,6 +7,10 @@
 //! A few particles in a void of three exits choose each by themselves, with one random word for both
 //! thresholds. More of them are split exit by exit, and draws for many voids are made at once.
 
+#[cfg(target_arch = "x86_64")]
+use std::hint::black_box;
+#[cfg(target_arch = "x86_64")]
+use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -18,8 +22,6 @@ use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::shares::{Shares, Way};
 use super::sizes::fraction;
 use crate::network::{END, Network};
-#[cfg(target_arch = "x86_64")]
-use crate::stack::begin_at_a_line;
 use crate::stream::{Key, below};
 use crate::walk::Isa;
 
@@ -224,10 +226,19 @@ fn step(isa: Isa, worker: &mut Worker, block: Block) {
     }
 }
 
+/// As long as a line of the cache, and where one begins.
+#[cfg(target_arch = "x86_64")]
+#[repr(align(64))]
+struct CacheLine {
+    _bytes: [u8; 64],
+}
+
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
 fn with_avx512(worker: &mut Worker, block: Block) {
-    begin_at_a_line();
+    // Has this stack begin where a line of the cache does. What the compiler sets aside there of vectors lies
+    // across two lines otherwise, or does not, as the callers have it.
+    black_box(&mut MaybeUninit::<CacheLine>::uninit());
     // SAFETY: this is called where the machine has AVX-512 only.
     unsafe { worker.step::<Avx512>(block) };
 }
@@ -235,7 +246,6 @@ fn with_avx512(worker: &mut Worker, block: Block) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2(worker: &mut Worker, block: Block) {
-    begin_at_a_line();
     // SAFETY: this is called where the machine has AVX2 only.
     unsafe { worker.step::<Avx2>(block) };
 }
