@@ -23,7 +23,7 @@ impl<'a> SizedSoil<'a> {
 
 /// What stands below such a table.
 fn note() -> Markup {
-    html! { p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." } }
+    html! { p.small { "Group by ASTM D2487 of the part finer than 75 mm, from the sieve curve. –: not known from the sieves." } }
 }
 
 /// A value, or that it is not known.
