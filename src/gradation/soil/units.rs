@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use super::heading::{Retained, Role};
 use super::layout::Layout;
-use super::size::{Entry, Opening, Said, Unit};
+use super::size::{Entry, Opening, Said, Unit, is_us_sieve_of_inches};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 
@@ -181,10 +181,23 @@ fn beside_pan(entries: &[Entry]) -> Option<f64> {
 pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
     let any = |said: Said| entries.iter().any(|entry| entry.said == said);
     let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
-    let inches = any(Said::Inches) || unit == Unit::Inch;
-    if number || inches {
+    let of_inches = entries
+        .iter()
+        .filter(|entry| entry.said == Said::Inches || entry.said == Said::Plain && unit == Unit::Inch);
+    let (mut standard, mut exact) = (false, false);
+    for entry in of_inches {
+        if let Opening::Mm(mm) | Opening::Below(mm) = entry.opening {
+            let is_us = is_us_sieve_of_inches(mm);
+            (standard, exact) = (standard || is_us, exact || !is_us);
+        }
+    }
+    if number || standard {
         let example = if number { "No. 200 = 0.075 mm" } else { "3/8 in = 9.5 mm" };
         notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
+    }
+    if exact {
+        let which = if standard { "other openings in inches" } else { "openings in inches" };
+        notes.push(format!("{which} converted exactly: 1 in = 25.4 mm"));
     }
     match unit {
         Unit::Micrometre => notes.push("openings in micrometres".into()),
@@ -251,5 +264,20 @@ mod tests {
                 assert_eq!(curve.map(|curve| curve.largest_mm()), Ok(largest), "{heading} {rows:?}");
             }
         }
+    }
+
+    #[test]
+    fn only_us_sieves_are_said_to_be_read_as_such() {
+        let notes = |text: &str| {
+            let soils = crate::gradation::Soil::all("a.csv", text.as_bytes()).unwrap();
+            soils[0].notes().join("; ")
+        };
+        let exact = notes("in,percent finer\n9.5,100\n4.75,90\n1.18,50\n0.3,2\n");
+        assert!(exact.contains("openings in inches converted exactly: 1 in = 25.4 mm"), "{exact}");
+        assert!(!exact.contains("US sieves"), "{exact}");
+        let standard = notes("in,percent finer\n1,100\n0.75,90\n0.375,50\n");
+        assert!(standard.contains("ASTM E11 (3/8 in = 9.5 mm)") && !standard.contains("25.4"), "{standard}");
+        let both = notes("Sieve,% finer\n6 in,100\n3/4 in,50\n3/8 in,2\n");
+        assert!(both.contains("ASTM E11") && both.contains("other openings in inches converted exactly"));
     }
 }
