@@ -34,7 +34,7 @@ use toml::de::DeTable;
 
 use crate::scene::{Origin, Scene, SceneError};
 use crate::schema::hints;
-use crate::store::read_regular;
+use crate::store::{read_regular, why_not_read};
 use crate::text::{is_hidden, is_plain};
 
 /// More cases than this are a mistake.
@@ -159,10 +159,7 @@ impl CampaignPlan {
         let io = |source| SceneError::File { file: file.clone(), source };
         let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
         let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
-            return Err(syntax(
-                String::new(),
-                format!("must be a regular file of at most {LARGEST_FILE} bytes"),
-            ));
+            return Err(syntax(String::new(), why_not_read(path, LARGEST_FILE)));
         };
         Self::parse(&bytes, path)
     }

@@ -10,8 +10,8 @@ use crate::constrictions::{Curve, ShippedFilter, find};
 use crate::gradation::{Gradation, Soil, file_and_soil};
 use crate::network::{ArrayOptions, Network, NetworkError};
 use crate::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
-use crate::scene::{CurveSource, Scene, SceneError};
-use crate::store::read_regular;
+use crate::scene::{BUILT_IN_NAME, CurveSource, Scene, SceneError};
+use crate::store::{read_regular, why_not_read};
 
 /// A larger sieve table or curve is refused before it is read (bytes).
 const LARGEST_TABLE: u64 = 16 << 20;
@@ -91,6 +91,9 @@ fn of_windows(path: &Path) -> &'static str {
     }
 }
 
+/// The settings that name a soil.
+const SIEVES: [&str; 2] = ["base.sieve", "filter.sieve"];
+
 /// Reads the files of a scene, and remembers them.
 #[derive(Default)]
 pub struct Files(pub Vec<Input>);
@@ -103,12 +106,16 @@ impl Files {
         path: &Path,
         kept_as: &str,
         largest: u64,
+        scene: &str,
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
-        let named = format!("{file}, named by {setting}{}", of_windows(path));
+        // A soil of the built-in scene was named on the command line, as a rule without its setting.
+        let is_plain = scene == BUILT_IN_NAME && SIEVES.contains(&setting);
+        let by = if is_plain { String::new() } else { format!(", named by {setting}") };
+        let named = format!("{file}{by}{}", of_windows(path));
         let io = |source| SceneError::File { file: named.clone(), source };
         let Some(bytes) = read_regular(path, largest).map_err(io)? else {
-            let problem = format!("must be a regular file of at most {largest} bytes");
+            let problem = why_not_read(path, largest);
             return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
         };
         self.keep(setting, path, kept_as, bytes)?;
@@ -144,7 +151,7 @@ impl Files {
                 Ok((shipped.curve()?, Some(shipped)))
             }
             CurveSource::File(path) => {
-                let (name, bytes) = self.read(setting, path, kept_as, LARGEST_TABLE)?;
+                let (name, bytes) = self.read(setting, path, kept_as, LARGEST_TABLE, scene)?;
                 Ok((Curve::from_csv_text(&name, bytes)?, None))
             }
         }
@@ -172,9 +179,10 @@ impl Files {
         d0_mm: Option<f64>,
         setting: &'static str,
         kept_as: &str,
+        scene: &str,
     ) -> Result<Gradation, CaseError> {
         let (path, soil) = file_and_soil(path);
-        let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE)?;
+        let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE, scene)?;
         let read = Soil::one(&name, bytes, soil.as_deref())?;
         let gradation = read.gradation(d0_mm)?;
         if let Some(input) = self.0.last_mut() {
@@ -192,7 +200,8 @@ impl Files {
         kept_as: &str,
         scene: &Scene,
     ) -> Result<(String, Packing), CaseError> {
-        let (name, bytes) = self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES)?;
+        let (name, bytes) =
+            self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
         let read = Packing::parse_as(&name, bytes, &scene.network.read_options());
         let (packing, notes) = read.map_err(PackedError::from)?;
         if let Some(input) = self.0.last_mut() {
@@ -217,7 +226,7 @@ impl Files {
     pub fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
         let of_arrays = scene.network.is_of_arrays();
         let kept_as = if of_arrays { ARRAYS } else { "network.csv" };
-        let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK)?;
+        let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK, &scene.name)?;
         if !of_arrays {
             let network = Network::from_csv(bytes, &name, unit_mm)?;
             if !network.leads_out() {

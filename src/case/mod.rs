@@ -195,7 +195,7 @@ impl Case {
                 Gradation::linear_from_d0(*d0_mm, cu)?
             }
             FilterGradation::Sieve(path, d0_mm) => {
-                files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv")?
+                files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv", &scene.name)?
             }
         };
         let library = match scene.filter.library {
@@ -454,7 +454,7 @@ fn base_gradation(
 ) -> Result<Gradation, CaseError> {
     let (cu, d85_mm) = match &scene.base.gradation() {
         BaseGradation::Sieve(path, d0_mm) => {
-            return files.sieve(path, *d0_mm, "base.sieve", "base-sieve.csv");
+            return files.sieve(path, *d0_mm, "base.sieve", "base-sieve.csv", &scene.name);
         }
         BaseGradation::Single(size) => return Ok(Gradation::single(*size)?),
         BaseGradation::Linear { cu, d85: D85::Mm(mm) } => (*cu, *mm),

@@ -41,7 +41,7 @@ impl PackingPlan {
                 (Gradation::linear_from_d0(*d0_mm, cu.unwrap_or(1.0))?, true)
             }
             FilterGradation::Sieve(path, d0_mm) => {
-                (files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv")?, false)
+                (files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv", &recipe.file)?, false)
             }
         };
         let name = match &recipe.gradation {

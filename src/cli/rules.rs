@@ -66,19 +66,18 @@ fn words(
     };
     let how = match base.regraded_at_mm {
         Some(at) => format!(
-            "regraded on {} mm (D85 as sampled {} mm)",
+            "regraded on {} mm ({} as sampled)",
             number(Some(at)),
-            number(base.d85_as_sampled_mm)
+            sizes(&[("D85", base.d85_as_sampled_mm)])
         ),
         None => "as sampled".into(),
     };
     line(format!(
-        "base    {}{}: D85 {}, D95 {} mm {how}; D15 {}, Cu {} as sampled",
+        "base    {}{}: {}, {how}; {}, Cu {} as sampled",
         base_file.display(),
         of_curve(&base.curves, &base.curve),
-        number(base.d85_mm),
-        number(base.d95_mm),
-        number(base.d15_mm),
+        sizes(&[("D85", base.d85_mm), ("D95", base.d95_mm)]),
+        sizes(&[("D15", base.d15_mm)]),
         number(base.cu)
     ));
     let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
@@ -90,11 +89,10 @@ fn words(
     let dispersive = if base.dispersive { ", dispersive" } else { "" };
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
     line(format!(
-        "filter  {}{}: D15 {}, D85 {} mm, Cu {}",
+        "filter  {}{}: {}, Cu {}",
         filter_file.display(),
         of_curve(&filter.curves, &filter.curve),
-        number(filter.d15_mm),
-        number(filter.d85_mm),
+        sizes(&[("D15", filter.d15_mm), ("D85", filter.d85_mm)]),
         number(filter.cu)
     ));
     line(format!("practice {}", pair.practice));
@@ -154,9 +152,21 @@ fn row(rule: &AppliedRule) -> String {
         (Some(value), Some(limit)) => value_and_limit(value, limit, rule.at_least, 3).map(Some).into(),
         (value, limit) => (Some(number(value)), limit.map(|limit| digits_within(limit, 3, rule.at_least))),
     };
-    let value = value.unwrap_or_default();
+    let of_value = if rule.value.is_some() { unit.as_str() } else { "" };
+    let value = format!("{}{of_value}", value.unwrap_or_default());
     let limit = limit.map_or(String::new(), |limit| format!(", {begins} {limit}{unit}{ends}"));
-    format!("  {result:<12}{}: {} {} {value}{unit}{limit}", rule.name, rule.quantity, value_begins(rule))
+    format!("  {result:<12}{}: {} {} {value}{limit}", rule.name, rule.quantity, value_begins(rule))
+}
+
+/// Sizes by their names, the unit once where all of them are known.
+fn sizes(of: &[(&str, Option<f64>)]) -> String {
+    let all_known = of.iter().all(|(_, size)| size.is_some());
+    let said = |(name, size): &(&str, Option<f64>)| {
+        let unit = if size.is_some() && !all_known { " mm" } else { "" };
+        format!("{name} {}{unit}", number(*size))
+    };
+    let said: Vec<String> = of.iter().map(said).collect();
+    format!("{}{}", said.join(", "), if all_known { " mm" } else { "" })
 }
 
 /// Four digits that mean something.
@@ -177,5 +187,8 @@ mod tests {
             ["1.12", "0.0123", "62.5", "340"]
         );
         assert_eq!(number(None), "not known");
+        assert_eq!(sizes(&[("D85", Some(0.3)), ("D95", Some(1.5))]), "D85 0.300, D95 1.50 mm");
+        assert_eq!(sizes(&[("D85", Some(0.3)), ("D95", None)]), "D85 0.300 mm, D95 not known");
+        assert_eq!(sizes(&[("D15", None)]), "D15 not known");
     }
 }

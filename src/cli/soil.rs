@@ -94,9 +94,8 @@ fn words(soils: &[SoilSummary]) -> String {
         }
         let number = |value: Option<f64>| value.map_or("not known".to_owned(), digits);
         line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));
-        let percent = |value: Option<f64>| value.map_or("not known".to_owned(), |v| format!("{v:.1} %"));
-        line("fines", format!("{} finer than 0.075 mm", percent(soil.fines_percent)));
-        line("gravel", format!("{} coarser than 4.75 mm", percent(soil.gravel_percent)));
+        line("fines", percent(soil.fines_percent, "finer than 0.075 mm"));
+        line("gravel", percent(soil.gravel_percent, "coarser than 4.75 mm"));
         if let Some(class) = &soil.class {
             line("class (ASTM D2487)", class.clone());
         }
@@ -105,6 +104,11 @@ fn words(soils: &[SoilSummary]) -> String {
         }
     }
     text
+}
+
+/// A percentage and what it is of.
+fn percent(value: Option<f64>, of: &str) -> String {
+    value.map_or("not known".to_owned(), |value| format!("{value:.1} % {of}"))
 }
 
 /// A number with four digits that mean something.
@@ -119,7 +123,13 @@ fn digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::digits;
+    use super::{digits, percent};
+
+    #[test]
+    fn nothing_follows_a_percentage_that_is_not_known() {
+        assert_eq!(percent(Some(1.5), "finer than 0.075 mm"), "1.5 % finer than 0.075 mm");
+        assert_eq!(percent(None, "finer than 0.075 mm"), "not known");
+    }
 
     #[test]
     fn numbers_have_four_digits() {

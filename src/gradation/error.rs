@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::store::in_mb;
+
 /// Where in an input something stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
@@ -62,7 +64,7 @@ pub enum TableError {
         endings: String,
     },
     /// More bytes than any such table has.
-    #[error("{file} is larger than {limit} bytes; allowed: a CSV file of two columns up to that size")]
+    #[error("{file} is larger than {}; allowed: a CSV file of two columns up to that size", in_mb(*.limit))]
     TooLarge {
         /// File as the user named it.
         file: String,

@@ -1,6 +1,7 @@
 //! The fields of a packing file, and what is said of one that cannot be.
 
 use crate::gradation::{Position, shortened};
+use crate::store::in_mb;
 
 /// Largest packing file that is read, in bytes; what is packed in it may unpack to no more.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
@@ -71,7 +72,7 @@ pub enum ImportError {
         problem: String,
     },
     /// More bytes than any packing has.
-    #[error("{file} is larger than {limit} bytes; allowed: a packing file up to that size")]
+    #[error("{file} is larger than {}; allowed: a packing file up to that size", in_mb(*.limit))]
     TooLarge {
         /// File as the user named it.
         file: String,

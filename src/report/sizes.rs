@@ -22,8 +22,13 @@ impl<'a> SizedSoil<'a> {
 }
 
 /// What stands below such a table.
-fn note() -> Markup {
-    html! { p.small { "Group by ASTM D2487, from the sieve curve. –: not known from the sieves." } }
+fn note(unit: SizeUnit) -> Markup {
+    html! { p.small {
+        @if unit != SizeUnit::D0f {
+            "Group by ASTM D2487 of the part finer than 75 mm, from the sieve curve. "
+        }
+        "–: not known from the sieves."
+    } }
 }
 
 /// A value, or that it is not known.
@@ -39,7 +44,7 @@ pub(super) fn of_few(soils: &[SizedSoil], unit: SizeUnit) -> Markup {
     for (soil, sizes) in soils.iter().zip(&sizes) {
         table = table.number(clean(&soil.name), |row| cell(sizes[*row].1.as_ref()));
     }
-    html! { div.sizes { (table) (note()) } }
+    html! { div.sizes { (table) (note(unit)) } }
 }
 
 /// Of many soils, a row each, in mm.
@@ -52,5 +57,5 @@ pub(super) fn of_many(soils: &[SizedSoil]) -> Markup {
         let heading = if name.starts_with('D') { format!("{name}, mm") } else { (*name).into() };
         table = table.number(heading, move |(_, sizes)| cell(sizes[at].1.as_ref()));
     }
-    html! { (table.render()) (note()) }
+    html! { (table.render()) (note(SizeUnit::Mm)) }
 }

@@ -39,7 +39,7 @@ use crate::walk::{BlockedAs, Concentration, Law};
 use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
-const BUILT_IN_NAME: &str = "built-in scene";
+pub(crate) const BUILT_IN_NAME: &str = "built-in scene";
 
 /// A scene: every setting with its value, given or by default, each checked by itself and against the others.
 ///

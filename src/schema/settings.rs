@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 use super::{Allowed, Leaf, Value, hints, nearest};
-use crate::store::read_regular;
+use crate::store::{read_regular, why_not_read};
 
 /// A scene that is refused.
 #[derive(Debug, thiserror::Error)]
@@ -162,7 +162,7 @@ impl GivenSettings {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
         let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
-            let problem = format!("must be a regular file of at most {LARGEST_FILE} bytes");
+            let problem = why_not_read(path, LARGEST_FILE);
             return Err(SceneError::Syntax { file, at: String::new(), problem });
         };
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();

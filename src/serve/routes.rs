@@ -123,7 +123,14 @@ fn of_library(points: &[[f64; 2]]) -> Vec<(String, Vec<[f64; 2]>)> {
 
 /// What the input says is wrong with it.
 fn wrong(error: impl std::fmt::Display) -> Problem {
-    (422, error.to_string())
+    (422, on_page(&error.to_string()))
+}
+
+/// What the command line says, in the words of the page: its ticks and fields stand for options.
+fn on_page(said: &str) -> String {
+    let said = said.strip_prefix("--set: ").or_else(|| said.strip_prefix("--set, ")).unwrap_or(said);
+    said.replace("(--as-given)", "(the tick \"base and filter are as given\")")
+        .replace("--as-sampled", "the tick \"walk the base as it was sampled\"")
 }
 
 impl Routes {

@@ -248,6 +248,26 @@ pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= largest).then_some(bytes))
 }
 
+/// Why [`read_regular`] gives nothing of a path: what it is, and what is allowed.
+pub fn why_not_read(path: &Path, largest: u64) -> String {
+    let largest = in_mb(largest);
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_dir() => format!("is a folder; allowed: a file of at most {largest}"),
+        Ok(found) if !found.is_file() => {
+            format!("is a pipe, a device or a socket; allowed: a regular file of at most {largest}")
+        }
+        _ => format!("is larger than {largest}; allowed: a file up to that size"),
+    }
+}
+
+/// A limit of a file's size as it is said.
+pub fn in_mb(bytes: u64) -> String {
+    match bytes >> 30 {
+        0 => format!("{} MB", bytes >> 20),
+        gb => format!("{gb} GB"),
+    }
+}
+
 /// Opens a file for reading; `None` where it is no regular file. A pipe is not waited for.
 ///
 /// # Errors
@@ -278,6 +298,11 @@ mod tests {
         ] {
             assert_eq!(read_regular(path, largest).unwrap(), found, "{}", path.display());
         }
+        let why = |path: &Path| why_not_read(path, 16 << 20);
+        assert_eq!(why(root.path()), "is a folder; allowed: a file of at most 16 MB");
+        assert!(why(&pipe).starts_with("is a pipe, a device or a socket; "));
+        assert_eq!(why(&text), "is larger than 16 MB; allowed: a file up to that size");
+        assert_eq!(in_mb(4 << 30), "4 GB");
         assert_eq!(read(&text).unwrap(), b"abc");
         assert_eq!(read(&pipe).unwrap_err().to_string(), "is no regular file");
     }

@@ -12,7 +12,7 @@ pub(crate) mod platform;
 mod whole;
 
 pub use column::{Column, Placement};
-pub use disk::{open_regular, read_regular};
+pub use disk::{in_mb, open_regular, read_regular, why_not_read};
 pub use error::StoreError;
 pub use folder::{Folder, LOCK_FILE};
 pub use inside::{files_in, make_folder, remove_folder};

@@ -94,10 +94,10 @@ fn every_mistake_is_answered_with_a_way_out() {
         ("run plan.toml", 2, &["plan.toml: is the plan of a campaign, not a scene", "voidwalk campaign"]),
         ("campaign small.toml", 2, &["small.toml: is a scene, not the plan of a campaign", "voidwalk run"]),
         ("campaign sand.csv", 2, &["sand.csv: is a table of numbers, not the plan of a campaign"]),
-        ("run pipe", 2, &["pipe: must be a regular file"]),
-        ("campaign pipe", 2, &["pipe: must be a regular file"]),
+        ("run pipe", 2, &["pipe: is a pipe, a device or a socket; allowed: a regular file of at most 1 MB"]),
+        ("campaign pipe", 2, &["pipe: is a pipe, a device or a socket; allowed: "]),
         ("constrictions pipe", 2, &["pipe: cannot be read: is no regular file"]),
-        ("check --set base.sieve=pipe", 2, &["pipe, named by base.sieve: must be a regular file"]),
+        ("check --set base.sieve=pipe", 2, &["refused: pipe: is a pipe, a device or a socket; allowed: "]),
         ("check --set filter.curve=pipe.csv", 2, &["pipe.csv, named by filter.curve: No such file"]),
         ("constrictions three.csv --out c", 2, &["three.csv: 3 grains: a triangulation needs at least 4"]),
         (

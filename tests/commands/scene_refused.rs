@@ -25,7 +25,7 @@ fn bad_scenes_are_refused_and_leave_nothing() {
         (typo.as_str(), "seed=1", &["typo.toml, line 4", "`base.d85_at_cd`", "`base.d85_at_dc`"][..]),
         (unit.as_str(), "seed=1", &["unit.toml, line 4", "did you mean `base.d85_mm`"]),
         (fine.as_str(), "seed=1", &["s.csv", "3", "nan"]),
-        (root.path().to_str().unwrap(), "seed=1", &["must be a regular file"]),
+        (root.path().to_str().unwrap(), "seed=1", &[": is a folder; allowed: a file of at most 1 MB"]),
         ("/no/such/scene.toml", "seed=1", &["/no/such/scene.toml"]),
         ("", "base.n_base=0", &["--set, base.n_base: `0` is not allowed", "whole number from 1"]),
         ("", "base.mass_ratio=1e-12", &["less than half a base particle"]),
@@ -95,7 +95,7 @@ fn what_once_slipped_through_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let out = root.path().join("out");
     for (more, message) in [
-        (vec!["--set", "base.sieve=/dev/null"], "must be a regular file"),
+        (vec!["--set", "base.sieve=/dev/null"], "allowed: a regular file"),
         (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
         (
             vec![

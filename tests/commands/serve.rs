@@ -228,7 +228,7 @@ fn names_do_no_harm_and_mistakes_have_the_words_of_the_command_line() {
     }
     let (status, said) = served.judge(&["base.uc=3"]);
     assert_eq!(status, 422);
-    assert_eq!(said["problem"], "--set: there is no setting `base.uc`; did you mean `base.cu`?");
+    assert_eq!(said["problem"], "there is no setting `base.uc`; did you mean `base.cu`?");
     for path in [
         "files/run-1/../../x",
         "files/run-1/..%2F..%2Fx",

@@ -120,6 +120,7 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
             status == 422 && said.starts_with("base stone.csv, filter narrow.csv: the base is"),
             "{said}"
         );
+        assert!(said.ends_with("as given (the tick \"base and filter are as given\")"), "{said}");
     }
     let (status, said) = served.design(&[], json!({ "base": "2", "filter": "1", "shape": "" }));
     assert!(status == 422 && said.to_string().contains("are the two files exchanged?"), "{said}");

@@ -57,11 +57,11 @@ fn a_folder_a_missing_file_and_a_huge_file_are_refused() {
     assert_eq!(
         message(&huge),
         format!(
-            "{} is larger than 16777216 bytes; allowed: a CSV file of two columns up to that size",
+            "{} is larger than 16 MB; allowed: a CSV file of two columns up to that size",
             huge.display()
         )
     );
-    assert!(Curve::from_csv(&huge).unwrap_err().to_string().contains("larger than 16777216 bytes"));
+    assert!(Curve::from_csv(&huge).unwrap_err().to_string().contains("larger than 16 MB"));
 }
 
 /// A file that never ends is no regular file, and is not read at all.

@@ -27,7 +27,7 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     let mut notes = grid.notes.clone();
     notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
     let mut entries = entries(grid, layout, extent, column, &mut notes)?;
-    let unit = units::of_bare(grid, layout, &entries, &mut notes)?;
+    let unit = units::of_bare(grid, layout, column.role, &entries, &mut notes)?;
     for entry in &mut entries {
         entry.opening = match entry.opening {
             Opening::Bare(value) => in_mm(grid, entry, value, unit)?,

@@ -45,7 +45,7 @@ impl Weighed<'_> {
             if self.retained.percent || !any(&MASS) || value <= 1.01 * whole {
                 continue;
             }
-            let sum = (whole * 1e6).round() / 1e6;
+            let sum = tidy(whole);
             if any(&["dry"]) && !any(&["tare", "container", "dish", "can", "pan", "wet", "with"]) {
                 let allowed = format!(
                     "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
@@ -61,6 +61,11 @@ impl Weighed<'_> {
         }
         Ok(())
     }
+}
+
+/// A sum of decimals as it was meant to be.
+fn tidy(sum: f64) -> f64 {
+    (sum * 1e6).round() / 1e6
 }
 
 /// The rows in percent finer.
@@ -131,7 +136,7 @@ pub(super) fn percents_finer(
             let allowed = format!(
                 "values retained that sum to the whole with the pan (these sum to {}), or cumulative ones \
                  that rise towards the finer sieves",
-                (all * 1e6).round() / 1e6
+                tidy(all)
             );
             return Err(weighed.refused(first_line, first, &allowed));
         }
@@ -156,5 +161,35 @@ pub(super) fn percents_finer(
     let what = if percent { "percents" } else { "masses" };
     let how = if cumulative { "cumulative " } else { "" };
     notes.push(format!("{how}{what} retained turned into percent finer"));
+    let rest = rows.last().map_or(0.0, |row| row.percent);
+    if percent && !cumulative && pan.is_none() && rest > ROUNDED {
+        notes.push(format!(
+            "the percents retained sum to {}, without the pan: the missing {} % were taken as finer than the \
+             finest sieve",
+            tidy(all),
+            tidy(rest)
+        ));
+    }
     Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gradation::Soil;
+
+    #[test]
+    fn percents_without_a_pan_say_what_they_were_taken_to_leave() {
+        let notes = |rows: &str| {
+            let text = format!("Sieve (mm),% Retained\n{rows}");
+            Soil::all("a.csv", text.as_bytes()).unwrap()[0].notes().join("; ")
+        };
+        let short = notes("9.5,0\n4.75,30\n1.18,40\n0.075,5\n");
+        let said = "the percents retained sum to 75, without the pan: the missing 25 % were taken as finer \
+                    than the finest sieve";
+        assert!(short.contains(said), "{short}");
+        for whole in ["9.5,0\n4.75,30\n1.18,40\n0.075,5\nPan,25\n", "9.5,0\n4.75,30\n1.18,64\n0.075,6\n"] {
+            let notes = notes(whole);
+            assert!(notes.contains("turned into percent finer") && !notes.contains("missing"), "{notes}");
+        }
+    }
 }

@@ -253,6 +253,11 @@ fn of_inches(inches: f64) -> f64 {
     standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
 }
 
+/// Whether an opening (mm) that was given in inches is that of a US sieve.
+pub(super) fn is_us_sieve_of_inches(mm: f64) -> bool {
+    BY_INCHES.iter().any(|(_, opening)| *opening == mm)
+}
+
 impl Unit {
     /// What a number without a unit is in mm.
     pub(super) fn mm(self, value: f64) -> Option<f64> {

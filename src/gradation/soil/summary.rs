@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::table::Soil;
 use crate::gradation::error::GradationError;
-use crate::gradation::group::{FINES_MM, GRAVEL_MM, Group};
+use crate::gradation::group::{FINES_MM, GRAVEL_MM};
 
 /// What was understood of a soil, and what follows from its curve.
 #[derive(Clone, Debug, Serialize)]
@@ -56,8 +56,6 @@ impl SoilSummary {
     pub fn of(soil: &Soil, d0_mm: Option<f64>) -> Result<SoilSummary, GradationError> {
         let curve = soil.gradation(d0_mm)?;
         let d = |percent| curve.d(percent);
-        let cc = || Some(d(30.0)? / d(60.0)? * (d(30.0)? / d(10.0)?));
-        let (cu, cc) = (curve.cu(), cc());
         let fines_percent = curve.percent_finer_if_known(FINES_MM);
         let gravel_percent = curve.percent_finer_if_known(GRAVEL_MM).map(|percent| 100.0 - percent);
         Ok(SoilSummary {
@@ -73,40 +71,12 @@ impl SoilSummary {
             d90_mm: d(90.0),
             d95_mm: d(95.0),
             d100_mm: d(100.0),
-            cu,
-            cc,
+            cu: curve.cu(),
+            cc: curve.cc(),
             fines_percent,
             gravel_percent,
-            class: class(fines_percent, gravel_percent, cu.zip(cc)),
+            class: curve.group_in_words(),
             notes: soil.notes().to_vec(),
         })
-    }
-}
-
-/// The group of ASTM D2487 that follows from sizes alone: whether fines are silt or clay is not known from
-/// them.
-fn class(fines: Option<f64>, gravel: Option<f64>, shape: Option<(f64, f64)>) -> Option<String> {
-    Some(Group::of(fines?, gravel?, shape)?.in_words())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::class;
-
-    #[test]
-    fn classes_follow_the_limits_of_astm_d2487() {
-        for (fines, gravel, shape, expected) in [
-            (2.0, 10.0, Some((7.0, 1.2)), Some("well-graded sand: SW")),
-            (2.0, 10.0, Some((5.9, 1.2)), Some("poorly graded sand: SP")),
-            (2.0, 60.0, Some((4.0, 3.0)), Some("well-graded gravel: GW")),
-            (2.0, 60.0, Some((4.0, 3.1)), Some("poorly graded gravel: GP")),
-            (5.0, 10.0, Some((7.0, 1.2)), Some("well-graded sand with silt or clay: SW-SM or SW-SC")),
-            (12.1, 10.0, None, Some("sand with more than 12 % fines: SM or SC")),
-            (2.0, 10.0, None, None),
-        ] {
-            assert_eq!(class(Some(fines), Some(gravel), shape).as_deref(), expected);
-        }
-        assert!(class(Some(50.0), Some(0.0), None).unwrap().starts_with("fine-grained"));
-        assert_eq!(class(None, Some(0.0), None), None);
     }
 }

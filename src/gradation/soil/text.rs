@@ -68,8 +68,12 @@ fn refuse_other_formats(file: &str, bytes: &[u8]) -> Result<(), TableError> {
         (b"{\\rtf", "a text document (.rtf)"),
         (&[0x1f, 0x8b], "compressed (gzip)"),
     ];
-    match KNOWN.iter().find(|(start, _)| bytes.starts_with(start)) {
-        Some((_, what)) => Err(other(file, (*what).to_owned())),
+    if let Some((_, what)) = KNOWN.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Err(other(file, (*what).to_owned()));
+    }
+    let small = file.to_lowercase();
+    match [".xlsx", ".ods"].iter().find(|ending| small.ends_with(**ending)) {
+        Some(ending) => Err(other(file, format!("not a workbook, though its name ends in {ending}"))),
         None => Ok(()),
     }
 }
@@ -81,6 +85,18 @@ fn other(file: &str, is: String) -> TableError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_named_as_a_workbook_is_one_or_refused() {
+        let said = |file: &str, bytes: &[u8]| decoded(file, bytes).unwrap_err().to_string();
+        for ending in ["xlsx", "XLSX", "ods"] {
+            let said = said(&format!("site.{ending}"), b"# voidwalk\n\n4.75,100\n");
+            let is = format!("site.{ending} is not a workbook, though its name ends in .");
+            assert!(said.starts_with(&is), "{said}");
+        }
+        assert!(said("site.xlsx", &[0xd0, 0xcf, 0x11, 0xe0]).contains("one with a password"));
+        assert!(decoded("site.csv", b"4.75,100\n").is_ok());
+    }
 
     #[test]
     fn windows_1252_has_a_character_for_every_byte() {

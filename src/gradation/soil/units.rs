@@ -1,8 +1,9 @@
 //! What openings without a unit of their own mean.
 
 use super::grid::Grid;
+use super::heading::{Retained, Role};
 use super::layout::Layout;
-use super::size::{Entry, Opening, Said, Unit};
+use super::size::{Entry, Opening, Said, Unit, is_us_sieve_of_inches};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 
@@ -27,6 +28,7 @@ const ALSO_MM: [f64; 22] = [
 pub(super) fn of_bare(
     grid: &Grid,
     layout: &Layout,
+    role: Role,
     entries: &[Entry],
     notes: &mut Vec<String>,
 ) -> Result<Unit, TableError> {
@@ -45,6 +47,18 @@ pub(super) fn of_bare(
     let any = |said: Said| entries.iter().any(|entry| entry.said == said);
     let refused =
         |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
+    if let Some(entry) = first_sieve_number(entries, role) {
+        if layout.unit == Some(Unit::SieveNumber) {
+            // The opening that is none is refused as such.
+            return Ok(Unit::SieveNumber);
+        }
+        let text = &entry.text;
+        let allowed = format!(
+            "No. {text} or {text} mm: no unit is given, and these look like US sieve numbers; write No. \
+             {text}, or head the column Sieve No.; sizes in mm need mm in the heading, as Sieve (mm)"
+        );
+        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+    }
     if any(Said::Inches) || any(Said::UsNumber) {
         match (goes_one_way(entries, Unit::Mm), goes_one_way(entries, Unit::Inch)) {
             (false, true) => {
@@ -103,19 +117,167 @@ fn is_series_of_inches(entries: &[Entry]) -> bool {
     only || round > 1
 }
 
+/// Fewer numbers of sieves may be anything.
+const LEAST_NUMBERS: usize = 3;
+
+/// Numbers of US sieves that are the openings (mm) of no metric sieve.
+const NO_METRIC_SIEVE: [f64; 12] =
+    [7.0, 18.0, 30.0, 35.0, 60.0, 70.0, 120.0, 140.0, 170.0, 230.0, 270.0, 325.0];
+
+/// The first opening of a table whose bare openings are US sieves by number: whole ones, up to No. 100 or
+/// more, of which the larger is the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
+fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
+    let is_number = |value: f64| value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some();
+    let is_inches =
+        |value: f64| ONLY_INCHES.iter().chain(&ALSO_MM).any(|inches| (inches - value).abs() < 1e-9);
+    let (mut numbers, mut all) = (Vec::new(), true);
+    for entry in entries {
+        match entry.opening {
+            Opening::Bare(value) if is_number(value) => numbers.push((value, entry)),
+            Opening::Bare(value) if value == 0.0 || is_inches(value) => all &= value == 0.0,
+            Opening::Bare(_) => return None,
+            _ => {}
+        }
+    }
+    let first = numbers.first()?.1;
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    numbers.dedup_by(|a, b| a.0 == b.0);
+    let largest = numbers.last()?.0;
+    if numbers.len() < LEAST_NUMBERS || largest < 100.0 {
+        return None;
+    }
+    let values: Vec<f64> = numbers.iter().map(|(_, entry)| entry.value).collect();
+    let rises = values.is_sorted() && values[0] < values[values.len() - 1];
+    let falls = values.is_sorted_by(|a, b| a >= b) && values[0] > values[values.len() - 1];
+    let is_it = match role {
+        Role::Retained(Retained { cumulative: Some(true), .. }) => rises,
+        Role::Retained(Retained { cumulative: None, .. }) if rises => true,
+        // What is on each sieve alone goes neither way: the pan stands beside the finest.
+        Role::Retained(_) => match beside_pan(entries) {
+            Some(value) => value == largest,
+            None => all && numbers.iter().any(|(n, _)| *n >= 200.0 || NO_METRIC_SIEVE.contains(n)),
+        },
+        _ => falls,
+    };
+    is_it.then_some(first)
+}
+
+/// The bare opening that stands beside the pan.
+fn beside_pan(entries: &[Entry]) -> Option<f64> {
+    let is_pan = |entry: &Entry| match entry.opening {
+        Opening::Pan | Opening::Below(_) => true,
+        Opening::Bare(value) => value == 0.0,
+        _ => false,
+    };
+    let pan = entries.iter().position(is_pan)?;
+    let beside = [pan.checked_sub(1), Some(pan + 1)].into_iter().flatten();
+    beside.filter_map(|at| entries.get(at)).find_map(|entry| match entry.opening {
+        Opening::Bare(value) if value > 0.0 => Some(value),
+        _ => None,
+    })
+}
+
 /// Says which names of openings were translated.
 pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
     let any = |said: Said| entries.iter().any(|entry| entry.said == said);
     let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
-    let inches = any(Said::Inches) || unit == Unit::Inch;
-    if number || inches {
+    let of_inches = entries
+        .iter()
+        .filter(|entry| entry.said == Said::Inches || entry.said == Said::Plain && unit == Unit::Inch);
+    let (mut standard, mut exact) = (false, false);
+    for entry in of_inches {
+        if let Opening::Mm(mm) | Opening::Below(mm) = entry.opening {
+            let is_us = is_us_sieve_of_inches(mm);
+            (standard, exact) = (standard || is_us, exact || !is_us);
+        }
+    }
+    if number || standard {
         let example = if number { "No. 200 = 0.075 mm" } else { "3/8 in = 9.5 mm" };
         notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
+    }
+    if exact {
+        let which = if standard { "other openings in inches" } else { "openings in inches" };
+        notes.push(format!("{which} converted exactly: 1 in = 25.4 mm"));
     }
     match unit {
         Unit::Micrometre => notes.push("openings in micrometres".into()),
         Unit::Cm => notes.push("openings in cm".into()),
         Unit::Phi => notes.push("openings in phi: size = 2^-phi mm".into()),
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::gradation::Gradation;
+
+    fn read(heading: &str, rows: &[&str], backwards: bool) -> Result<Gradation, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let mut rows = rows.to_vec();
+        if backwards {
+            rows.reverse();
+        }
+        std::fs::write(&path, format!("{heading}\n{}\n", rows.join("\n"))).unwrap();
+        Gradation::from_sieve_csv(&path, None).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn bare_numbers_of_us_sieves_are_refused_in_either_order() {
+        for (heading, rows) in [
+            ("Sieve,% Passing", &["4,100", "16,68", "50,17", "200,1.5"][..]),
+            ("US Sieve,% Passing", &["0.375,100", "4,97", "16,68", "50,17", "200,1.5"]),
+            ("Sieve,% Passing", &["#4,100", "16,68", "50,17", "200,1.5"]),
+            ("US Sieve,% Retained", &["16,0", "30,20", "50,60", "100,20", "200,0"]),
+            ("Sieve,% Retained", &["4,10", "8,25", "16,40", "50,25", "100,0", "Pan,0"]),
+            ("Sieve,Mass retained (g)", &["3/8,0", "4,15", "40,300", "200,17.5", "Pan,7.5"]),
+            ("Sieve,Cumulative % retained", &["4,0", "10,20", "40,60", "100,98"]),
+        ] {
+            for backwards in [false, true] {
+                let said = read(heading, rows, backwards).unwrap_err();
+                assert!(said.contains("look like US sieve numbers"), "{heading}: {said}");
+                assert!(said.contains("line ") && said.contains("sizes in mm need mm"), "{said}");
+                let in_mm = heading.replace("Sieve", "Sieve (mm)");
+                let said = read(&in_mm, rows, backwards);
+                assert!(!said.is_err_and(|said| said.contains("US sieve numbers")), "{in_mm}");
+            }
+        }
+        let bare = read("4,100", &["10,68", "40,17", "200,1.5"], false).unwrap_err();
+        assert!(bare.contains("a.csv, line 1, ") && bare.contains("US sieve numbers"), "{bare}");
+        let numbered = read("Sieve No.,% Passing", &["4,100", "16,68", "50,17", "200,1.5"], false);
+        assert_eq!(numbered.unwrap().largest_mm(), 4.75);
+    }
+
+    #[test]
+    fn whole_sizes_in_mm_are_read_without_a_unit() {
+        for (heading, rows, largest) in [
+            ("Sieve,% Passing", &["4,10", "8,30", "16,60", "31.5,100"][..], 31.5),
+            ("Sieve,% Passing", &["4,10", "8,30", "20,60", "100,100"], 100.0),
+            ("Sieve,% Passing", &["5,10", "20,30", "50,60", "200,100"], 200.0),
+            ("Sieve,% Retained", &["100,0", "50,30", "20,40", "10,20", "5,10"], 100.0),
+            ("Sieve,Mass retained (g)", &["200,0", "50,30", "30,40", "10,20", "Pan,10"], 200.0),
+            ("Sieve,Cumulative % retained", &["200,0", "50,30", "30,70", "10,100"], 200.0),
+            ("Sieve,% Retained", &["80,0", "40,30", "20,40", "10,20", "5,10"], 80.0),
+        ] {
+            for backwards in [false, true] {
+                let curve = read(heading, rows, backwards);
+                assert_eq!(curve.map(|curve| curve.largest_mm()), Ok(largest), "{heading} {rows:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_us_sieves_are_said_to_be_read_as_such() {
+        let notes = |text: &str| {
+            let soils = crate::gradation::Soil::all("a.csv", text.as_bytes()).unwrap();
+            soils[0].notes().join("; ")
+        };
+        let exact = notes("in,percent finer\n9.5,100\n4.75,90\n1.18,50\n0.3,2\n");
+        assert!(exact.contains("openings in inches converted exactly: 1 in = 25.4 mm"), "{exact}");
+        assert!(!exact.contains("US sieves"), "{exact}");
+        let standard = notes("in,percent finer\n1,100\n0.75,90\n0.375,50\n");
+        assert!(standard.contains("ASTM E11 (3/8 in = 9.5 mm)") && !standard.contains("25.4"), "{standard}");
+        let both = notes("Sieve,% finer\n6 in,100\n3/4 in,50\n3/8 in,2\n");
+        assert!(both.contains("ASTM E11") && both.contains("other openings in inches converted exactly"));
     }
 }
