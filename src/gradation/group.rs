@@ -142,8 +142,8 @@ impl Class {
 
 impl Gradation {
     /// The symbol of its group, sizes in mm: that of the part finer than 75 mm, with what it has beside it.
-    /// Where the plasticity of the fines decides, both symbols that it may come to; `None` where more than half
-    /// is coarser than 75 mm, or a finest tail leaves it open.
+    /// Where the plasticity of the fines decides, both symbols that it may come to; `None` where more than
+    /// half is coarser than 75 mm, or a finest tail leaves it open.
     ///
     /// ```
     /// use voidwalk::Gradation;
@@ -214,12 +214,9 @@ mod tests {
         let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
         let cobbles = soil(&[(0.075, 20.0), (4.75, 54.0), (75.0, 80.0), (150.0, 100.0)]);
         assert_eq!(cobbles.group().as_deref(), Some("SM or SC, with gravel and cobbles"));
-        assert_eq!(
-            cobbles.group_in_words().as_deref(),
-            Some(
-                "sand with more than 12 % fines in the part finer than 75 mm: SM or SC, with gravel and cobbles"
-            )
-        );
+        let name = "sand with more than 12 % fines in the part finer than 75 mm";
+        let words = format!("{name}: SM or SC, with gravel and cobbles");
+        assert_eq!(cobbles.group_in_words(), Some(words));
         // 41 % of 80 % are fines: half of the part, less than half of the whole.
         let fines = soil(&[(0.075, 41.0), (4.75, 80.0), (75.0, 80.0), (350.0, 100.0)]);
         assert_eq!(fines.group().as_deref(), Some("fine-grained, with cobbles and boulders"));
