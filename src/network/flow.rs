@@ -36,8 +36,8 @@ const CLOSELY: f64 = 1e-8;
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
 
-/// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less known
-/// than [`KNOWN`], so that every solution would be done again, to what rounding allows.
+/// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less
+/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows.
 const THICK: usize = 400;
 
 /// The residual of a thick network, as part of what flows in.

@@ -188,8 +188,8 @@ fn limits(of: &Specification) -> Markup {
         }
         p.small {
             "Percent finer by mass, rounded into the band. At most 5 % may be finer than \
-             0.075 mm, and these fines must not be plastic. Segregation is not checked: the maximum D90F is still \
-             to be set (see its step)."
+             0.075 mm, and these fines must not be plastic. Segregation is not checked: the maximum D90F is \
+             still to be set (see its step)."
         }
     }
 }

@@ -151,8 +151,8 @@ impl RegradeReason {
                 &*format!("gap-graded: next to nothing between {} mm and four times that", fixed(from, 3))
             }
             RegradeCause::GapAmongGravel(from) => &*format!(
-                "gap-graded: next to nothing between {} mm and four times that; what is finer is regraded on No. 4 \
-                 (4.75 mm)",
+                "gap-graded: next to nothing between {} mm and four times that; what is finer is regraded on \
+                 No. 4 (4.75 mm)",
                 fixed(from, 3)
             ),
             RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
