@@ -95,7 +95,10 @@ fn what_once_slipped_through_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let out = root.path().join("out");
     for (more, message) in [
-        (vec!["--set", "base.sieve=/dev/null"], "allowed: a regular file"),
+        (
+            vec!["--set", "base.sieve=/dev/null"],
+            "is a pipe, a device or a socket; allowed: a regular file of at most 16 MB",
+        ),
         (vec!["--set", "inject_share=1e-12"], "whole number of equal parts"),
         (
             vec![

@@ -384,6 +384,6 @@ fn the_workbook_of_a_design_in_doubt_says_so() {
     assert_eq!(item(&all["Specification"], "Basis").words(), "By the rules of practice and a walk.");
     let page = fs::read_to_string(out.join("design.html")).unwrap();
     let (_, limits) = page.rsplit_once(">Limits sieve by sieve<").unwrap();
-    let label = said.split(':').next().unwrap();
-    assert!(limits[..limits.find("<table").unwrap()].contains(&label.to_lowercase()), "{label}");
+    let label = format!("Of the walk: <b>{}</b>", design["confidence"].as_str().unwrap());
+    assert!(limits[..limits.find("<table").unwrap()].contains(&label), "{label}");
 }
