@@ -7,14 +7,34 @@
 //! answer depends, within what is asked of it, on those before; it is the same to the bit on any number of
 //! threads.
 
+mod elimination;
+mod error;
+mod joining;
+mod passages;
+mod permeability;
+mod piece;
+mod rest;
+mod rounds;
+mod slabs;
+mod stretch;
+mod system;
+mod thick;
+mod together;
+mod turned;
+
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
-use super::flow_error::FlowError;
-use super::passages::{Meets, Passage, Passages, THROUGH};
-use super::slabs::each;
-use super::system::{CLOSEST, CONVERGED, Kept, ROUNDING, System};
 use super::{END, Network};
+use passages::{Meets, Passage, Passages, THROUGH};
+use slabs::each;
+use system::{CLOSEST, CONVERGED, Fit, Kept, ROUNDING, System};
+use thick::Thick;
+use together::Together;
+
+pub use error::FlowError;
+pub use permeability::permeability_mm2;
+pub use turned::Turned;
 
 /// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
 const NO_FLUX: f64 = 1e-8;
@@ -46,9 +66,6 @@ const CONVERGED_THICK: f64 = 1e-12;
 /// A factor of a thick network is kept until more than one in so many exits have closed: its rounds cost more
 /// beside making another.
 const KEPT_UNTIL_THICK: usize = 300;
-
-/// Voids that a thread looks at one after another.
-const VOIDS_TOGETHER: usize = 1 << 13;
 
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,6 +99,10 @@ pub struct Flow {
     kept: Option<Kept>,
     /// By void: whether water flowed through it when the factor that is kept was first wanted.
     inside: BitVec,
+    /// Where water has turned since the network was given directions.
+    turned: Turned,
+    /// What a thick network keeps from one solution to the next.
+    thick: Option<Thick>,
 }
 
 impl Flow {
@@ -114,6 +135,8 @@ impl Flow {
             most: 0.0,
             kept: None,
             inside: BitVec::new(),
+            turned: Turned::all(network.voids()),
+            thick: None,
         }
     }
 
@@ -176,16 +199,18 @@ impl Flow {
     /// As [`Flow::solve`].
     pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
         assert_eq!(parts.len(), self.open.len(), "one part for each exit");
-        let (mut changed, mut is_open_again) = (0, false);
+        // Exits that change, in the place of those that were blocked: none is.
+        self.blocked.fill(false);
+        let mut is_open_again = false;
         for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
             let now = part * whole(network, c);
-            changed += usize::from(now != *open);
+            self.blocked.set(c, now != *open);
             is_open_again |= now > *open;
             *open = now;
         }
-        self.blocked.fill(false);
         self.is_of_parts = true;
-        self.keep_factor(network, changed, is_open_again);
+        self.keep_factors(network, is_open_again);
+        self.blocked.fill(false);
         self.solve_now(network, false, false, |_| true)
     }
 
@@ -201,8 +226,8 @@ impl Flow {
         if network.reservoir().is_none() {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         }
-        let meets = self.meets(|_| true);
-        if self.kept.is_none() {
+        let meets = self.meet_now();
+        if self.kept.is_none() && self.thick.is_none() {
             self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
         }
         let leads_through = meets.contains(&THROUGH);
@@ -228,8 +253,20 @@ impl Flow {
 
     /// What each void hangs together with, by way of other voids and of such constrictions that conduct.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
-        let conducts = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
-        self.passages.meet(self.pressure.len() - 1, |passage| conducts(passage) && is_way(passage))
+        let voids = self.pressure.len() - 1;
+        let mut within = Together::of(voids);
+        let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0 && is_way(passage);
+        self.passages.join_within(&mut within, |_| true, is_way);
+        self.passages.meet(voids, within, is_way)
+    }
+
+    /// The same by all that conduct; of a thick network from what hung together before.
+    fn meet_now(&mut self) -> Vec<Meets> {
+        let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
+        match &mut self.thick {
+            Some(thick) => thick.meet(&self.passages, is_way),
+            None => self.meets(|_| true),
+        }
     }
 
     /// Conducts as these blocked constrictions let it.
@@ -237,35 +274,60 @@ impl Flow {
         assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         if std::mem::take(&mut self.is_of_parts) {
             // Nothing is blocked, and what was narrowed is whole again.
-            self.kept = None;
+            (self.kept, self.thick) = (None, None);
             self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
         }
         self.blocked ^= blocked;
-        let changed = self.blocked.count_ones();
         let is_open_again = self.blocked.iter_ones().any(|c| !blocked[c]);
-        self.keep_factor(network, changed, is_open_again);
+        self.keep_factors(network, is_open_again);
         for c in self.blocked.iter_ones() {
             self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
         }
         self.blocked.copy_from_bitslice(blocked);
     }
 
-    /// Keeps the factor where few exits have changed since it was made, and none has opened again.
-    fn keep_factor(&mut self, network: &Network, changed: usize, is_open_again: bool) {
+    /// Keeps factors where few exits have changed since they were made, and none has opened again. Changed
+    /// exits stand in the place of blocked ones.
+    fn keep_factors(&mut self, network: &Network, is_open_again: bool) {
         let kept_until = if is_thick(network) { KEPT_UNTIL_THICK } else { KEPT_UNTIL };
         if let Some(kept) = &mut self.kept {
-            kept.closed += changed;
+            kept.closed += self.blocked.count_ones();
             if is_open_again || kept.closed * kept_until > network.constrictions() {
                 self.kept = None;
             }
+        }
+        if is_open_again {
+            self.thick = None;
+        }
+        if let Some(thick) = &mut self.thick {
+            thick.change(&self.passages, |exit| self.blocked[exit]);
         }
     }
 
     /// Pressures of all voids, within so much of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = network.reservoir() else { return Ok(()) };
-        let system = self.system(meets, reservoir);
-        let fit = system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?;
+        let (fit, turned) = match self.thick.take() {
+            Some(mut thick) => {
+                let changed = thick.begin();
+                let is_wanted = |at| changed.get(at).is_none_or(|&changed| changed > 0);
+                self.fill(&mut thick.system, is_wanted, meets, reservoir);
+                let solved = thick.improve(&mut self.pressure, within, &changed);
+                let fit = self.solve_system(network, &mut thick.system, within)?;
+                self.thick = Some(thick);
+                (fit, solved.filter(|_| fit.rounds == 0))
+            }
+            None => {
+                let mut system = self.system(meets, reservoir);
+                let fit = self.solve_system(network, &mut system, within)?;
+                if is_thick(network) {
+                    let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
+                    self.thick = Some(Thick::of(system, &self.passages, meets, is_way));
+                }
+                (fit, None)
+            }
+        };
+        self.turn(turned.as_deref(), reservoir);
         // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
         for (pressure, &meets) in self.pressure.iter_mut().zip(meets) {
             if meets != THROUGH {
@@ -298,16 +360,53 @@ impl Flow {
         self.missing <= KNOWN * self.most.max(self.through(network))
     }
 
+    /// Pressures that solve a system, within so much of the inflow.
+    fn solve_system(
+        &mut self,
+        network: &Network,
+        system: &mut System,
+        within: f64,
+    ) -> Result<Fit, FlowError> {
+        Ok(system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?)
+    }
+
+    /// Water has turned in these slabs and the cuts beside them, or everywhere.
+    fn turn(&mut self, slabs: Option<&[bool]>, reservoir: u32) {
+        let Some(slabs) = slabs else {
+            self.turned = Turned::all(self.pressure.len() - 1);
+            return;
+        };
+        for (slab, _) in slabs.iter().enumerate().filter(|&(_, &has_turned)| has_turned) {
+            self.passages.slabs().around(slab).for_each(|void| self.turned.add(void));
+        }
+        // It leads into the first alone.
+        if slabs.first() == Some(&true) {
+            self.turned.add(reservoir);
+        }
+    }
+
     /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
     /// one where none flows any more.
     fn system(&self, meets: &[Meets], reservoir: u32) -> System {
         let inside = |void: u32| self.inside[void as usize];
         let passages = &self.passages;
         let mut system = System::of(passages.slabs(), inside, |at| passages.of_slab(at).len());
+        self.fill(&mut system, |_| true, meets, reservoir);
+        system
+    }
+
+    /// Fills pieces of the equations.
+    fn fill(
+        &self,
+        system: &mut System,
+        is_wanted: impl Fn(usize) -> bool + Sync,
+        meets: &[Meets],
+        reservoir: u32,
+    ) {
         let outside = meets.len() as u32;
-        system.fill(|at, joining| {
+        system.fill(is_wanted, |at, joining| {
             for passage in
-                passages.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH)
+                self.passages.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH)
             {
                 let open = self.open[passage.exit as usize];
                 if open <= 0.0 {
@@ -322,7 +421,6 @@ impl Flow {
                 }
             }
         });
-        system
     }
 
     /// Flux that the residual may stand for.
@@ -337,10 +435,11 @@ impl Flow {
         self.accuracy * inlets.map(square).sum::<f64>().sqrt() / unit
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last; what was blocked then has
-    /// none.
-    pub fn direct(&self, network: &mut Network) {
-        let Some(reservoir) = network.reservoir() else { return };
+    /// Gives each exit of the network its weight by the flow that was solved last, where water has turned since
+    /// this was done before; what was blocked then has none. Which voids these are.
+    pub fn direct(&mut self, network: &mut Network) -> Turned {
+        let turned = std::mem::replace(&mut self.turned, Turned::none(network.voids()));
+        let Some(reservoir) = network.reservoir() else { return turned };
         let rule = network.exit_rule();
         let inlets = network.exits(reservoir);
         let through = self.through(network);
@@ -348,13 +447,14 @@ impl Flow {
         let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
         let Network { exit_begin, diameter, undirected, .. } = network;
         let mut left = &mut undirected.as_mut().expect("it has a reservoir").weight[..];
-        let mut parts = Vec::new();
-        for first in (0..exit_begin.len() - 1).step_by(VOIDS_TOGETHER) {
-            let begin = &exit_begin[first..(first + VOIDS_TOGETHER + 1).min(exit_begin.len())];
-            let exits = begin[begin.len() - 1] - begin[0];
-            let (weights, after) = left.split_at_mut(exits as usize);
-            parts.push((first as u32, begin, weights));
-            left = after;
+        let (mut parts, mut first_left) = (Vec::new(), 0);
+        for voids in turned.groups() {
+            let begin = &exit_begin[voids.start as usize..=voids.end as usize];
+            let [first, last] = [begin[0], begin[begin.len() - 1]];
+            let (weights, after) =
+                left[(first - first_left) as usize..].split_at_mut((last - first) as usize);
+            parts.push((voids.start, begin, weights));
+            (left, first_left) = (after, last);
         }
         each(&mut parts, |_, (first, begin, weights)| {
             let exits_before = begin[0];
@@ -367,6 +467,7 @@ impl Flow {
                 }
             }
         });
+        turned
     }
 }
 

@@ -13,7 +13,7 @@ use bitvec::vec::BitVec;
 
 use super::State;
 use super::openings::{CONDUCTS, Weighed, part_kept};
-use crate::network::{ExitRule, Flow, FlowError, Network};
+use crate::network::{ExitRule, Flow, FlowError, Network, Turned};
 
 /// The flow is solved again when one in so many constrictions has changed since the last time.
 const PART_BLOCKED: u64 = 100;
@@ -66,7 +66,6 @@ impl<'a> Passable<'a> {
 
 /// What constrictions were at an earlier time of the run of a state.
 struct Past<'a> {
-    network: &'a Network,
     state: &'a State,
     blocked: BitVec,
     widths: Option<Vec<f32>>,
@@ -74,28 +73,28 @@ struct Past<'a> {
 
 impl<'a> Past<'a> {
     /// When the run began.
-    fn begin(network: &'a Network, state: &'a State) -> Self {
+    fn begin(network: &Network, state: &'a State) -> Self {
         let widths = state.openings.as_ref().map(|openings| openings.widths.clone());
-        let mut past = Self { network, state, blocked: state.blocked.clone(), widths };
-        (0..state.changes()).rev().for_each(|at| past.set(at, false));
+        let mut past = Self { state, blocked: state.blocked.clone(), widths };
+        (0..state.changes()).rev().for_each(|at| past.set(network, at, false));
         past
     }
 
     /// Makes a change of the run, or takes it back.
-    fn set(&mut self, at: usize, is_done: bool) {
+    fn set(&mut self, network: &Network, at: usize, is_done: bool) {
         match (&self.state.openings, &mut self.widths) {
             (Some(openings), Some(widths)) => {
                 let change = &openings.history[at];
                 let (exit, width) =
                     (change.constriction as usize, if is_done { change.after } else { change.before });
                 widths[exit] = width;
-                if let Some(twin) = self.network.twin(exit) {
+                if let Some(twin) = network.twin(exit) {
                     widths[twin] = width;
                 }
             }
             _ => {
                 let exit = self.state.history[at].constriction as usize;
-                self.network.set_blocked(&mut self.blocked, exit, is_done);
+                network.set_blocked(&mut self.blocked, exit, is_done);
             }
         }
     }
@@ -132,18 +131,19 @@ impl Directions {
         };
         let mut past = Past::begin(network, state);
         directions.solve(network, past.passable(), 0, 0)?;
+        directions.flow.direct(network);
         // Exits blocked since the flow was solved last lead on once it is solved again.
         let mut so_far = 0;
         for increment in 1..=state.increment {
             while so_far < state.changes() && past.increment(so_far) < increment {
-                past.set(so_far, true);
+                past.set(network, so_far, true);
                 so_far += 1;
             }
             if directions.is_due(network, increment, so_far as u64) {
                 directions.solve(network, past.passable(), increment - 1, so_far as u64)?;
+                directions.flow.direct(network);
             }
         }
-        directions.flow.direct(network);
         Ok(directions)
     }
 
@@ -163,15 +163,14 @@ impl Directions {
             && (since * PART_BLOCKED >= network.passages() as u64 || increment > self.solved_at + INCREMENTS)
     }
 
-    /// Solves the flow where the increment that `state` begins is due for it; whether it did.
-    pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
+    /// Solves the flow where the increment that `state` begins is due for it; where water has turned then.
+    pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<Option<Turned>, FlowError> {
         let blocked = state.changes() as u64;
         if !self.is_due(network, state.increment, blocked) {
-            return Ok(false);
+            return Ok(None);
         }
         self.solve(network, Passable::of(state), state.increment - 1, blocked)?;
-        self.flow.direct(network);
-        Ok(true)
+        Ok(Some(self.flow.direct(network)))
     }
 
     /// The flow at the end of a run; the network is given its directions.

@@ -9,7 +9,7 @@ use super::crowding::Crowd;
 use super::openings::Ways;
 use super::reads::Reads;
 use super::{Arching, Isa};
-use crate::network::Network;
+use crate::network::{Network, Turned};
 use few::FewExits;
 
 /// The exits of one void, as draws see them.
@@ -158,8 +158,9 @@ pub(super) const CLASS: u32 = 0x001f_0000;
 /// Thresholds of a general network.
 #[derive(Clone)]
 pub(super) struct General {
-    /// By constriction: its threshold.
+    /// By constriction: its threshold, and the upper sixteen bits of that.
     pub threshold: Vec<u64>,
+    pub top: Vec<u16>,
     /// By void: its last open exit as a constriction, or `NONE`, or `WAIT`.
     pub last_open: Vec<u32>,
     /// By void: the same of few open exits, in half a cache line.
@@ -234,6 +235,7 @@ impl ExitTable {
     fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
+            top: vec![0; network.constrictions()],
             last_open: vec![NONE; network.voids()],
             few: vec![FewExits::NONE; network.voids()],
             beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
@@ -267,17 +269,18 @@ impl ExitTable {
         }
     }
 
-    /// Renews all voids, on all threads, where water turns.
-    pub(super) fn renew(&mut self, network: &Network, ways: Ways) {
-        let voids = 0..network.voids() as u32;
+    /// Renews voids where water has turned, on all threads.
+    pub(super) fn renew(&mut self, network: &Network, ways: Ways, turned: &Turned) {
         let Form::General(general) = &mut self.form else {
+            let voids = turned.groups().flatten();
             return of_each(network, ways, voids, |exits| self.set(network, ways, exits));
         };
         let each = |mut part: GeneralPart| {
             let voids = part.first_void..part.first_void + part.few.len() as u32;
             of_each(network, ways, voids, |exits| part.set(network, ways, exits));
         };
-        general.parts(network).into_par_iter().for_each(each);
+        let parts = general.parts(network).into_par_iter();
+        parts.filter(|part| turned.contains(part.first_void)).for_each(each);
     }
 
     pub(super) fn isa(&self) -> Isa {
@@ -298,14 +301,12 @@ impl ExitTable {
     }
 }
 
-/// Voids whose exits a thread looks at one after another.
-const VOIDS_TOGETHER: usize = 1 << 13;
-
 /// Thresholds of voids that follow one another.
 struct GeneralPart<'a> {
     first_void: u32,
     first_exit: usize,
     threshold: &'a mut [u64],
+    top: &'a mut [u16],
     last_open: &'a mut [u32],
     few: &'a mut [FewExits],
     beyond: &'a mut [(u32, f32)],
@@ -313,26 +314,28 @@ struct GeneralPart<'a> {
 
 impl General {
     fn all(&mut self) -> GeneralPart<'_> {
-        let Self { threshold, last_open, few, beyond } = self;
-        GeneralPart { first_void: 0, first_exit: 0, threshold, last_open, few, beyond }
+        let Self { threshold, top, last_open, few, beyond } = self;
+        GeneralPart { first_void: 0, first_exit: 0, threshold, top, last_open, few, beyond }
     }
 
-    /// Parts of so many voids each.
+    /// Parts of as many voids as water is known to have turned in together.
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
         let mut parts = Vec::new();
         let mut left = self.all();
-        while left.few.len() > VOIDS_TOGETHER {
-            let exits = network.exits(left.first_void + VOIDS_TOGETHER as u32).start - left.first_exit;
-            let GeneralPart { first_void, first_exit, threshold, last_open, few, beyond } = left;
+        while left.few.len() > Turned::GROUP {
+            let exits = network.exits(left.first_void + Turned::GROUP as u32).start - left.first_exit;
+            let GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond } = left;
             let (threshold, threshold_after) = threshold.split_at_mut(exits);
-            let (last_open, last_open_after) = last_open.split_at_mut(VOIDS_TOGETHER);
-            let (few, few_after) = few.split_at_mut(VOIDS_TOGETHER);
+            let (top, top_after) = top.split_at_mut(exits);
+            let (last_open, last_open_after) = last_open.split_at_mut(Turned::GROUP);
+            let (few, few_after) = few.split_at_mut(Turned::GROUP);
             let (beyond, beyond_after) = beyond.split_at_mut(exits);
-            parts.push(GeneralPart { first_void, first_exit, threshold, last_open, few, beyond });
+            parts.push(GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond });
             left = GeneralPart {
-                first_void: first_void + VOIDS_TOGETHER as u32,
+                first_void: first_void + Turned::GROUP as u32,
                 first_exit: first_exit + exits,
                 threshold: threshold_after,
+                top: top_after,
                 last_open: last_open_after,
                 few: few_after,
                 beyond: beyond_after,
@@ -353,7 +356,8 @@ impl GeneralPart<'_> {
             let widths = &widths[exits.clone()];
             self.beyond[own.clone()].iter_mut().zip(widths).for_each(|(beyond, &width)| beyond.1 = width);
         }
-        self.threshold[own].copy_from_slice(thresholds);
+        self.threshold[own.clone()].copy_from_slice(thresholds);
+        self.top[own].iter_mut().zip(thresholds).for_each(|(top, threshold)| *top = (threshold >> 48) as u16);
         let at = (void - self.first_void) as usize;
         self.few[at] = match last_open {
             Some(last) => FewExits::new(exits.start as u32, thresholds, last),

@@ -76,6 +76,48 @@ fn a_walk_with_flow_goes_on_while_particles_wait() {
     }
 }
 
+/// Through a thick network a pulse of particles goes, and the flow is solved near it: what was solved before is
+/// solved again in the same stretches, to the same bits.
+#[test]
+fn a_walk_through_a_thick_network_goes_on() {
+    const LAST: u64 = 90;
+    let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
+    let lattice = Network::cubic([12, 12, 420], &curve.in_mm(1.0).unwrap(), 1.0, 4).unwrap();
+    let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
+    let sampler = SizeSampler::new(&Gradation::linear_from_dx(85.0, 0.25, 1.5).unwrap(), 1.0).unwrap();
+    let supply =
+        RunPlan::new(Engine::Expected, &network, &sampler, &open, 4000).supply(sampler, 40_000, 10, 3, 1);
+    let to_the_last = |state: &mut State, see: &mut (dyn FnMut(&State) + Send)| {
+        let mut walk = Walk::new(&network, &supply, state);
+        let stopped = walk.run(state, &mut |state| {
+            see(state);
+            if state.increment == LAST { WalkControl::Stop } else { WalkControl::Continue }
+        });
+        assert!(stopped.is_err(), "the pulse is on its way still");
+        walk.end(state).unwrap().1.unwrap()
+    };
+    let root = tempfile::tempdir().unwrap();
+    let folder = |increment: u64| root.path().join(increment.to_string());
+    let mut whole = fresh(&network, &supply, &open, 3, 1);
+    let flow = to_the_last(&mut whole, &mut |state| {
+        if [35, 71].contains(&state.increment) {
+            let label = Label { generation: state.increment, ..Label::default() };
+            fs::create_dir(folder(state.increment)).unwrap();
+            save(&folder(state.increment), "x", &label, &SavedState::new(state).sections()).unwrap();
+        }
+    });
+    assert!(whole.increment == LAST && whole.tally.blocked > 500, "{:?}", whole.tally);
+    assert!(flow.k_over_k0.len() > 8, "{flow:?}");
+    for increment in [35, 71] {
+        let saved = newest(&folder(increment), "x", &Identity::default()).unwrap().0.unwrap();
+        let mut state = fresh(&network, &supply, &open, 3, 1);
+        state.restore(&network, &supply, &saved).unwrap();
+        let again = to_the_last(&mut state, &mut |_| {});
+        assert!(shown(&state) == shown(&whole) && again == flow, "from increment {increment}");
+    }
+}
+
 #[test]
 fn a_walk_goes_on_from_every_increment_with_every_engine_on_any_threads() {
     let root = tempfile::tempdir().unwrap();

@@ -153,6 +153,118 @@ fn a_thick_network_is_solved_once() {
     }
 }
 
+/// A thick network of ten slabs, closed step by step where `is_closed` says, by layer and constriction.
+fn close_step_by_step(
+    rho: f64,
+    steps: usize,
+    is_closed: impl Fn(usize, u32, usize) -> bool + Sync,
+    mut see: impl FnMut(&Flow, &Network, &BitSlice, Turned),
+) {
+    let [n, layers] = [12, THICK as u32 + 20];
+    let diameters = (0..3 * n * n * layers).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
+    let lattice = Network::cubic_from_diameters([n, n, layers], diameters.collect(), 1.0).unwrap();
+    let mut network = lattice.undirected_lattice(ExitRule::Flux, rho, 4.0).unwrap();
+    let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+    let mut flow = Flow::new(&network);
+    assert_eq!(flow.passages.slabs().number(), 10);
+    flow.solve(&network, &blocked).unwrap();
+    flow.direct(&mut network);
+    for step in 0..steps {
+        for void in 0..network.voids() as u32 {
+            let layer = network.layer_of()[void as usize];
+            for c in network.exits(void).filter(|&c| is_closed(step, layer, c)) {
+                network.set_blocked(&mut blocked, c, true);
+            }
+        }
+        flow.solve(&network, &blocked).unwrap();
+        let turned = flow.direct(&mut network);
+        see(&flow, &network, &blocked, turned);
+    }
+}
+
+/// Pressures, and the share of each exit in what leaves its void, are those that are found from nothing.
+fn are_as_afresh(flow: &Flow, network: &Network, blocked: &BitSlice) {
+    let mut afresh = Flow::new(network);
+    let anew = afresh.solve(network, blocked).unwrap().conductance;
+    assert!((flow.through(network) / anew - 1.0).abs() < 1e-8, "{} for {anew}", flow.through(network));
+    for (v, (near, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
+        assert!((near - anew).abs() < 1e-9, "void {v}: {near} for {anew}");
+    }
+    let mut other = network.clone();
+    afresh.direct(&mut other);
+    for void in 0..network.voids() as u32 {
+        let shares = |of: &Network| {
+            let weights: Vec<f64> = network.exits(void).map(|c| of.exit_weight(c)).collect();
+            let sum = weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+            weights.into_iter().map(move |weight| weight / sum)
+        };
+        for (near, anew) in shares(network).zip(shares(&other)) {
+            assert!((near - anew).abs() < 1e-5, "void {void}: {near} for {anew}");
+        }
+    }
+}
+
+/// A pulse that closes constrictions of forty layers on its way through a thick network: little but its
+/// surroundings is looked at.
+#[test]
+fn a_pulse_is_solved_near_where_it_is() {
+    for (rho, steps) in [(0.0, 8), (0.1, 2)] {
+        let mut step_now = 0;
+        let is_closed = |step: usize, layer: u32, c: usize| {
+            let first = step as u32 * 50;
+            (first..first + 40).contains(&layer) && (c + 31 * step) % 61 == 0
+        };
+        close_step_by_step(rho, steps, is_closed, |flow, network, blocked, turned| {
+            let voids: usize = turned.groups().map(|group| group.len()).sum();
+            assert!(4 * voids < 3 * network.voids(), "{voids} of {}", network.voids());
+            if step_now % 3 == 0 || step_now + 1 == steps {
+                are_as_afresh(flow, network, blocked);
+            }
+            step_now += 1;
+        });
+    }
+}
+
+/// Two places far apart at once; both ends at once, with which the flow through all that lies between changes;
+/// a layer of which little stays open; and the one end by itself.
+#[test]
+fn what_closes_in_several_places_is_solved_alike() {
+    let is_closed = |step: usize, layer: u32, c: usize| match step {
+        0 => [100, 101, 300, 301].contains(&layer) && c % 7 == 0,
+        1 => [0, 1, THICK as u32 + 18].contains(&layer) && c % 11 == 0,
+        2 => layer == 200 && c % (6 * 144) > 40,
+        _ => layer < 3 && c % 5 == 0,
+    };
+    let mut turned_in = Vec::new();
+    close_step_by_step(0.0, 4, is_closed, |flow, network, blocked, turned| {
+        turned_in.push(turned == Turned::all(network.voids()));
+        are_as_afresh(flow, network, blocked);
+    });
+    assert_eq!(turned_in, [false, true, false, false]);
+}
+
+/// The same bits on any number of threads, of pressures and weights, where stretches are solved.
+#[test]
+fn stretches_give_the_same_bits_on_any_number_of_threads() {
+    let walk = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let is_closed = |step: usize, layer: u32, c: usize| layer / 50 == 2 + step as u32 && c % 37 == 0;
+        let mut found = Vec::new();
+        pool.install(|| {
+            close_step_by_step(0.0, 3, is_closed, |flow, network, _, turned| {
+                let weights: Vec<f64> =
+                    (0..network.constrictions()).map(|c| network.exit_weight(c)).collect();
+                found.push((flow.pressure.clone(), weights, turned));
+            });
+        });
+        found
+    };
+    let alone = walk(1);
+    for threads in [2, 3, 7] {
+        assert!(walk(threads) == alone, "{threads} threads");
+    }
+}
+
 /// Parts that shrink a few at a time, solved with a factor that is kept: pressures are those that are
 /// found without it. What is blocked afterwards is solved without those parts.
 #[test]

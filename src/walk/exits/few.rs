@@ -10,6 +10,8 @@ pub struct FewExits {
     pub position: [u8; FEW_EXITS],
     /// First exit of the void.
     pub begin: u32,
+    /// Exits of a void that has more open ones than fit in here, else 0.
+    pub exits: u16,
     /// Whether it has an open exit, and no more than fit in here.
     pub is_few: bool,
 }
@@ -17,9 +19,12 @@ pub struct FewExits {
 /// Open exits that fit in a [`FewExits`].
 pub const FEW_EXITS: usize = 8;
 
+/// Up to so many exits are counted without a branch.
+const COUNTED: usize = 64;
+
 impl FewExits {
     pub const NONE: Self =
-        Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, is_few: false };
+        Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, exits: 0, is_few: false };
 
     /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
     /// is the position of its last open one.
@@ -38,8 +43,25 @@ impl FewExits {
             top: std::array::from_fn(|i| top[i]),
             position: std::array::from_fn(|i| position[i]),
             begin,
+            // More than that are looked at in the long way.
+            exits: if is_few { 0 } else { u16::try_from(thresholds.len()).unwrap_or(0) },
             is_few,
         }
+    }
+
+    /// The same of a void with more open exits, all of which have these upper sixteen bits of their
+    /// thresholds.
+    #[inline(always)]
+    pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
+        let tops = &tops[self.begin as usize..][..usize::from(self.exits)];
+        let passed = if tops.len() <= COUNTED {
+            tops.iter().map(|&top| u16::from(top < draw)).sum::<u16>().into()
+        } else {
+            // A reservoir has thousands.
+            tops.partition_point(|&top| top < draw)
+        };
+        // Thresholds rise, so an equal one comes first of those that are not passed.
+        tops.get(passed).filter(|&&top| top != draw).map(|_| self.begin as usize + passed)
     }
 
     /// The exit that a draw picks by its top sixteen bits, unless they do not decide.

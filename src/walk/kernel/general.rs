@@ -8,6 +8,11 @@ use crate::walk::crowding::{Crowd, VoidCrowd};
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 
+use super::fetch;
+
+/// Particles between one that chooses and the one whose exits are asked for then.
+const AHEAD: usize = 24;
+
 /// Moves the particles of one chunk, which may arch; returns how many still move.
 pub(super) fn step(
     network: &Network,
@@ -79,12 +84,21 @@ fn step_all(
         let particles = begin..void.len().min(begin + DRAWS_PER_BLOCK);
         // All of a block choose before any moves: what one reads far away does not wait for another's move.
         for (chosen, j) in chosen.iter_mut().zip(particles.clone()) {
+            if let Some(&next) = void.get(j + AHEAD) {
+                fetch(&table.few, next as usize);
+            }
             let from = void[j];
             let draw = draw16(&block, j - begin);
             let few = &table.few[from as usize];
-            let quick = if few.is_few { few.chosen(draw) } else { None };
+            let quick = match few.is_few {
+                true => few.chosen(draw),
+                false => few.chosen_of(&table.top, draw),
+            };
             *chosen = match quick {
-                Some(exit) => Chosen::Exit(exit as u32),
+                Some(exit) => {
+                    fetch(&table.beyond, exit);
+                    Chosen::Exit(exit as u32)
+                }
                 None => any(network, table, from, draw, j, extension),
             };
         }

@@ -25,6 +25,8 @@ use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
 use crate::walk::reads::{Plain, Reads};
 
+use super::fetch;
+
 /// Particles of a block.
 pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
 
@@ -44,29 +46,21 @@ pub(super) const PAST_SECOND: u32 = 8;
 const AHEAD: usize = 256;
 
 /// Entries of a column that come from memory together.
-#[cfg(target_arch = "x86_64")]
 const LINE: usize = 16;
 
 /// Asks for the first particles of a chunk, before anything is read of it.
 pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
-    fetch(void, diameter, 0..AHEAD);
+    fetch_range(void, diameter, 0..AHEAD);
 }
 
 /// Asks for a range of particles, of this chunk or those that lie behind it: beside the words of the table,
 /// read in no order, the machine does not do so by itself in time.
 #[inline(always)]
-fn fetch(void: &[u32], diameter: &[f32], range: Range<usize>) {
-    #[cfg(target_arch = "x86_64")]
+fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     for at in range.step_by(LINE) {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: nothing is read, whatever the address.
-        unsafe {
-            _mm_prefetch::<_MM_HINT_T0>(void.as_ptr().wrapping_add(at).cast());
-            _mm_prefetch::<_MM_HINT_T0>(diameter.as_ptr().wrapping_add(at).cast());
-        }
+        fetch(void, at);
+        fetch(diameter, at);
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (void, diameter, range);
 }
 
 /// First particles of a chunk, which stand for all of it.
@@ -231,7 +225,7 @@ impl<'a> LatticeChunk<'a> {
     /// Asks for the columns some way behind the `count` particles from `begin` on.
     #[inline(always)]
     pub fn fetch_ahead(&self, begin: usize, count: usize) {
-        fetch(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
+        fetch_range(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
     /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way, by the draws

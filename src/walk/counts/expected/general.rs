@@ -39,6 +39,10 @@ impl GeneralFlow {
         let targets = network.targets();
         let (mut moves, mut eroded) = (sums.moves, sums.eroded);
         for (void, n) in moving.iter_mut().enumerate() {
+            // Most of a thick filter is empty: nothing is written there.
+            if *n == 0.0 {
+                continue;
+            }
             let mut n = std::mem::take(n);
             if n < NOTHING {
                 continue;

@@ -5,6 +5,8 @@
 //! those before them from those after them. Where slabs end follows from the network alone, so what is
 //! worked out slab by slab, and added in their order, is the same to the bit on any number of threads.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Voids of a slab, at least: with fewer, waking other threads costs more than they bring.
@@ -99,9 +101,28 @@ impl Slabs {
         &self.begin
     }
 
+    /// The voids of a slab, and of the cuts before and after it.
+    pub(super) fn around(&self, slab: usize) -> impl Iterator<Item = u32> {
+        let number = self.number();
+        let part = |at: usize| self.order[self.begin[at]..self.begin[at + 1]].iter().copied();
+        let cuts = number + slab.saturating_sub(1)..(number + slab + 1).min(2 * number - 1);
+        part(slab).chain(cuts.flat_map(part))
+    }
+
     /// Where a void stands in their order.
     pub(super) fn place(&self, void: u32) -> u32 {
         self.place[void as usize]
+    }
+
+    /// The slab that a void stands in, or those on both sides of its cut.
+    pub(super) fn beside(&self, void: u32) -> Range<usize> {
+        let slab = self.slab[void as usize] as usize;
+        if slab < self.number() {
+            return slab..slab + 1;
+        }
+        let place = self.place(void) as usize;
+        let cut = self.begin[self.number()..].partition_point(|&begin| begin <= place) - 1;
+        cut..cut + 2
     }
 
     /// Whether both of these voids stand in a slab, which is the same then if a constriction joins them.

@@ -2,6 +2,7 @@
 
 /// Members in groups, each known by its smallest member. Ways are halved as they are gone, which keeps them
 /// short without a count of members (a logarithm on average).
+#[derive(Clone)]
 pub(super) struct Together {
     /// A member of the same group that is no larger: the smallest points at itself.
     towards: Vec<u32>,
@@ -54,6 +55,11 @@ impl Together {
 }
 
 impl Part<'_> {
+    /// Takes them apart again.
+    pub(super) fn take_apart(&mut self) {
+        (self.first..).zip(&mut *self.towards).for_each(|(member, towards)| *towards = member);
+    }
+
     fn root(&mut self, mut member: u32) -> u32 {
         loop {
             let next = self.towards[(member - self.first) as usize];

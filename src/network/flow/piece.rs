@@ -29,6 +29,13 @@ impl Piece {
         Self { rows, met, links: Vec::with_capacity(links), ground: of_none.clone(), inflow: of_none }
     }
 
+    /// Joined with nothing again.
+    pub(super) fn clear(&mut self) {
+        self.links.clear();
+        self.ground.fill(0.0);
+        self.inflow.fill(0.0);
+    }
+
     /// Multiplies both sides.
     pub(super) fn scale(&mut self, unit: f64) {
         let sides = self.ground.iter_mut().chain(&mut self.inflow);
@@ -80,14 +87,16 @@ pub(super) struct Columns {
 impl Columns {
     /// Of zeros.
     pub(super) fn of(piece: &Piece) -> Self {
-        let [own, all] = [piece.rows.len(), piece.rows.len() + piece.met.len()].map(|n| vec![0.0; n]);
+        // Zeros that nobody writes over cost nothing.
+        let own = || vec![0.0; piece.rows.len()];
+        let all = || vec![0.0; piece.rows.len() + piece.met.len()];
         Self {
-            x: all.clone(),
-            residual: own.clone(),
-            direction: all.clone(),
-            product: all.clone(),
-            solved: own,
-            scratch: all,
+            x: all(),
+            residual: own(),
+            direction: all(),
+            product: all(),
+            solved: own(),
+            scratch: all(),
             sum: 0.0,
         }
     }

@@ -4,13 +4,12 @@
 //! by side. Sums run in a fixed order within a piece, and from piece to piece, so that a solution is the
 //! same to the bit on any number of threads and with any instructions.
 
-use std::ops::Range;
-
 use super::elimination::Factor;
 use super::joining::{Joining, NONE};
 use super::piece::{Columns, Piece, dot};
-use super::rest::Link;
+use super::rounds::{Equations, NotConverged};
 use super::slabs::{Slabs, each};
+use super::stretch::Stretches;
 
 /// The residual is below this part of what flows in.
 pub(super) const CONVERGED: f64 = 1e-10;
@@ -31,15 +30,6 @@ const ROUNDS: usize = 100;
 /// whichever is more.
 const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
 
-/// Conductances so far apart that numbers do not tell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NotConverged {
-    /// Rounds.
-    pub rounds: usize,
-    /// Residual over inflow.
-    pub residual: f64,
-}
-
 /// How well pressures fit their equations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
@@ -49,6 +39,8 @@ pub(super) struct Fit {
     /// through a cut, differs by more from that of the exact pressures: a unit of flow that is fed into a
     /// void passes no constriction more than once.
     pub missing: f64,
+    /// Rounds that it took.
+    pub rounds: usize,
 }
 
 impl Fit {
@@ -76,6 +68,8 @@ pub(super) struct System {
     row_of: Vec<u32>,
     /// By slab; and at last that of the cuts.
     pieces: Vec<Piece>,
+    /// The power of two that conductances are multiplied by, once it is known.
+    unit: Option<f64>,
 }
 
 impl System {
@@ -102,7 +96,7 @@ impl System {
         };
         let mut pieces: Vec<Piece> = (0..number).map(slab).collect();
         pieces.push(Piece::new(cuts..rows, 0..0, links(number)));
-        Self { void, row_of, pieces }
+        Self { void, row_of, pieces, unit: None }
     }
 
     /// The voids `inside` of so many in one piece, in which `fill` joins them.
@@ -112,20 +106,26 @@ impl System {
         fill: impl Fn(&mut Joining) + Sync,
     ) -> Self {
         let mut system = Self::of(&Slabs::one(voids), inside, |_| 0);
-        system.fill(|at, joining| {
-            if at == 0 {
-                fill(joining);
-            }
-        });
+        system.fill(|at| at == 0, |_, joining| fill(joining));
         system
     }
 
-    /// Joins voids in all pieces, each by itself: that of a slab in which one of two stands, else that of the
-    /// cuts, which is the last.
-    pub(super) fn fill(&mut self, fill: impl Fn(usize, &mut Joining) + Sync) {
+    /// Joins voids in pieces, each by itself: that of a slab in which one of two stands, else that of the cuts,
+    /// which is the last. What was joined in these before is forgotten, and other pieces stay.
+    pub(super) fn fill(
+        &mut self,
+        is_wanted: impl Fn(usize) -> bool + Sync,
+        fill: impl Fn(usize, &mut Joining) + Sync,
+    ) {
         let cuts = self.cuts();
-        let Self { row_of, pieces, .. } = self;
-        each(pieces, |at, piece| fill(at, &mut Joining { row_of, cuts, piece }));
+        let Self { row_of, pieces, unit, .. } = self;
+        each(pieces, |at, piece| {
+            if is_wanted(at) {
+                piece.clear();
+                fill(at, &mut Joining { row_of, cuts, piece });
+                unit.iter().for_each(|&unit| piece.scale(unit));
+            }
+        });
     }
 
     /// The first row of cuts.
@@ -133,9 +133,12 @@ impl System {
         self.pieces.last().map_or(0, |cuts| cuts.rows.start)
     }
 
-    /// Divides both sides by a power of two, which changes no digit of a solution, so that squares of very
+    /// Multiplies both sides by a power of two, which changes no digit of a solution, so that squares of very
     /// large and very small conductances are numbers still. Gives that power.
     fn normalise(&mut self) -> f64 {
+        if let Some(unit) = self.unit {
+            return unit;
+        }
         let mut largest = vec![0.0; self.pieces.len()];
         each(&mut largest, |at, largest| *largest = self.pieces[at].largest());
         let largest = largest.into_iter().fold(0.0, f64::max);
@@ -144,7 +147,29 @@ impl System {
         }
         let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
         each(&mut self.pieces, |_, piece| piece.scale(unit));
-        unit
+        *self.unit.insert(unit)
+    }
+
+    /// The size of what flows in.
+    fn inflow(&self) -> f64 {
+        self.pieces.iter().map(|piece| dot(&piece.inflow, &piece.inflow)).sum::<f64>().sqrt()
+    }
+
+    /// Brings pressures close to the solution, where stretches around the slabs in which so many constrictions
+    /// changed will do; which slabs these are.
+    pub(super) fn improve(
+        &self,
+        pressure: &mut [f64],
+        within: f64,
+        stretches: &mut Stretches,
+        changed: &[usize],
+    ) -> Option<Vec<bool>> {
+        let mut columns = self.columns(pressure);
+        let solved = stretches.improve(&self.equations(), &mut columns, within * self.inflow(), changed);
+        if solved.is_some() {
+            self.put(&columns, pressure);
+        }
+        solved
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
@@ -152,18 +177,18 @@ impl System {
     /// rounding lets it come no closer. What is kept is a factor of nearly this system; where there is none,
     /// or it takes too many rounds, one of this system is made and left there.
     pub(super) fn solve(
-        mut self,
+        &mut self,
         pressure: &mut [f64],
         layers: usize,
         within: f64,
         kept: &mut Option<Kept>,
     ) -> Result<Fit, NotConverged> {
         let unit = self.normalise();
-        let scale = self.pieces.iter().map(|piece| dot(&piece.inflow, &piece.inflow)).sum::<f64>().sqrt();
+        let scale = self.inflow();
         if self.void.is_empty() || scale == 0.0 {
             let mut columns = self.columns(pressure);
-            self.find_residual(&mut columns);
-            return Ok(self.fit(&columns, 0.0).over(unit));
+            self.equations().find_residual(&mut columns);
+            return Ok(self.fit(&columns, 0.0, 0).over(unit));
         }
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
@@ -172,21 +197,21 @@ impl System {
             let [least, times] = ROUNDS_OF_ANOTHER;
             let mut others = Some(factors);
             let most = least.max(times * rounds);
-            if let Ok((fit, _)) = self.solve_within(pressure, scale, within, &mut others, most) {
+            if let Ok(fit) = self.solve_within(pressure, scale, within, &mut others, most) {
                 *kept = others.map(|factors| Kept { factors, rounds, closed });
                 return Ok(fit.over(unit));
             }
         }
         let mut factors = None;
         let most = ROUNDS * (layers + 100);
-        let (fit, rounds) = self.solve_within(pressure, scale, within, &mut factors, most)?;
-        *kept = factors.map(|factors| Kept { factors, rounds, closed: 0 });
+        let fit = self.solve_within(pressure, scale, within, &mut factors, most)?;
+        *kept = factors.map(|factors| Kept { factors, rounds: fit.rounds, closed: 0 });
         Ok(fit.over(unit))
     }
 
     /// Columns that begin with these pressures, by void.
     fn columns(&self, pressure: &[f64]) -> Vec<Columns> {
-        let mut all: Vec<Columns> = self.pieces.iter().map(Columns::of).collect();
+        let mut all = self.equations().columns();
         each(&mut all, |at, own| {
             let voids = &self.void[self.pieces[at].rows.clone()];
             own.x.iter_mut().zip(voids).for_each(|(x, &v)| *x = pressure[v as usize]);
@@ -194,8 +219,16 @@ impl System {
         all
     }
 
+    /// Puts the pressures of columns to their voids.
+    fn put(&self, columns: &[Columns], pressure: &mut [f64]) {
+        for (piece, own) in self.pieces.iter().zip(columns) {
+            let voids = &self.void[piece.rows.clone()];
+            voids.iter().zip(&own.x).for_each(|(&v, &p)| pressure[v as usize] = p);
+        }
+    }
+
     /// How well the pressures of these columns fit, whose residual is so large over the inflow.
-    fn fit(&self, columns: &[Columns], part: f64) -> Fit {
+    fn fit(&self, columns: &[Columns], part: f64, rounds: usize) -> Fit {
         let sum = |flows: &mut dyn Iterator<Item = f64>| flows.map(f64::abs).sum::<f64>();
         let (mut missing, mut known) = (0.0, 0.0);
         for (piece, own) in self.pieces.iter().zip(columns) {
@@ -203,10 +236,10 @@ impl System {
             known += sum(&mut piece.ground.iter().zip(&own.x).map(|(ground, x)| ground * x))
                 + sum(&mut piece.inflow.iter().copied());
         }
-        Fit { residual: part, missing: missing + ROUNDING * known }
+        Fit { residual: part, missing: missing + ROUNDING * known, rounds }
     }
 
-    /// The same in at most so many rounds, and their number; pressures stay where these do not suffice.
+    /// The same in at most so many rounds; pressures stay where these do not suffice.
     fn solve_within(
         &self,
         pressure: &mut [f64],
@@ -214,148 +247,47 @@ impl System {
         within: f64,
         factors: &mut Option<Vec<Factor>>,
         most: usize,
-    ) -> Result<(Fit, usize), NotConverged> {
+    ) -> Result<Fit, NotConverged> {
+        let equations = self.equations();
         let mut columns = self.columns(pressure);
         let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
-            let size = self.find_residual(&mut columns);
+            let size = equations.find_residual(&mut columns);
             let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * within * scale;
             // Closer than rounding lets them come they do not get.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
-                for (piece, own) in self.pieces.iter().zip(&columns) {
-                    let voids = &self.void[piece.rows.clone()];
-                    voids.iter().zip(&own.x).for_each(|(&v, &p)| pressure[v as usize] = p);
-                }
-                return Ok((self.fit(&columns, size / scale), rounds));
+                self.put(&columns, pressure);
+                return Ok(self.fit(&columns, size / scale, rounds));
             }
             if size > 0.5 * before {
                 return Err(NotConverged { rounds, residual: size / scale });
             }
             before = size;
             let factors = factors.get_or_insert_with(|| self.factors());
-            rounds = self.descend(factors, &mut columns, [size, scale, within], rounds..most)?;
+            let factors: Vec<&Factor> = factors.iter().collect();
+            rounds = equations.descend(&factors, &mut columns, [size, scale, within], rounds..most)?;
         }
+    }
+
+    /// The equations of all slabs.
+    pub(super) fn equations(&self) -> Equations<'_> {
+        let (cuts, slabs) = self.pieces.split_last().expect("cuts have a piece, if an empty one");
+        Equations { slabs: slabs.iter().map(|piece| (piece, piece.met.clone())).collect(), cuts }
     }
 
     /// A factor of each piece: of slabs side by side, and of the cuts with what is left of slabs between
     /// them.
     fn factors(&self) -> Vec<Factor> {
-        let Some((cuts, slabs)) = self.pieces.split_last() else { return Vec::new() };
-        let mut of_slabs: Vec<_> = slabs.iter().map(|_| None).collect();
+        let equations = self.equations();
+        let mut of_slabs: Vec<_> = equations.slabs.iter().map(|_| None).collect();
         each(&mut of_slabs, |at, made| {
-            let Piece { met, links, ground, .. } = &slabs[at];
+            let Piece { met, links, ground, .. } = equations.slabs[at].0;
             *made = Some(Factor::new(ground, met.len(), links));
         });
-        let (mut ground, mut links) = (cuts.ground.clone(), cuts.links.clone());
-        let mut factors = Vec::with_capacity(self.pieces.len());
-        for (slab, (factor, left)) in slabs.iter().zip(of_slabs.into_iter().flatten()) {
-            ground[slab.met.clone()].iter_mut().zip(left.ground).for_each(|(sum, part)| *sum += part);
-            let first = slab.met.start as u32;
-            let moved = |link: Link| Link { one: first + link.one, other: first + link.other, ..link };
-            links.extend(left.links.into_iter().map(moved));
-            factors.push(factor);
-        }
-        factors.push(Factor::new(&ground, 0, &links).0);
+        let (mut factors, left): (Vec<_>, Vec<_>) = of_slabs.into_iter().flatten().unzip();
+        factors.push(equations.factor_of_cuts(&left));
         factors
-    }
-
-    /// Makes ready a column of all pieces, `of` which with their products, and multiplies the matrix by it.
-    /// Gives the sum of products of both.
-    fn times(
-        &self,
-        columns: &mut [Columns],
-        make_ready: impl Fn(&mut Columns) + Sync,
-        of: impl Fn(&mut Columns) -> [&mut Vec<f64>; 2] + Sync,
-    ) -> f64 {
-        let Some((of_cuts, of_slabs)) = columns.split_last_mut() else { return 0.0 };
-        make_ready(of_cuts);
-        let [at_cuts, at_cuts_product] = of(of_cuts);
-        each(of_slabs, |at, own| {
-            let piece = &self.pieces[at];
-            let rows = piece.rows.len();
-            make_ready(own);
-            let [x, product] = of(own);
-            x[rows..].copy_from_slice(&at_cuts[piece.met.clone()]);
-            piece.times(x, product);
-            own.sum = dot(&x[..rows], &product[..rows]);
-        });
-        self.pieces[of_slabs.len()].times(at_cuts, at_cuts_product);
-        let mut sum = 0.0;
-        for (piece, own) in self.pieces.iter().zip(of_slabs) {
-            let parts = &own.product[piece.rows.len()..];
-            at_cuts_product[piece.met.clone()].iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
-            sum += own.sum;
-        }
-        sum + dot(at_cuts, at_cuts_product)
-    }
-
-    /// What is missing of the right side, and its size.
-    fn find_residual(&self, columns: &mut [Columns]) -> f64 {
-        self.times(columns, |_| {}, |own| [&mut own.x, &mut own.product]);
-        each(columns, |at, own| {
-            let sides = self.pieces[at].inflow.iter().zip(&own.product);
-            own.residual.iter_mut().zip(sides).for_each(|(residual, (b, a))| *residual = b - a);
-            own.sum = dot(&own.residual, &own.residual);
-        });
-        columns.iter().map(|own| own.sum).sum::<f64>().sqrt()
-    }
-
-    /// Solves the residual by the factors. Gives the sum of products of both.
-    fn precondition(&self, factors: &[Factor], columns: &mut [Columns]) -> f64 {
-        let Some((of_cuts, of_slabs)) = columns.split_last_mut() else { return 0.0 };
-        let slabs = of_slabs.len();
-        each(of_slabs, |at, own| factors[at].down(&own.residual, &mut own.scratch));
-        let Columns { residual, product: right, solved, scratch, .. } = of_cuts;
-        right.copy_from_slice(residual);
-        for (piece, own) in self.pieces.iter().zip(&*of_slabs) {
-            let parts = &own.scratch[piece.rows.len()..];
-            right[piece.met.clone()].iter_mut().zip(parts).for_each(|(right, part)| *right += part);
-        }
-        factors[slabs].down(right, scratch);
-        factors[slabs].up(scratch, solved);
-        each(of_slabs, |at, own| {
-            let piece = &self.pieces[at];
-            own.scratch[piece.rows.len()..].copy_from_slice(&solved[piece.met.clone()]);
-            factors[at].up(&mut own.scratch, &mut own.solved);
-            own.sum = dot(&own.residual, &own.solved);
-        });
-        of_slabs.iter().map(|own| own.sum).sum::<f64>() + dot(residual, solved)
-    }
-
-    /// Conjugate gradients until the residual that they carry along, which begins so large, is small; the
-    /// rounds that there were.
-    fn descend(
-        &self,
-        factors: &[Factor],
-        columns: &mut [Columns],
-        [mut size, scale, within]: [f64; 3],
-        allowed: Range<usize>,
-    ) -> Result<usize, NotConverged> {
-        each(columns, |_, own| own.direction.fill(0.0));
-        let mut before = 0.0;
-        for round in allowed.start.. {
-            if size <= within * scale {
-                return Ok(round);
-            }
-            if round >= allowed.end || !size.is_finite() {
-                return Err(NotConverged { rounds: round, residual: size / scale });
-            }
-            let now = self.precondition(factors, columns);
-            let keep = if round == allowed.start { 0.0 } else { now / before };
-            before = now;
-            let turn = |own: &mut Columns| {
-                own.direction.iter_mut().zip(&own.solved).for_each(|(d, s)| *d = s + keep * *d);
-            };
-            let step = now / self.times(columns, turn, |own| [&mut own.direction, &mut own.product]);
-            each(columns, |_, own| {
-                own.x.iter_mut().zip(&own.direction).for_each(|(x, d)| *x += step * d);
-                own.residual.iter_mut().zip(&own.product).for_each(|(r, p)| *r -= step * p);
-                own.sum = dot(&own.residual, &own.residual);
-            });
-            size = columns.iter().map(|own| own.sum).sum::<f64>().sqrt();
-        }
-        unreachable!("rounds are counted up to the most")
     }
 }
 
@@ -369,7 +301,7 @@ mod tests {
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
         let of = |loops: bool| {
-            let system = System::in_one(
+            let mut system = System::in_one(
                 VOIDS as usize,
                 |_| true,
                 |system| {
@@ -396,7 +328,7 @@ mod tests {
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
         let of = |wide: u32, kept: &mut Option<Kept>| {
-            let system = System::in_one(
+            let mut system = System::in_one(
                 (SIDE * SIDE) as usize,
                 |_| true,
                 |system| {
@@ -440,7 +372,7 @@ mod tests {
     #[test]
     fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
         const VOIDS: u32 = 300;
-        let system = System::in_one(
+        let mut system = System::in_one(
             VOIDS as usize + 1,
             |_| true,
             |system| {

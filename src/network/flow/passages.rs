@@ -2,11 +2,9 @@
 
 use super::slabs::{Slabs, each};
 use super::together::Together;
-use super::twins::NO_TWIN;
-use super::{END, Network};
-
-/// Voids that a thread looks at one after another.
-const VOIDS_TOGETHER: usize = 1 << 13;
+use super::turned::Turned;
+use crate::network::twins::NO_TWIN;
+use crate::network::{END, Network};
 
 /// A constriction as water sees it.
 pub(super) struct Passage {
@@ -66,17 +64,48 @@ impl Passages {
         &self.all[self.begin[at]..self.begin[at + 1]]
     }
 
-    /// What each of so many voids hangs together with, by way of other voids and of such constrictions.
-    pub(super) fn meet(&self, voids: usize, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
-        let (outside, slabs) = (voids as u32, &self.slabs);
-        let is_way = |passage: &&Passage| is_way(passage);
-        let mut together = Together::of(voids);
-        // Within slabs first, side by side, and then what joins them.
+    /// How many constrictions have changed, by slab; those between voids of cuts in the slabs on both sides.
+    pub(super) fn changed(&self, is_changed: impl Fn(usize) -> bool + Sync) -> Vec<usize> {
+        let slabs = self.slabs.number();
+        let mut changed = vec![0; slabs];
+        let in_cuts = self.of_slab(slabs).iter().filter(|passage| is_changed(passage.exit as usize));
+        for passage in in_cuts {
+            self.slabs.beside(passage.one).for_each(|slab| changed[slab] += 1);
+        }
+        each(&mut changed, |at, changed| {
+            *changed += self.of_slab(at).iter().filter(|passage| is_changed(passage.exit as usize)).count();
+        });
+        changed
+    }
+
+    /// Joins what hangs together within slabs, by way of such constrictions.
+    pub(super) fn join_within(
+        &self,
+        together: &mut Together,
+        is_wanted: impl Fn(usize) -> bool + Sync,
+        is_way: impl Fn(&Passage) -> bool + Sync,
+    ) {
+        let slabs = &self.slabs;
         each(&mut together.between(&slabs.begin()[..=slabs.number()]), |at, part| {
-            for passage in self.of_slab(at)[..self.within[at]].iter().filter(is_way) {
-                part.join(slabs.place(passage.one), slabs.place(passage.other));
+            if is_wanted(at) {
+                part.take_apart();
+                for passage in self.of_slab(at)[..self.within[at]].iter().filter(|passage| is_way(passage)) {
+                    part.join(slabs.place(passage.one), slabs.place(passage.other));
+                }
             }
         });
+    }
+
+    /// What each of so many voids hangs together with, by way of other voids and of such constrictions, from
+    /// what hangs together within slabs.
+    pub(super) fn meet(
+        &self,
+        voids: usize,
+        mut together: Together,
+        is_way: impl Fn(&Passage) -> bool + Sync,
+    ) -> Vec<Meets> {
+        let (outside, slabs) = (voids as u32, &self.slabs);
+        let is_way = |passage: &&Passage| is_way(passage);
         let others =
             || (0..=slabs.number()).flat_map(|at| &self.of_slab(at)[self.within[at]..]).filter(is_way);
         let is_inner = |passage: &&Passage| Some(passage.other) != self.reservoir && passage.other != outside;
@@ -90,9 +119,9 @@ impl Passages {
             meets.end |= passage.other == outside;
         }
         let mut all = vec![Meets::default(); voids];
-        let mut parts: Vec<_> = all.chunks_mut(VOIDS_TOGETHER).collect();
+        let mut parts: Vec<_> = all.chunks_mut(Turned::GROUP).collect();
         each(&mut parts, |at, part| {
-            for (void, meets) in (at * VOIDS_TOGETHER..).zip(part.iter_mut()) {
+            for (void, meets) in (at * Turned::GROUP..).zip(part.iter_mut()) {
                 *meets = of_root[together.found(slabs.place(void as u32)) as usize];
             }
         });

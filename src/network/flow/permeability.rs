@@ -1,6 +1,6 @@
 //! Permeability of a packing's voids in an endless medium.
 
-use super::flow_error::FlowError;
+use super::error::FlowError;
 use super::system::{CONVERGED, System};
 use super::together::Together;
 use crate::constrictions::VoidGraph;
@@ -20,7 +20,7 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
     let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();
     let inside = |void: u32| root[void as usize] != void;
-    let system = System::in_one(voids, inside, |system| {
+    let mut system = System::in_one(voids, inside, |system| {
         for c in links() {
             let (a, b, g) = (graph.from[c], graph.to[c], graph.conductance_mm3[c]);
             let flow = g * f64::from(graph.shift[c][axis]);
