@@ -18,9 +18,9 @@ const EVENT_BYTES: u64 = 16 << 10;
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
 /// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
-/// flow and 32 of tables each; 24 of the flow; and links, a factor, and what reading a file leaves (measured:
+/// flow and 34 of tables each; 24 of the flow; and links, a factor, and what reading a file leaves (measured:
 /// at most 523 in all, a million throats of a file).
-const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 32) + 24 + 300;
+const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 34) + 24 + 300;
 
 /// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
 /// and before the next run, and the part that it conducts.

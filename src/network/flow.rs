@@ -6,6 +6,10 @@
 //! (module `elimination`) of what is open, or was until a little of it closed, from the last answer on. So an
 //! answer depends, within what is asked of it, on those before; it is the same to the bit on any number of
 //! threads.
+//!
+//! A thick network is solved near what has closed since the last time (module `stretch`), and the whole is
+//! checked. Where water has turned follows from that ([`Turned`]): elsewhere all fluxes change by one factor,
+//! and exits keep their weights.
 
 mod elimination;
 mod error;
@@ -57,7 +61,8 @@ const CLOSELY: f64 = 1e-8;
 const KEPT_UNTIL: usize = 100;
 
 /// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less
-/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows.
+/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows. Most of so thick
+/// a network is far from what closes at a time: it is solved by stretches.
 const THICK: usize = 400;
 
 /// The residual of a thick network, as part of what flows in.
@@ -97,7 +102,7 @@ pub struct Flow {
     most: f64,
     /// What serves solution after solution.
     kept: Option<Kept>,
-    /// By void: whether water flowed through it when the factor that is kept was first wanted.
+    /// By void: whether water flowed through it when the factor or the equations that are kept were first wanted.
     inside: BitVec,
     /// Where water has turned since the network was given directions.
     turned: Turned,
@@ -199,18 +204,19 @@ impl Flow {
     /// As [`Flow::solve`].
     pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
         assert_eq!(parts.len(), self.open.len(), "one part for each exit");
-        // Exits that change, in the place of those that were blocked: none is.
-        self.blocked.fill(false);
+        // What was blocked leads on again, however much of it leaked.
+        let mut changed = std::mem::replace(&mut self.blocked, BitVec::repeat(false, parts.len()));
         let mut is_open_again = false;
         for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
             let now = part * whole(network, c);
-            self.blocked.set(c, now != *open);
+            if now != *open {
+                changed.set(c, true);
+            }
             is_open_again |= now > *open;
             *open = now;
         }
         self.is_of_parts = true;
-        self.keep_factors(network, is_open_again);
-        self.blocked.fill(false);
+        self.keep_factors(network, &changed, is_open_again);
         self.solve_now(network, false, false, |_| true)
     }
 
@@ -277,21 +283,20 @@ impl Flow {
             (self.kept, self.thick) = (None, None);
             self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
         }
-        self.blocked ^= blocked;
-        let is_open_again = self.blocked.iter_ones().any(|c| !blocked[c]);
-        self.keep_factors(network, is_open_again);
-        for c in self.blocked.iter_ones() {
+        let mut changed = std::mem::replace(&mut self.blocked, blocked.to_bitvec());
+        changed ^= blocked;
+        let is_open_again = changed.iter_ones().any(|c| !blocked[c]);
+        self.keep_factors(network, &changed, is_open_again);
+        for c in changed.iter_ones() {
             self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
         }
-        self.blocked.copy_from_bitslice(blocked);
     }
 
-    /// Keeps factors where few exits have changed since they were made, and none has opened again. Changed
-    /// exits stand in the place of blocked ones.
-    fn keep_factors(&mut self, network: &Network, is_open_again: bool) {
+    /// Keeps factors where few exits have changed since they were made, and none has opened again.
+    fn keep_factors(&mut self, network: &Network, changed: &BitSlice, is_open_again: bool) {
         let kept_until = if is_thick(network) { KEPT_UNTIL_THICK } else { KEPT_UNTIL };
         if let Some(kept) = &mut self.kept {
-            kept.closed += self.blocked.count_ones();
+            kept.closed += changed.count_ones();
             if is_open_again || kept.closed * kept_until > network.constrictions() {
                 self.kept = None;
             }
@@ -300,18 +305,15 @@ impl Flow {
             self.thick = None;
         }
         if let Some(thick) = &mut self.thick {
-            thick.change(&self.passages, |exit| self.blocked[exit]);
+            thick.change(&self.passages, |exit| changed[exit]);
         }
     }
 
     /// Pressures of all voids, within so much of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = network.reservoir() else { return Ok(()) };
-        let (fit, turned) = match self.thick.take() {
-            Some(mut thick) => {
-                let changed = thick.begin();
-                let is_wanted = |at| changed.get(at).is_none_or(|&changed| changed > 0);
-                self.fill(&mut thick.system, is_wanted, meets, reservoir);
+        let (fit, turned) = match self.refilled(meets, reservoir) {
+            Some((mut thick, changed)) => {
                 let solved = thick.improve(&mut self.pressure, within, &changed);
                 let fit = self.solve_system(network, &mut thick.system, within)?;
                 self.thick = Some(thick);
@@ -320,7 +322,8 @@ impl Flow {
             None => {
                 let mut system = self.system(meets, reservoir);
                 let fit = self.solve_system(network, &mut system, within)?;
-                if is_thick(network) {
+                // One slab has no other far away.
+                if is_thick(network) && self.passages.slabs().number() > 1 {
                     let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
                     self.thick = Some(Thick::of(system, &self.passages, meets, is_way));
                 }
@@ -358,6 +361,16 @@ impl Flow {
     /// Whether the flow is known, over the most that there was.
     fn is_known(&self, network: &Network) -> bool {
         self.missing <= KNOWN * self.most.max(self.through(network))
+    }
+
+    /// What a thick network keeps, with the equations of now, and what had changed by slab; none where the
+    /// numbers of its equations would be too small.
+    fn refilled(&mut self, meets: &[Meets], reservoir: u32) -> Option<(Thick, Vec<usize>)> {
+        let mut thick = self.thick.take()?;
+        let changed = thick.begin();
+        let is_wanted = |at| changed.get(at).is_none_or(|&changed| changed > 0);
+        self.fill(&mut thick.system, is_wanted, meets, reservoir);
+        thick.system.is_in_range().then_some((thick, changed))
     }
 
     /// Pressures that solve a system, within so much of the inflow.

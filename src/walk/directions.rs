@@ -5,8 +5,8 @@
 //! gone by; and once more at the end. A change is a constriction that was blocked or, where blocked ones
 //! leave openings, narrowed. In between directions stay as they are, and a particle in a void whose exits
 //! have all been blocked since waits where it is. When to solve follows from the history of changes alone, so
-//! a walk that continues from a checkpoint solves again what was solved before, in the same order, to the
-//! same bits.
+//! a walk that continues from a checkpoint solves again what was solved before and gives directions each time,
+//! in the same order, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;

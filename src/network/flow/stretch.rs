@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use super::elimination::Factor;
-use super::piece::{Columns, Piece};
+use super::piece::{Columns, Piece, dot};
 use super::rest::{Beyond, Link};
 use super::rounds::Equations;
 use super::slabs::each;
@@ -23,10 +23,10 @@ use super::slabs::each;
 const SHARE: f64 = 0.25;
 
 /// A factor of a slab is kept until more than one in so many of its constrictions have changed.
-const KEPT_UNTIL: usize = 1000;
+const FACTOR_KEPT_UNTIL: usize = 1000;
 
 /// Rounds after which the whole is solved instead.
-const ROUNDS: usize = 200;
+const ROUNDS_OF_STRETCH: usize = 200;
 
 /// Of slabs, solution after solution: what serves the next one.
 pub(super) struct Stretches {
@@ -34,8 +34,9 @@ pub(super) struct Stretches {
     factors: Vec<Option<SlabFactor>>,
     /// Slabs of a margin.
     margin: usize,
-    /// Slabs at the beginning that water comes into from the reservoir, and at the end that it leaves by.
-    ends: [Range<usize>; 2],
+    /// The first slab that water leaves the network by. It comes in by slab 0 alone, from which the slabs are
+    /// counted.
+    first_out: usize,
 }
 
 /// A factor of one slab.
@@ -62,23 +63,20 @@ impl Stretches {
     /// Of a network as clean as it will be.
     pub(super) fn of(whole: &Equations) -> Self {
         let slabs = whole.slabs.len();
-        let mut ends = [0..0, slabs..slabs];
-        let mut see = |ground: &[f64], inflow: &[f64], first: usize, last: usize| {
-            if inflow.iter().any(|&inflow| inflow > 0.0) {
-                ends[0].end = ends[0].end.max(last + 1);
-            }
+        let mut first_out = slabs;
+        let mut see = |ground: &[f64], inflow: &[f64], slab: usize| {
             if ground.iter().zip(inflow).any(|(ground, inflow)| ground > inflow) {
-                ends[1].start = ends[1].start.min(first);
+                first_out = first_out.min(slab);
             }
         };
-        for (at, (piece, _)) in whole.slabs.iter().enumerate() {
-            see(&piece.ground, &piece.inflow, at, at);
+        for (slab, (piece, _)) in whole.slabs.iter().enumerate() {
+            see(&piece.ground, &piece.inflow, slab);
         }
         for cut in 0..slabs.saturating_sub(1) {
             let rows = cut_rows(whole, cut);
-            see(&whole.cuts.ground[rows.clone()], &whole.cuts.inflow[rows], cut, cut + 1);
+            see(&whole.cuts.ground[rows.clone()], &whole.cuts.inflow[rows], cut);
         }
-        Self { factors: (0..slabs).map(|_| None).collect(), margin: 1, ends }
+        Self { factors: (0..slabs).map(|_| None).collect(), margin: 1, first_out }
     }
 
     /// Brings the pressures of the whole close to its solution, from those of before so many constrictions of
@@ -91,22 +89,22 @@ impl Stretches {
         residual: f64,
         changed: &[usize],
     ) -> Option<Vec<bool>> {
-        for (factor, &changed) in self.factors.iter_mut().zip(changed) {
-            if let Some(kept) = factor {
-                kept.changed += changed;
-            }
+        for (factor, &more) in self.factors.iter_mut().zip(changed) {
+            factor.iter_mut().for_each(|kept| kept.changed += more);
         }
         if changed.iter().all(|&changed| changed == 0) {
             return Some(vec![false; changed.len()]);
         }
-        loop {
-            let stretch = Stretch::around(whole, changed, self.margin, &self.ends)?;
+        while let Some(stretch) = Stretch::around(whole, changed, self.margin, self.first_out) {
             whole.find_residual(columns);
             if stretch.solve(whole, columns, &mut self.factors, SHARE * residual)? <= SHARE * residual {
-                return Some(stretch.slabs.iter().map(|&part| part == Part::Inside).collect());
+                let is_inside = stretch.slabs.iter().map(|&part| part == Part::Inside);
+                return Some(is_inside.collect());
             }
             self.margin += 1;
         }
+        (self.margin, self.factors) = (1, changed.iter().map(|_| None).collect());
+        None
     }
 }
 
@@ -138,23 +136,20 @@ enum Floating {
 }
 
 impl Stretch {
-    /// With margins of so many slabs around those that changed; none where that is the whole.
-    fn around(whole: &Equations, changed: &[usize], margin: usize, ends: &[Range<usize>; 2]) -> Option<Self> {
+    /// With margins of so many slabs around those that changed. None where that is the whole, or both of its
+    /// ends.
+    fn around(whole: &Equations, changed: &[usize], margin: usize, first_out: usize) -> Option<Self> {
         let number = changed.len();
         let mut inside = vec![false; number];
         for at in (0..number).filter(|&at| changed[at] > 0) {
             inside[at.saturating_sub(margin)..(at + margin + 1).min(number)].fill(true);
         }
-        let reaches: Vec<bool> = ends
-            .iter()
-            .map(|end| {
-                let reaches = inside[end.clone()].contains(&true);
-                inside[end.clone()].fill(reaches);
-                reaches
-            })
-            .collect();
+        let leaves = first_out.min(number)..number;
+        let is_out_inside = inside[leaves.clone()].contains(&true);
+        inside[leaves].fill(is_out_inside);
+        let is_in_inside = inside[0];
         // With both ends, the flow through what lies between changes.
-        if reaches == [true, true] {
+        if is_in_inside && is_out_inside || !inside.contains(&false) {
             return None;
         }
         // Cuts first, then runs.
@@ -172,7 +167,7 @@ impl Stretch {
             let is_first = at == 0 || inside[at - 1];
             slabs[at] = match slabs[at.saturating_sub(1)] {
                 of_run if !is_first => of_run,
-                _ if at > 0 && !reaches[0] && !inside[at..].contains(&true) => Part::Held,
+                _ if at > 0 && !is_in_inside && !inside[at..].contains(&true) => Part::Held,
                 _ => {
                     rows += 1;
                     Part::Run(rows - 1)
@@ -203,16 +198,16 @@ impl Stretch {
                 of_cuts.links.push(Link { one, other, ..*link });
             }
         }
-        self.across(whole, |part, _, row, conductance| match part {
+        self.across(whole, |part, row, conductance| match part {
             Part::Run(run) => of_cuts.links.push(Link { one: row, other: run, conductance }),
             _ => of_cuts.ground[row as usize] += conductance,
         });
         of_cuts
     }
 
-    /// Calls for each link between a run and a cut of the stretch: what the run is, the slab with its row, the
-    /// row of the cut, and the conductance.
-    fn across(&self, whole: &Equations, mut call: impl FnMut(Part, (usize, u32), u32, f64)) {
+    /// Calls for each link between a run and a cut of the stretch: what the run is, the row of the cut, and the
+    /// conductance.
+    fn across(&self, whole: &Equations, mut call: impl FnMut(Part, u32, f64)) {
         for (at, &part) in self.slabs.iter().enumerate().filter(|&(_, &part)| part != Part::Inside) {
             let is_beside = |cut: Option<usize>| {
                 cut.and_then(|cut| self.cuts.get(cut)).is_some_and(|&cut| cut == Part::Inside)
@@ -223,11 +218,11 @@ impl Stretch {
             let (piece, met) = &whole.slabs[at];
             let rows = piece.rows.len();
             for link in &piece.links {
-                let (own, cut) = (link.one.min(link.other), link.one.max(link.other) as usize);
+                let cut = link.one.max(link.other) as usize;
                 if let Some(cut) = cut.checked_sub(rows) {
                     let row = self.row[met.start + cut];
                     if row != u32::MAX {
-                        call(part, (at, own), row, link.conductance);
+                        call(part, row, link.conductance);
                     }
                 }
             }
@@ -259,7 +254,7 @@ impl Stretch {
         let mut changes = equations.columns();
         self.take_residual(whole, columns, &inside, &mut changes);
         let size = changes.iter().map(|own| own.sum).sum::<f64>().sqrt();
-        equations.descend(&all, &mut changes, [size, 1.0, goal], 0..ROUNDS).ok()?;
+        equations.descend(&all, &mut changes, [size, 1.0, goal], 0..ROUNDS_OF_STRETCH).ok()?;
         let beyond = self.left_beyond(whole, &changes);
         self.change(whole, columns, &inside, &changes).then_some(beyond)
     }
@@ -292,23 +287,23 @@ impl Stretch {
                     all_cuts.residual[cut_rows(whole, cut)].iter().sum::<f64>();
             }
         }
-        each(changes, |_, own| own.sum = super::piece::dot(&own.residual, &own.residual));
+        each(changes, |_, own| own.sum = dot(&own.residual, &own.residual));
     }
 
-    /// What the changes leave in the rows of runs beside cuts of the stretch: the root of the sum of squares.
+    /// How the changes alter the flows between runs and cuts of the stretch: the root of the sum of squares.
+    /// Flows that make up for one another in a row count, too: they would turn water there.
     fn left_beyond(&self, whole: &Equations, changes: &[Columns]) -> f64 {
         let Some(of_cuts) = changes.last() else { return 0.0 };
-        let mut left: Vec<((usize, u32), f64)> = Vec::new();
-        self.across(whole, |part, place, row, conductance| {
-            let own = match part {
+        let mut squares = 0.0;
+        self.across(whole, |part, row, conductance| {
+            let of_run = match part {
                 Part::Run(run) => of_cuts.x[run as usize],
                 _ => 0.0,
             };
-            left.push((place, conductance * (of_cuts.x[row as usize] - own)));
+            let flow = conductance * (of_cuts.x[row as usize] - of_run);
+            squares += flow * flow;
         });
-        left.sort_by_key(|&(place, _)| place);
-        let of_row = |links: &[((usize, u32), f64)]| links.iter().map(|(_, flow)| flow).sum::<f64>();
-        left.chunk_by(|a, b| a.0 == b.0).map(|links| of_row(links) * of_row(links)).sum::<f64>().sqrt()
+        squares.sqrt()
     }
 
     /// Changes pressures of the whole, so that they fall from 1 to 0 again; whether they do.
@@ -362,12 +357,17 @@ impl Stretch {
     }
 }
 
-/// Makes factors of these slabs where there are none, or much has changed since.
+/// Makes factors of these slabs where there are none, or much has changed since; those of others go.
 fn renew(equations: &Equations, inside: &[usize], factors: &mut [Option<SlabFactor>]) {
+    for (at, factor) in factors.iter_mut().enumerate() {
+        if inside.binary_search(&at).is_err() {
+            *factor = None;
+        }
+    }
     let mut wanted: Vec<(usize, Option<SlabFactor>)> = Vec::new();
     for (i, &at) in inside.iter().enumerate() {
         let links = equations.slabs[i].0.links.len();
-        if factors[at].as_ref().is_none_or(|kept| kept.changed * KEPT_UNTIL > links) {
+        if factors[at].as_ref().is_none_or(|kept| kept.changed * FACTOR_KEPT_UNTIL > links) {
             wanted.push((i, None));
         }
     }

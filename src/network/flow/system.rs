@@ -1,8 +1,7 @@
 //! The equations of pressures in a network of conductances, and their solution by conjugate gradients.
 //!
 //! Each slab of the network has a piece of them, and all cuts together have one: threads work on slabs side
-//! by side. Sums run in a fixed order within a piece, and from piece to piece, so that a solution is the
-//! same to the bit on any number of threads and with any instructions.
+//! by side.
 
 use super::elimination::Factor;
 use super::joining::{Joining, NONE};
@@ -22,6 +21,9 @@ const BEST_OF_ROUNDING: f64 = 1e-6;
 
 /// What sums of each row may lose in rounding, as part of the flow through its known pressures.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Where nothing conducts more than this, squares of what conducts less may be 0.
+const OUT_OF_RANGE: f64 = 1e-9;
 
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
@@ -70,6 +72,8 @@ pub(super) struct System {
     pieces: Vec<Piece>,
     /// The power of two that conductances are multiplied by, once it is known.
     unit: Option<f64>,
+    /// By piece: the most that a row conducts.
+    largest: Vec<f64>,
 }
 
 impl System {
@@ -96,7 +100,8 @@ impl System {
         };
         let mut pieces: Vec<Piece> = (0..number).map(slab).collect();
         pieces.push(Piece::new(cuts..rows, 0..0, links(number)));
-        Self { void, row_of, pieces, unit: None }
+        let largest = vec![0.0; pieces.len()];
+        Self { void, row_of, pieces, unit: None, largest }
     }
 
     /// The voids `inside` of so many in one piece, in which `fill` joins them.
@@ -118,14 +123,21 @@ impl System {
         fill: impl Fn(usize, &mut Joining) + Sync,
     ) {
         let cuts = self.cuts();
-        let Self { row_of, pieces, unit, .. } = self;
-        each(pieces, |at, piece| {
+        let Self { row_of, pieces, unit, largest, .. } = self;
+        let mut pieces: Vec<_> = pieces.iter_mut().zip(largest).collect();
+        each(&mut pieces, |at, (piece, largest)| {
             if is_wanted(at) {
                 piece.clear();
                 fill(at, &mut Joining { row_of, cuts, piece });
                 unit.iter().for_each(|&unit| piece.scale(unit));
+                **largest = piece.largest();
             }
         });
+    }
+
+    /// Whether the power of two still suits what conducts now.
+    pub(super) fn is_in_range(&self) -> bool {
+        self.unit.is_none() || self.largest.iter().any(|&largest| largest > OUT_OF_RANGE)
     }
 
     /// The first row of cuts.
@@ -139,14 +151,13 @@ impl System {
         if let Some(unit) = self.unit {
             return unit;
         }
-        let mut largest = vec![0.0; self.pieces.len()];
-        each(&mut largest, |at, largest| *largest = self.pieces[at].largest());
-        let largest = largest.into_iter().fold(0.0, f64::max);
+        let largest = self.largest.iter().copied().fold(0.0, f64::max);
         if !(largest > 0.0 && largest.is_finite()) {
             return 1.0;
         }
         let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
         each(&mut self.pieces, |_, piece| piece.scale(unit));
+        self.largest.iter_mut().for_each(|largest| *largest *= unit);
         *self.unit.insert(unit)
     }
 

@@ -1,6 +1,7 @@
-//! The exits of a void where few are open: all that a draw needs of them, side by side.
+//! The exits of a void as a draw reads them first: all that it needs where few are open, side by side, and
+//! where the others begin.
 
-/// Open exits of a void, where they are few.
+/// Open exits of a void, where they are few; where the others are found, else.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 pub struct FewExits {
@@ -10,7 +11,8 @@ pub struct FewExits {
     pub position: [u8; FEW_EXITS],
     /// First exit of the void.
     pub begin: u32,
-    /// Exits of a void that has more open ones than fit in here, else 0.
+    /// Exits of a void whose open ones do not fit in here; 0 where they do, none is open, or there are more
+    /// exits than this can say.
     pub exits: u16,
     /// Whether it has an open exit, and no more than fit in here.
     pub is_few: bool,
@@ -43,14 +45,21 @@ impl FewExits {
             top: std::array::from_fn(|i| top[i]),
             position: std::array::from_fn(|i| position[i]),
             begin,
-            // More than that are looked at in the long way.
             exits: if is_few { 0 } else { u16::try_from(thresholds.len()).unwrap_or(0) },
             is_few,
         }
     }
 
-    /// The same of a void with more open exits, all of which have these upper sixteen bits of their
-    /// thresholds.
+    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
+    #[inline(always)]
+    pub fn chosen(&self, draw: u16) -> Option<usize> {
+        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
+        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
+        // Thresholds rise, and there is none for the last exit.
+        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
+    }
+    /// The same where more are open than fit in here, by the upper sixteen bits of all thresholds of the
+    /// network.
     #[inline(always)]
     pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
         let tops = &tops[self.begin as usize..][..usize::from(self.exits)];
@@ -62,14 +71,5 @@ impl FewExits {
         };
         // Thresholds rise, so an equal one comes first of those that are not passed.
         tops.get(passed).filter(|&&top| top != draw).map(|_| self.begin as usize + passed)
-    }
-
-    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
-    #[inline(always)]
-    pub fn chosen(&self, draw: u16) -> Option<usize> {
-        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
-        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
-        // Thresholds rise, and there is none for the last exit.
-        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
     }
 }

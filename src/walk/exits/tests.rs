@@ -92,6 +92,59 @@ fn few_exits_are_chosen_as_by_the_definition() {
     }
 }
 
+/// Of many exits, some of them closed, at the end too, the one that the definition picks for every draw whose
+/// upper bits decide; the others, and those of more exits than can be counted, are left to the long way.
+#[test]
+fn many_exits_are_chosen_as_by_looking_at_each() {
+    let mut word = 5u64;
+    let mut next = || {
+        word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        word >> 33
+    };
+    for exits in [9, 40, 64, 65, 300, 3000, 65_535, 65_536] {
+        let weight: Vec<f64> = (0..exits)
+            .map(|e| if e + 3 > exits || next() % 4 == 0 { 0.0 } else { (1 + next() % 97) as f64 })
+            .collect();
+        let last = weight.iter().rposition(|&w| w > 0.0).unwrap();
+        let total: f64 = weight.iter().sum();
+        let sums = weight.iter().scan(0.0, |sum, w| {
+            *sum += w;
+            Some(*sum)
+        });
+        let thresholds: Vec<u64> = sums.map(|sum| (sum / total * TWO_TO_64) as u64).collect();
+        let few = FewExits::new(7, &thresholds, last);
+        if few.is_few {
+            continue;
+        }
+        // Those of seven exits of other voids stand before.
+        let tops: Vec<u16> = [9; 7].into_iter().chain(thresholds.iter().map(|t| (t >> 48) as u16)).collect();
+        let mut decided = 0;
+        for draw in 0..=u16::MAX {
+            let by = |low: u64| {
+                let draw = u64::from(draw) << 48 | low;
+                7 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
+            };
+            match few.chosen_of(&tops, draw) {
+                Some(exit) if exits <= 300 || draw % 61 == 0 => {
+                    assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{exits} {draw}");
+                    decided += 1;
+                }
+                Some(_) => decided += 1,
+                None => {
+                    assert!(exits > 65_535 || draw == u16::MAX || tops[7..].contains(&draw), "{exits} {draw}")
+                }
+            }
+        }
+        let all = 1 << 16;
+        match exits {
+            65_536 => assert_eq!(decided, 0),
+            65_535 => assert!(decided > all / 8, "{decided}"),
+            _ => assert!(decided > all - 2 * exits, "{exits}: {decided}"),
+        }
+    }
+    assert_eq!(FewExits::NONE.chosen_of(&[], 9), None);
+}
+
 /// Exits that stand too far from the first for a byte are not few; in reach of one they are.
 #[test]
 fn exits_beyond_a_byte_are_not_few() {
