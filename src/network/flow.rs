@@ -61,8 +61,8 @@ const CLOSELY: f64 = 1e-8;
 const KEPT_UNTIL: usize = 100;
 
 /// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less
-/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows. Most of so thick
-/// a network is far from what closes at a time: it is solved by stretches.
+/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows. Most of so
+/// thick a network is far from what closes at a time: it is solved by stretches.
 const THICK: usize = 400;
 
 /// The residual of a thick network, as part of what flows in.
@@ -102,7 +102,8 @@ pub struct Flow {
     most: f64,
     /// What serves solution after solution.
     kept: Option<Kept>,
-    /// By void: whether water flowed through it when the factor or the equations that are kept were first wanted.
+    /// By void: whether water flowed through it when the factor or the equations that are kept were first
+    /// wanted.
     inside: BitVec,
     /// Where water has turned since the network was given directions.
     turned: Turned,
@@ -448,8 +449,8 @@ impl Flow {
         self.accuracy * inlets.map(square).sum::<f64>().sqrt() / unit
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last, where water has turned since
-    /// this was done before; what was blocked then has none. Which voids these are.
+    /// Gives each exit of the network its weight by the flow that was solved last, where water has turned
+    /// since this was done before; what was blocked then has none. Which voids these are.
     pub fn direct(&mut self, network: &mut Network) -> Turned {
         let turned = std::mem::replace(&mut self.turned, Turned::none(network.voids()));
         let Some(reservoir) = network.reservoir() else { return turned };

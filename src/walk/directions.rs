@@ -1,12 +1,12 @@
 //! Which way constrictions lead, where water decides: when the flow is solved again, and what it came to.
 //!
-//! The flow is solved before the first increment, and at the beginning of an increment when the changes since
-//! the last time are one in a hundred of all constrictions, or when there are any and ten increments have
-//! gone by; and once more at the end. A change is a constriction that was blocked or, where blocked ones
-//! leave openings, narrowed. In between directions stay as they are, and a particle in a void whose exits
-//! have all been blocked since waits where it is. When to solve follows from the history of changes alone, so
-//! a walk that continues from a checkpoint solves again what was solved before and gives directions each time,
-//! in the same order, to the same bits.
+//! The flow is solved before the first increment, and at the beginning of an increment when the changes
+//! since the last time are one in a hundred of all constrictions, or when there are any and ten increments
+//! have gone by; and once more at the end. A change is a constriction that was blocked or, where blocked
+//! ones leave openings, narrowed. In between directions stay as they are, and a particle in a void whose
+//! exits have all been blocked since waits where it is. When to solve follows from the history of changes
+//! alone, so a walk that continues from a checkpoint solves again what was solved before and gives
+//! directions each time, in the same order, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;

@@ -1,11 +1,12 @@
 //! Solving a stretch of a thick network by itself, where the rest keeps its flow pattern.
 //!
 //! Particles move through a thick filter as a pulse, and constrictions close where it is. A width or two of
-//! the network away from there water keeps its ways: all fluxes change by one factor. So with the flow through
-//! the whole held as it is, pressures of a run of slabs far from what closed all change by one number, and
-//! those of the run at one end of the network by none. Such a run is one row, or known pressure, of a smaller
-//! system of conductances, whose other rows are the voids of the slabs in which something closed and of
-//! some slabs beside them, its margin. Then pressures are divided by what the fall through the whole came to.
+//! the network away from there water keeps its ways: all fluxes change by one factor. So with the flow
+//! through the whole held as it is, pressures of a run of slabs far from what closed all change by one
+//! number, and those of the run at one end of the network by none. Such a run is one row, or known pressure,
+//! of a smaller system of conductances, whose other rows are the voids of the slabs in which something
+//! closed and of some slabs beside them, its margin. Then pressures are divided by what the fall through the
+//! whole came to.
 //!
 //! What this leaves out is what flows between rows at the ends of a margin and the run beyond. It falls by a
 //! factor of 500 or so with each width of the network; where it is more than is asked for, the margin grows.
@@ -18,8 +19,8 @@ use super::rest::{Beyond, Link};
 use super::rounds::Equations;
 use super::slabs::each;
 
-/// The residual of a stretch, and what is left beyond its margins, as parts of the residual that is asked for:
-/// what earlier solutions left elsewhere comes on top.
+/// The residual of a stretch, and what is left beyond its margins, as parts of the residual that is asked
+/// for: what earlier solutions left elsewhere comes on top.
 const SHARE: f64 = 0.25;
 
 /// A factor of a slab is kept until more than one in so many of its constrictions have changed.
@@ -79,9 +80,9 @@ impl Stretches {
         Self { factors: (0..slabs).map(|_| None).collect(), margin: 1, first_out }
     }
 
-    /// Brings the pressures of the whole close to its solution, from those of before so many constrictions of
-    /// each slab changed, if stretches of it will do: their residual is within a part of the one that is asked
-    /// for. Which slabs these have.
+    /// Brings the pressures of the whole close to its solution, from those of before so many constrictions
+    /// of each slab changed, if stretches of it will do: their residual is within a part of the one that is
+    /// asked for. Which slabs these have.
     pub(super) fn improve(
         &mut self,
         whole: &Equations,
@@ -205,8 +206,8 @@ impl Stretch {
         of_cuts
     }
 
-    /// Calls for each link between a run and a cut of the stretch: what the run is, the row of the cut, and the
-    /// conductance.
+    /// Calls for each link between a run and a cut of the stretch: what the run is, the row of the cut, and
+    /// the conductance.
     fn across(&self, whole: &Equations, mut call: impl FnMut(Part, u32, f64)) {
         for (at, &part) in self.slabs.iter().enumerate().filter(|&(_, &part)| part != Part::Inside) {
             let is_beside = |cut: Option<usize>| {

@@ -115,8 +115,8 @@ impl System {
         system
     }
 
-    /// Joins voids in pieces, each by itself: that of a slab in which one of two stands, else that of the cuts,
-    /// which is the last. What was joined in these before is forgotten, and other pieces stay.
+    /// Joins voids in pieces, each by itself: that of a slab in which one of two stands, else that of the
+    /// cuts, which is the last. What was joined in these before is forgotten, and other pieces stay.
     pub(super) fn fill(
         &mut self,
         is_wanted: impl Fn(usize) -> bool + Sync,
@@ -166,8 +166,8 @@ impl System {
         self.pieces.iter().map(|piece| dot(&piece.inflow, &piece.inflow)).sum::<f64>().sqrt()
     }
 
-    /// Brings pressures close to the solution, where stretches around the slabs in which so many constrictions
-    /// changed will do; which slabs these are.
+    /// Brings pressures close to the solution, where stretches around the slabs in which so many
+    /// constrictions changed will do; which slabs these are.
     pub(super) fn improve(
         &self,
         pressure: &mut [f64],

@@ -225,8 +225,8 @@ fn a_pulse_is_solved_near_where_it_is() {
     }
 }
 
-/// Two places far apart at once; both ends at once, with which the flow through all that lies between changes;
-/// a layer of which little stays open; and the one end by itself.
+/// Two places far apart at once; both ends at once, with which the flow through all that lies between
+/// changes; a layer of which little stays open; and the one end by itself.
 #[test]
 fn what_closes_in_several_places_is_solved_alike() {
     let is_closed = |step: usize, layer: u32, c: usize| match step {

@@ -1,4 +1,5 @@
-//! What a thick network keeps from one solution to the next, so that little but what has changed is looked at.
+//! What a thick network keeps from one solution to the next, so that little but what has changed is looked
+//! at.
 
 use super::passages::{Meets, Passage, Passages};
 use super::stretch::Stretches;

@@ -8,7 +8,7 @@ use crate::walk::crowding::{Crowd, VoidCrowd};
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 
-use super::fetch;
+use super::fetch::fetch;
 
 /// Particles between one that chooses and the one whose exits are asked for then.
 const AHEAD: usize = 24;

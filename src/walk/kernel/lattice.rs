@@ -25,7 +25,7 @@ use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
 use crate::walk::reads::{Plain, Reads};
 
-use super::fetch;
+use super::fetch::fetch;
 
 /// Particles of a block.
 pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;

@@ -7,6 +7,7 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod fetch;
 mod general;
 mod lattice;
 #[cfg(test)]
@@ -122,19 +123,6 @@ fn step_chunk(
             general::step(exits.network, table, jams, key, void, diameter, events)
         }
     }
-}
-
-/// Asks for an entry of a column, or of what lies behind it, before it is read.
-#[inline(always)]
-fn fetch<T>(column: &[T], at: usize) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: nothing is read, whatever the address.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(column.as_ptr().wrapping_add(at).cast()) };
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (column, at);
 }
 
 /// The stream by which the particles of a chunk jam.
