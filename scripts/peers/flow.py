@@ -10,7 +10,7 @@ threads. Python 3's standard library only.
     lattice   the built-in scene with walk.exit = "flux", one replicate: 40 x 40 x 60 voids, two runs
     graph     three copies of the voids of 9,000 grains, 43,000 voids, base Cu 1.5 at D15F/D85B 5.5, one run
     thick     600 layers of the voids of 3,000 grains, 190,000 voids, base Cu 1.5 at 3.5, one run, engine expected
-    thickest  2,400 layers of the same, 757,000 voids, at 3.8: tens of minutes a walk
+    thickest  2,400 layers of the same, 757,000 voids, at 3.8: a minute or two a walk
 """
 
 import argparse

@@ -10,7 +10,7 @@ use crate::scene::{About, CurveSource, Scene};
 const PROTOCOL: u32 = 2;
 
 /// The same of cases in which water flows.
-const WATER_PROTOCOL: u32 = 5;
+const WATER_PROTOCOL: u32 = 6;
 
 /// What is added where several curves or readings are walked: their walks have other names, and the verdict
 /// follows from them in another way than before.

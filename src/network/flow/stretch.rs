@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use super::elimination::Factor;
+use super::joining::NONE;
 use super::piece::{Columns, Piece, dot};
 use super::rest::{Beyond, Link};
 use super::rounds::Equations;
@@ -154,7 +155,7 @@ impl Stretch {
             return None;
         }
         // Cuts first, then runs.
-        let mut row = vec![u32::MAX; whole.cuts.rows.len()];
+        let mut row = vec![NONE; whole.cuts.rows.len()];
         let mut rows = 0;
         for cut in (0..number - 1).filter(|&cut| inside[cut] || inside[cut + 1]) {
             for row in &mut row[cut_rows(whole, cut)] {
@@ -163,23 +164,22 @@ impl Stretch {
             }
         }
         let mut slabs = vec![Part::Inside; number];
-        let mut floating = None;
+        let last_inside = inside.iter().rposition(|&inside| inside);
         for at in (0..number).filter(|&at| !inside[at]) {
-            let is_first = at == 0 || inside[at - 1];
-            slabs[at] = match slabs[at.saturating_sub(1)] {
-                of_run if !is_first => of_run,
-                _ if at > 0 && !is_in_inside && !inside[at..].contains(&true) => Part::Held,
-                _ => {
-                    rows += 1;
-                    Part::Run(rows - 1)
-                }
+            slabs[at] = if at > 0 && !inside[at - 1] {
+                slabs[at - 1]
+            } else if !is_in_inside && last_inside < Some(at) {
+                Part::Held
+            } else {
+                rows += 1;
+                Part::Run(rows - 1)
             };
         }
-        if let Part::Run(run) = slabs[0] {
-            floating = Some((run, Floating::Reservoir));
-        } else if let Part::Run(run) = slabs[number - 1] {
-            floating = Some((run, Floating::End));
-        }
+        let floating = match [slabs[0], slabs[number - 1]] {
+            [Part::Run(run), _] => Some((run, Floating::Reservoir)),
+            [_, Part::Run(run)] => Some((run, Floating::End)),
+            _ => None,
+        };
         let cut = |pair: &[Part]| if pair[0] == pair[1] { pair[0] } else { Part::Inside };
         let cuts = slabs.windows(2).map(cut).collect();
         Some(Self { slabs, cuts, row, rows: rows as usize, floating })
@@ -189,13 +189,13 @@ impl Stretch {
     fn of_cuts(&self, whole: &Equations) -> Piece {
         let mut of_cuts = Piece::new(0..self.rows, 0..0, 2 * whole.cuts.links.len());
         for (&row, &ground) in self.row.iter().zip(&whole.cuts.ground) {
-            if row != u32::MAX {
+            if row != NONE {
                 of_cuts.ground[row as usize] = ground;
             }
         }
         for link in &whole.cuts.links {
             let [one, other] = [link.one, link.other].map(|row| self.row[row as usize]);
-            if one != u32::MAX {
+            if one != NONE {
                 of_cuts.links.push(Link { one, other, ..*link });
             }
         }
@@ -222,7 +222,7 @@ impl Stretch {
                 let cut = link.one.max(link.other) as usize;
                 if let Some(cut) = cut.checked_sub(rows) {
                     let row = self.row[met.start + cut];
-                    if row != u32::MAX {
+                    if row != NONE {
                         call(part, row, link.conductance);
                     }
                 }
@@ -230,8 +230,8 @@ impl Stretch {
         }
     }
 
-    /// Solves it from the residual of the whole, and changes the pressures of that; what is left in the rows
-    /// beyond. None where it takes too many rounds.
+    /// Solves it from the residual of the whole, and changes the pressures of that; by how much flows to the
+    /// runs beyond are altered. None where it takes too many rounds, or pressures fall no longer.
     fn solve(
         &self,
         whole: &Equations,
@@ -272,7 +272,7 @@ impl Stretch {
         let Some((of_cuts, of_slabs)) = changes.split_last_mut() else { return };
         each(of_slabs, |i, own| own.residual.copy_from_slice(&all_slabs[inside[i]].residual));
         for (&row, &residual) in self.row.iter().zip(&all_cuts.residual) {
-            if row != u32::MAX {
+            if row != NONE {
                 of_cuts.residual[row as usize] = residual;
             }
         }
