@@ -262,16 +262,16 @@ impl Flow {
     fn meets(&self, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
         let voids = self.pressure.len() - 1;
         let mut within = Together::of(voids);
-        let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0 && is_way(passage);
+        let conducts = conducting(&self.open);
+        let is_way = |passage: &Passage| conducts(passage) && is_way(passage);
         self.passages.join_within(&mut within, |_| true, is_way);
         self.passages.meet(voids, within, is_way)
     }
 
     /// The same by all that conduct; of a thick network from what hung together before.
     fn meet_now(&mut self) -> Vec<Meets> {
-        let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
         match &mut self.thick {
-            Some(thick) => thick.meet(&self.passages, is_way),
+            Some(thick) => thick.meet(&self.passages, conducting(&self.open)),
             None => self.meets(|_| true),
         }
     }
@@ -325,8 +325,7 @@ impl Flow {
                 let fit = self.solve_system(network, &mut system, within)?;
                 // One slab has no other far away.
                 if is_thick(network) && self.passages.slabs().number() > 1 {
-                    let is_way = |passage: &Passage| self.open[passage.exit as usize] > 0.0;
-                    self.thick = Some(Thick::of(system, &self.passages, meets, is_way));
+                    self.thick = Some(Thick::of(system, &self.passages, meets, conducting(&self.open)));
                 }
                 (fit, None)
             }
@@ -368,7 +367,7 @@ impl Flow {
     /// numbers of its equations would be too small.
     fn refilled(&mut self, meets: &[Meets], reservoir: u32) -> Option<(Thick, Vec<usize>)> {
         let mut thick = self.thick.take()?;
-        let changed = thick.begin();
+        let changed = thick.take_changed();
         let is_wanted = |at| changed.get(at).is_none_or(|&changed| changed > 0);
         self.fill(&mut thick.system, is_wanted, meets, reservoir);
         thick.system.is_in_range().then_some((thick, changed))
@@ -488,6 +487,11 @@ impl Flow {
 /// Conductance of an exit while it is open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
+}
+
+/// Whether a constriction conducts, by the conductance of each exit.
+fn conducting(open: &[f64]) -> impl Fn(&Passage) -> bool + Sync + '_ {
+    |passage| open[passage.exit as usize] > 0.0
 }
 
 fn is_thick(network: &Network) -> bool {

@@ -103,10 +103,14 @@ impl Slabs {
 
     /// The voids of a slab, and of the cuts before and after it.
     pub(super) fn around(&self, slab: usize) -> impl Iterator<Item = u32> {
-        let number = self.number();
         let part = |at: usize| self.order[self.begin[at]..self.begin[at + 1]].iter().copied();
-        let cuts = number + slab.saturating_sub(1)..(number + slab + 1).min(2 * number - 1);
-        part(slab).chain(cuts.flat_map(part))
+        part(slab).chain(self.cuts_of(slab).flat_map(part))
+    }
+
+    /// The cuts before and after a slab, counted after all slabs.
+    pub(super) fn cuts_of(&self, slab: usize) -> Range<usize> {
+        let number = self.number();
+        number + slab.saturating_sub(1)..(number + slab + 1).min(2 * number - 1)
     }
 
     /// Where a void stands in their order.

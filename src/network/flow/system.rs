@@ -92,7 +92,8 @@ impl System {
         let (cuts, rows) = (begin[number], void.len());
         // A slab lies between the cut before it and the one after it.
         let met = |slab: usize| {
-            begin[number + slab.saturating_sub(1)]..begin[(number + slab + 1).min(2 * number - 1)]
+            let cuts = slabs.cuts_of(slab);
+            begin[cuts.start]..begin[cuts.end]
         };
         let slab = |slab: usize| {
             let met = met(slab);

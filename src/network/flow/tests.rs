@@ -248,8 +248,8 @@ fn what_closes_in_several_places_is_solved_alike() {
 #[test]
 fn whatever_follows_a_stretch_is_solved() {
     let is_closed = |step: usize, layer: u32, c: usize| layer / 40 == 3 + step as u32 && c.is_multiple_of(13);
-    close_step_by_step(0.0, 1, is_closed, |flow, network, blocked, _| {
-        let mut flow = Flow { passages: Passages::of(network, &flow.other), ..Flow::new(network) };
+    close_step_by_step(0.0, 1, is_closed, |_, network, blocked, _| {
+        let mut flow = Flow::new(network);
         let mut blocked = blocked.to_bitvec();
         let none: BitVec = BitVec::repeat(false, network.constrictions());
         for blocked in [&none, &blocked] {

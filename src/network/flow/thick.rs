@@ -53,7 +53,7 @@ impl Thick {
     }
 
     /// Takes what has changed, by slab, as a solution begins.
-    pub fn begin(&mut self) -> Vec<usize> {
+    pub fn take_changed(&mut self) -> Vec<usize> {
         let none = vec![0; self.changed.len()];
         std::mem::replace(&mut self.changed, none)
     }

@@ -58,6 +58,7 @@ impl FewExits {
         // Thresholds rise, and there is none for the last exit.
         (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
     }
+
     /// The same where more are open than fit in here, by the upper sixteen bits of all thresholds of the
     /// network.
     #[inline(always)]
