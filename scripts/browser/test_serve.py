@@ -50,6 +50,24 @@ FAINT = """(() => {
 })()"""
 
 
+# The curves of the figure as their drawn paths say them against the ticks of the axes: names, and rows of size and percent.
+DRAWN = """(() => {
+  const svg = document.querySelector("#curves svg");
+  const scale = (anchor, at, value) => {
+    const texts = [...svg.querySelectorAll(`text[text-anchor="${anchor}"]:not([font-size], [stroke])`)];
+    const ticks = texts.map((text) => ({ at: at(text), value: value(Number(text.textContent)) })).sort((a, b) => a.value - b.value);
+    const [low, high] = [ticks[0], ticks.at(-1)];
+    return (pixel) => low.value + (pixel - low.at) / (high.at - low.at) * (high.value - low.value);
+  };
+  const size = scale("middle", (text) => Number(text.getAttribute("x")), Math.log10);
+  const percent = scale("end", (text) => Number(text.getAttribute("y")) - 4.5, Number);
+  return [...svg.querySelectorAll("[class^=curve-] path")].map((path) => ({
+    name: svg.querySelector(`.${path.parentNode.getAttribute("class")} text`).textContent,
+    rows: path.getAttribute("d").slice(1).split("L").map((pair) => pair.split(" ").map(Number)).map(([x, y]) => [10 ** size(x), percent(y)]),
+  }));
+})()"""
+
+
 class Tab:
     """The page in a tab."""
 
@@ -183,6 +201,25 @@ def main(binary, pictures):
     print(f"the page of serve: no complaint; pictures in {pictures}")
 
 
+def check_figure(curves):
+    """Sieve curves are drawn as their tables say, and constriction curves from 0 to 100 % between sizes that the filter can have."""
+    tables = {"base: base": BASE, "filter: bfine": FINE}
+    names = [curve["name"] for curve in curves]
+    if names != [*tables, "constrictions, loose, by number", "constrictions, dense, by number"]:
+        raise SystemExit(f"other curves are drawn: {names}")
+    for name, rows in ((curve["name"], curve["rows"]) for curve in curves):
+        if name in tables:
+            table = [[float(cell) for cell in line.split(",")] for line in tables[name].splitlines()[1:]]
+            right = len(rows) == len(table) and all(
+                abs(x / size - 1) < 0.01 and abs(y - percent) < 0.1 for (x, y), (size, percent) in zip(rows, table))
+        else:
+            rising = all(a[0] <= b[0] and a[1] <= b[1] for a, b in zip(rows, rows[1:]))
+            # FINE has grains of 0.5 to 1.5 mm: three that touch leave 0.15 of the smallest one.
+            right = rising and abs(rows[0][1]) < 0.1 and abs(rows[-1][1] - 100) < 0.1 and 0.07 < rows[0][0] < rows[-1][0] < 0.7
+        if not right:
+            raise SystemExit(f"{name} is drawn through {rows}")
+
+
 def look(browser, url, pictures, workbook, root, process, binary):
     tab = Tab(browser, url, pictures)
     tab.until("document.querySelector('#version').textContent")
@@ -201,7 +238,8 @@ def look(browser, url, pictures, workbook, root, process, binary):
 
     tab.paste("base", BASE)
     tab.drop("filter", "../<b>fine\u202e.csv", FINE.encode())
-    tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves svg')")
+    tab.until("document.querySelectorAll('#rules tr').length > 10 && document.querySelector('#curves svg .curve-2')")
+    check_figure(tab.run(DRAWN))
     tab.picture("03-curves-and-rules")
     tab.readable("03-curves-and-rules")
     read = "document.querySelector('#read').textContent"

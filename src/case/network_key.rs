@@ -20,7 +20,7 @@ impl Case {
             return None;
         }
         let curve: Vec<(u64, u64)> =
-            self.curve.points().iter().map(|(size, share)| (size.to_bits(), share.to_bits())).collect();
+            self.curve.points().iter().map(|p| (p.percent.to_bits(), p.size.to_bits())).collect();
         let (unit, rule) = (self.unit_mm.to_bits(), self.scene.exit_rule());
         let made_of = format!("{seed} {source:?} {unit} {rule:?} {:?} {curve:?}", self.scene.exits);
         Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))

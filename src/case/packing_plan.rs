@@ -39,7 +39,7 @@ pub struct PackingPlan {
 impl PackingPlan {
     /// Fingerprint of everything that the grains follow from.
     pub fn fingerprint(&self) -> String {
-        self.fingerprint_of(&self.gradation.points())
+        self.fingerprint_of(&pairs(&self.gradation))
     }
 
     /// The same of a gradation with these points, compressed likewise.
@@ -55,7 +55,7 @@ impl PackingPlan {
     /// The factor that takes a gradation with these points to the plan's: `None` where one factor does not
     /// take every size to within a thousandth of its own.
     pub(super) fn scale_from(&self, points: &[(f64, f64)]) -> Option<f64> {
-        let own = self.gradation.points();
+        let own = pairs(&self.gradation);
         let (coarsest, its) = (own.last()?, points.last()?);
         let factor = coarsest.0 / its.0;
         let fits = |(own, other): (&(f64, f64), &(f64, f64))| {
@@ -66,7 +66,7 @@ impl PackingPlan {
 
     /// Whether one packing, scaled, does for both plans.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        let points = other.gradation.points();
+        let points = pairs(&other.gradation);
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
@@ -76,6 +76,11 @@ impl PackingPlan {
         let cu = cu.trim_end_matches('0').trim_end_matches('.');
         format!("{cu}-friction{}-{}", self.compression.friction, &self.fingerprint()[..8])
     }
+}
+
+/// Size and percent of each point, as fingerprints hash them.
+fn pairs(gradation: &Gradation) -> Vec<(f64, f64)> {
+    gradation.points().iter().map(|point| (point.size, point.percent)).collect()
 }
 
 #[cfg(test)]
@@ -95,7 +100,7 @@ mod tests {
     fn the_fingerprint_names_the_protocol() {
         let of = |cu: f64, grains: usize| {
             let plan = plan(cu, grains);
-            let points = plan.gradation.points();
+            let points = pairs(&plan.gradation);
             let text = |protocol: u32| format!("{protocol} {points:?} {:?}", plan.compression);
             let [earlier, wide] = [2, 3]
                 .map(|protocol| format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text(protocol).as_bytes())));

@@ -64,7 +64,7 @@ pub(super) fn may_block(base: &Gradation, finest_mm: f64) -> bool {
 
 /// The base with its pan fraction of a size.
 pub(super) fn taken_as(base: &Gradation, size: PanSize, finest_mm: f64) -> Result<Gradation, GradationError> {
-    let mut points = base.points();
+    let mut points: Vec<_> = base.points().iter().map(|point| (point.size, point.percent)).collect();
     let (sieve, percent) = points[0];
     match size {
         PanSize::Passive => {

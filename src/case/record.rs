@@ -1,7 +1,7 @@
 //! What went in, as a run folder records it.
 
 use super::{Case, Input};
-use crate::gradation::Gradation;
+use crate::gradation::{CurvePoint, Gradation};
 use crate::network::ExitRule;
 use crate::outcome::record::{self, InputFile};
 use crate::outcome::three;
@@ -86,8 +86,8 @@ impl Case {
                 d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
                 d85_mm: d(&self.filter, 85.0),
                 void_ratio: self.void_ratio(),
-                gradation: pairs(self.filter.points()),
-                constrictions: self.curve.points().into_iter().map(|(percent, d)| [d, percent]).collect(),
+                gradation: rows(self.filter.points()),
+                constrictions: rows(self.curve.points()),
                 cu_csd: self.curve.cu(),
                 curve_name,
             },
@@ -97,7 +97,7 @@ impl Case {
                     d85_mm: given.d(85.0),
                     d95_mm: given.d(95.0),
                     d100_mm: given.largest_mm(),
-                    gradation: pairs(given.points()),
+                    gradation: rows(given.points()),
                 }),
                 ..base_record(self.base_name(), &self.base)
             },
@@ -217,7 +217,7 @@ pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
         tail_mass_fraction: base.pan_fraction(),
         regraded_at_mm: None,
         as_sampled: None,
-        gradation: pairs(base.points()),
+        gradation: rows(base.points()),
     }
 }
 
@@ -226,8 +226,8 @@ fn d(gradation: &Gradation, percent: f64) -> f64 {
     gradation.d(percent).unwrap_or(f64::NAN)
 }
 
-fn pairs(points: Vec<(f64, f64)>) -> Vec<[f64; 2]> {
-    points.into_iter().map(|(a, b)| [a, b]).collect()
+fn rows(points: Vec<CurvePoint>) -> Vec<[f64; 2]> {
+    points.into_iter().map(CurvePoint::row).collect()
 }
 
 /// Kinematic viscosity of water of 10 C (m2/s).

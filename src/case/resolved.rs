@@ -76,7 +76,8 @@ impl Case {
             // Another library, or another way through it, gives other curves.
             let ends = self.curve_ends.iter().map(|end| &end.curve);
             for curve in std::iter::once(&self.curve).chain(ends) {
-                text.extend_from_slice(format!("{:?}", curve.points()).as_bytes());
+                let points: Vec<_> = curve.points().iter().map(|point| (point.percent, point.size)).collect();
+                text.extend_from_slice(format!("{points:?}").as_bytes());
             }
         }
         text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());

@@ -71,8 +71,8 @@ fn words(soils: &[SoilSummary]) -> String {
         };
         line("soil", soil.name.clone());
         line("opening, mm", "percent finer by mass".into());
-        for [size, percent] in soil.points.iter().rev() {
-            line(&format!("  {}", digits(*size)), digits(*percent));
+        for point in soil.points.iter().rev() {
+            line(&format!("  {}", digits(point.size)), digits(point.percent));
         }
         let sizes = [
             ("D5", soil.d5_mm),

@@ -1,6 +1,6 @@
 //! A constriction size distribution, by number.
 
-use crate::gradation::{Direction, NumberError, Row, Table, TableError, check_size, rising};
+use crate::gradation::{CurvePoint, Direction, NumberError, Row, Table, TableError, check_size, rising};
 use crate::stream::unit;
 use std::fmt;
 use std::path::Path;
@@ -242,9 +242,10 @@ impl Curve {
         self.unit
     }
 
-    /// The points of the curve: percent smaller, diameter; from 0 % to 100 %.
-    pub fn points(&self) -> Vec<(f64, f64)> {
-        self.percent.iter().copied().zip(self.diameter.iter().copied()).collect()
+    /// The points of the curve, from 0 % to 100 %.
+    pub fn points(&self) -> Vec<CurvePoint> {
+        let point = |(&size, &percent): (&f64, &f64)| CurvePoint { size, percent };
+        self.diameter.iter().zip(&self.percent).map(point).collect()
     }
 
     /// This curve, in its unit, with every diameter multiplied by `factor`.
@@ -339,10 +340,15 @@ mod tests {
         Curve::from_points(points, CurveUnit::D0f).unwrap()
     }
 
+    /// As `from_points` takes them.
+    fn pairs(curve: &Curve) -> Vec<(f64, f64)> {
+        curve.points().iter().map(|point| (point.percent, point.size)).collect()
+    }
+
     #[test]
     fn one_point_is_one_size() {
         let one = curve(&[(100.0, 0.2)]);
-        assert_eq!(one.points(), [(0.0, 0.2), (100.0, 0.2)]);
+        assert_eq!(pairs(&one), [(0.0, 0.2), (100.0, 0.2)]);
         for unit in [0.0, 0.3, 1.0] {
             assert_eq!(one.quantile(unit), 0.2);
         }
@@ -364,7 +370,7 @@ mod tests {
     fn steps_and_plateaus() {
         let both = curve(&[(0.0, 0.1), (30.0, 0.2), (40.0, 0.2), (60.0, 0.2), (60.0, 0.4), (100.0, 0.5)]);
         assert_eq!(
-            both.points(),
+            pairs(&both),
             [(0.0, 0.1), (30.0, 0.2), (60.0, 0.2), (60.0, 0.4), (100.0, 0.5)],
             "a point inside a step is merged"
         );

@@ -2,6 +2,7 @@
 
 use super::curve::CurveError;
 use super::measure::{Constrictions, Facets};
+use crate::gradation::CurvePoint;
 use crate::packing::vtp_points;
 use crate::store::format;
 use serde::{Deserialize, Serialize};
@@ -111,7 +112,7 @@ impl Constrictions {
     /// As [`Constrictions::curve`].
     pub fn curve_csv(&self) -> Result<String, CurveError> {
         let mut text = String::from("percent_smaller,diameter_mm\n");
-        for (percent, diameter) in self.curve()?.points() {
+        for CurvePoint { size: diameter, percent } in self.curve()?.points() {
             // A String takes whatever is written to it.
             let _ = writeln!(text, "{percent},{diameter}");
         }

@@ -25,6 +25,7 @@
 
 mod burenkova;
 mod comma;
+mod curve_point;
 mod error;
 mod group;
 mod numbers;
@@ -41,6 +42,7 @@ mod surface;
 mod table;
 
 pub use burenkova::UniformityFactors;
+pub use curve_point::CurvePoint;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use group::{FINES_MM, GRAVEL_MM};

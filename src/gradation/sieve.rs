@@ -1,5 +1,6 @@
 //! A sieve curve: how it is made, checked and read.
 
+use super::curve_point::CurvePoint;
 use super::error::Position;
 use super::error::{GradationError, NumberError, TableError};
 use super::segments::cumulative;
@@ -164,12 +165,13 @@ impl Gradation {
         self.tail_percent() / 100.0
     }
 
-    /// The points of the curve for a plot: size (mm), percent finer by mass; sizes never fall.
+    /// The points of the curve for a plot; sizes never fall.
     /// A single size is the two ends of its vertical line.
-    pub fn points(&self) -> Vec<(f64, f64)> {
-        let mut points: Vec<_> = self.size_mm.iter().copied().zip(self.percent.iter().copied()).collect();
+    pub fn points(&self) -> Vec<CurvePoint> {
+        let point = |(&size, &percent): (&f64, &f64)| CurvePoint { size, percent };
+        let mut points: Vec<_> = self.size_mm.iter().zip(&self.percent).map(point).collect();
         if points.len() == 1 {
-            points.insert(0, (self.size_mm[0], 0.0));
+            points.insert(0, CurvePoint { size: self.size_mm[0], percent: 0.0 });
         }
         points
     }

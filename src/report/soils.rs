@@ -2,15 +2,16 @@
 
 use super::figures::{Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION};
 use super::figures::{positive_range, shorten};
+use crate::gradation::CurvePoint;
 
-/// Percent finer by mass against size (mm) for each soil: its name and its points (size, percent), as an SVG
+/// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG
 /// file; with coarse sizes on the left where that is asked for, as in the United States.
 pub fn soils_figure<'a>(
-    soils: impl IntoIterator<Item = (&'a str, &'a [[f64; 2]])>,
+    soils: impl IntoIterator<Item = (&'a str, &'a [CurvePoint])>,
     coarse_left: bool,
 ) -> String {
-    let soils: Vec<(&str, &[[f64; 2]])> = soils.into_iter().collect();
-    let (low, high) = positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|row| row[0])));
+    let soils: Vec<(&str, &[CurvePoint])> = soils.into_iter().collect();
+    let (low, high) = positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|point| point.size)));
     // One size alone has a range all the same.
     let high = if high > low { high } else { 2.0 * low };
     let names: Vec<String> = soils.iter().map(|(name, _)| shorten(name, 40)).collect();
@@ -20,9 +21,10 @@ pub fn soils_figure<'a>(
     let mut figure = Figure::new("Sieve curves", &what, "", x, y).sieves();
     let colours = [BLACK, VERMILLION, BLUE, GREEN, PURPLE, ORANGE, GREY];
     let dashes = [Dash::Solid, Dash::Dashed];
-    for (index, ((_, rows), name)) in soils.iter().zip(&names).enumerate() {
+    for (index, ((_, points), name)) in soils.iter().zip(&names).enumerate() {
         let dash = dashes[index / colours.len() % dashes.len()];
-        let line = Line::of_rows(rows, colours[index % colours.len()]);
+        let points = points.iter().map(|point| (point.size, point.percent)).collect();
+        let line = Line::new(points, colours[index % colours.len()]);
         figure.add(line.dash(dash).label(name));
     }
     figure.file()
@@ -34,11 +36,13 @@ mod tests {
 
     #[test]
     fn every_soil_has_its_curve_and_its_name() {
-        let [fine, coarse] = [[[0.1, 0.0], [1.0, 100.0]], [[1.0, 10.0], [20.0, 100.0]]];
+        let point = |(size, percent)| CurvePoint { size, percent };
+        let [fine, coarse] =
+            [[(0.1, 0.0), (1.0, 100.0)], [(1.0, 10.0), (20.0, 100.0)]].map(|curve| curve.map(point));
         let text = soils_figure([("fine <side>", &fine[..]), ("coarse", &coarse[..])], false);
         assert!(text.starts_with("<?xml") || text.starts_with("<svg"), "{}", &text[..40]);
         assert!(text.contains(">fine &lt;side&gt;<") && text.contains(">coarse<"));
         // One size.
-        assert!(soils_figure([("one", &[[2.0, 100.0]][..])], false).contains("</svg>"));
+        assert!(soils_figure([("one", &[point((2.0, 100.0))][..])], false).contains("</svg>"));
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::case::PackingPlan;
 use crate::constrictions::{CurveError, inscribed};
+use crate::gradation::CurvePoint;
 use crate::outcome::packing::PackingRecord;
 use crate::packing::{Cell, PackReport, Packing};
 
@@ -26,11 +27,7 @@ pub(super) fn record(
         settings.remove(said_apart);
     }
     let guess = |density| -> Result<Vec<[f64; 2]>, CurveError> {
-        Ok(inscribed(&plan.gradation, density)?
-            .points()
-            .into_iter()
-            .map(|(percent, d)| [d, percent])
-            .collect())
+        Ok(inscribed(&plan.gradation, density)?.points().into_iter().map(CurvePoint::row).collect())
     };
     Ok(PackingRecord {
         inscribed: [guess(1.0)?, guess(0.0)?],
@@ -41,7 +38,7 @@ pub(super) fn record(
         cu: plan.gradation.cu(),
         part: plan.part,
         same_shape: None,
-        gradation: plan.gradation.points().into_iter().map(|(d, percent)| [d, percent]).collect(),
+        gradation: plan.gradation.points().into_iter().map(CurvePoint::row).collect(),
         grains: packing.x.len() as u64,
         seed: s.seed,
         friction: s.friction,

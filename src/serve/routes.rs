@@ -20,7 +20,7 @@ use super::samples::SampleTable;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
-use crate::gradation::{Gradation, curves_in_file, soils_in_file};
+use crate::gradation::{CurvePoint, Gradation, curves_in_file};
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
@@ -111,12 +111,10 @@ type Problem = (u16, String);
 
 /// The constriction curves of a filter, loose and dense, by their names; none where the library has none like
 /// it.
-fn of_library(points: &[[f64; 2]]) -> Vec<(String, Vec<[f64; 2]>)> {
-    let Ok(filter) = Gradation::of_rows(points) else { return Vec::new() };
+fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     let curve = |density: LibraryDensity| {
-        let found = LibraryFilter::find(&filter, density).ok()??.found;
-        let name = format!("constrictions, {}, by number", density.name());
-        Some((name, found.curve.points().into_iter().map(|(size, percent)| [size, percent]).collect()))
+        let found = LibraryFilter::find(filter, density).ok()??.found;
+        Some((format!("constrictions, {}, by number", density.name()), found.curve.points()))
     };
     [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
 }
@@ -353,19 +351,19 @@ impl Routes {
     /// The sieve curves of the sheets that are named, in one drawing, and what the library knows of the
     /// filter's constrictions.
     fn curves(&self, request: &Request) -> Result<Answer, Problem> {
-        let (mut soils, mut constrictions) = (Vec::new(), Vec::new());
+        let (mut soils, mut passages) = (Vec::new(), Vec::new());
         for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
             for sheet in request.parameter(name).iter().flat_map(|all| all.split('\n')) {
-                for soil in soils_in_file(&self.path(sheet)?, None).map_err(wrong)? {
+                for (name, curve) in curves_in_file(&self.path(sheet)?, None).map_err(wrong)? {
                     if role == "filter" {
-                        constrictions.extend(of_library(&soil.points));
+                        passages.extend(constrictions(&curve));
                     }
-                    let named = if role.is_empty() { soil.name } else { format!("{role}: {}", soil.name) };
-                    soils.push((named, soil.points));
+                    let named = if role.is_empty() { name } else { format!("{role}: {name}") };
+                    soils.push((named, curve.points()));
                 }
             }
         }
-        soils.extend(constrictions);
+        soils.extend(passages);
         let drawn =
             report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])), false);
         let answer = Answer::new(200, "image/svg+xml", drawn);

@@ -128,7 +128,10 @@ impl Planned {
             let reasons: Vec<String> = rows.iter().take(NAMED).map(why).collect();
             return Err(RunError::Refused(format!("no sample can be walked\n{}", reasons.join("\n"))));
         }
-        let curves: Vec<_> = samples.iter().map(|of| of.curve.points()).collect();
+        let pairs = |sample: &SoilSample| -> Vec<(f64, f64)> {
+            sample.curve.points().iter().map(|point| (point.size, point.percent)).collect()
+        };
+        let curves: Vec<_> = samples.iter().map(pairs).collect();
         let samples_at = shown(&options.samples);
         let work =
             kept::hash_of(&format!("{samples_at} {dispersive} {folders:?} {rows:?} {curves:?} {stated}"));

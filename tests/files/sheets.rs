@@ -427,7 +427,7 @@ fn found(bytes: &[u8], wanted: &Wanted) -> Result<Found, String> {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * b;
         let got = curve.points();
         let same = got.len() == points.len()
-            && got.iter().zip(&points).all(|(g, w)| near(g.0, w.0) && near(g.1, w.1));
+            && got.iter().zip(&points).all(|(g, w)| near(g.size, w.0) && near(g.percent, w.1));
         if !same {
             return Err(format!("{}: {got:?} for {points:?}", soil.name()));
         }

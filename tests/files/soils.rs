@@ -50,7 +50,7 @@ fn complaint(name: &str, expected: &str) -> Option<String> {
         let found = curve.points();
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b.abs().max(1e-9);
         let same = found.len() == top + 1
-            && found.iter().zip(&wanted).all(|(f, w)| close(f.0, w.0) && close(f.1, w.1));
+            && found.iter().zip(&wanted).all(|(f, w)| close(f.size, w.0) && close(f.percent, w.1));
         let named = wanted_name.trim();
         if !same || (!named.is_empty() && soil.name() != named) {
             return Some(format!("{:?}: {found:?}", soil.name()));

@@ -398,7 +398,7 @@ fn the_first_printed_sheet_is_complete() {
                     continuing erosion; the finest constriction is 0.05 mm. A hydrometer test would decide";
         let made_up = (1..=findings).map(|n| format!("{long} ({n})."));
         plan.outcome.warnings = made_up.chain(pair.warnings).take(findings).collect();
-        let rows = |soil: &Gradation| soil.points().iter().map(|&(size, percent)| [size, percent]).collect();
+        let rows = |soil: &Gradation| soil.points().iter().map(|point| point.row()).collect();
         (plan.outcome.inputs.base.gradation, plan.outcome.inputs.filter.gradation) =
             (rows(base), rows(filter));
         let cover = "[about]\nproject = \"Main dam, raising, zone 2B\"\nnumber = \"D-2031\"\npurpose = \"Design of \

@@ -129,7 +129,8 @@ pub fn measure<'py>(
     }
     arrays.set_item("throat.coords", of_rows(py, centre_mm)?)?;
     arrays.set_item("throat.diameter", diameter_mm.into_pyarray(py))?;
-    let (percent, size): (Vec<f64>, Vec<f64>) = curve.points().into_iter().unzip();
+    let (percent, size): (Vec<f64>, Vec<f64>) =
+        curve.points().into_iter().map(|point| (point.percent, point.size)).unzip();
     arrays.set_item("csd.percent_smaller", percent.into_pyarray(py))?;
     arrays.set_item("csd.diameter", size.into_pyarray(py))?;
     Ok((arrays, summary))

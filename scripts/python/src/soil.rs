@@ -3,7 +3,7 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use voidwalk::constrictions::{self, CurveUnit};
-use voidwalk::gradation::{self, curves_in_file};
+use voidwalk::gradation::{self, CurvePoint, curves_in_file};
 use voidwalk::scene::Density;
 
 use crate::arrays::column;
@@ -38,9 +38,10 @@ pub struct Gradation {
 
 type Points<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
-fn points(py: Python<'_>, points: Vec<(f64, f64)>) -> Points<'_> {
-    let (first, second): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-    (first.into_pyarray(py).into_any(), second.into_pyarray(py).into_any())
+/// Sizes and percents.
+fn arrays(py: Python<'_>, points: Vec<CurvePoint>) -> Points<'_> {
+    let (sizes, percents): (Vec<f64>, Vec<f64>) = points.into_iter().map(|p| (p.size, p.percent)).unzip();
+    (sizes.into_pyarray(py).into_any(), percents.into_pyarray(py).into_any())
 }
 
 #[pymethods]
@@ -106,7 +107,7 @@ impl Gradation {
     }
 
     fn points<'py>(&self, py: Python<'py>) -> Points<'py> {
-        points(py, self.inner.points())
+        arrays(py, self.inner.points())
     }
 
     /// Base particles by Eq. (2), with this gradation as the base.
@@ -179,6 +180,7 @@ impl Curve {
     }
 
     fn points<'py>(&self, py: Python<'py>) -> Points<'py> {
-        points(py, self.inner.points())
+        let (sizes, percents) = arrays(py, self.inner.points());
+        (percents, sizes)
     }
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::table::Soil;
+use crate::gradation::curve_point::CurvePoint;
 use crate::gradation::error::GradationError;
 use crate::gradation::group::{FINES_MM, GRAVEL_MM};
 
@@ -13,7 +14,8 @@ pub struct SoilSummary {
     /// What its sheet or column calls it, or the file.
     pub name: String,
     /// Opening (mm) and percent finer by mass; sizes rise.
-    pub points: Vec<[f64; 2]>,
+    #[cfg_attr(test, schemars(with = "Vec<[f64; 2]>"))]
+    pub points: Vec<CurvePoint>,
     /// D5 (mm); this and the others are `None` where they lie below the finest opening.
     pub d5_mm: Option<f64>,
     /// D10 (mm).
@@ -60,7 +62,7 @@ impl SoilSummary {
         let gravel_percent = curve.percent_finer_if_known(GRAVEL_MM).map(|percent| 100.0 - percent);
         Ok(SoilSummary {
             name: soil.name().to_owned(),
-            points: curve.points().into_iter().map(|(size, percent)| [size, percent]).collect(),
+            points: curve.points(),
             d5_mm: d(5.0),
             d10_mm: d(10.0),
             d15_mm: d(15.0),

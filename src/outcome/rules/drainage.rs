@@ -137,7 +137,7 @@ pub fn band(inputs: &RuleInputs) -> Judged {
         Some((percent, most / least))
     };
     // Between two points of any of the curves the ratio has no extreme.
-    let of_curve = |curve: &&Gradation| curve.points().into_iter().map(|(_, percent)| percent);
+    let of_curve = |curve: &&Gradation| curve.points().into_iter().map(|point| point.percent);
     let percents = inputs.filter_curves.iter().flat_map(of_curve).chain(BAND);
     let within = percents.filter(|percent| (BAND[0]..=BAND[1]).contains(percent));
     let Some((percent, ratio)) = within.filter_map(widest).max_by(|a, b| a.1.total_cmp(&b.1)) else {

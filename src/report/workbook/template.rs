@@ -62,6 +62,6 @@ mod tests {
         assert_eq!(names, ["Base/Sample 1 (% finer)", "Base/Sample 2 (% finer)", "Filter"]);
         assert_eq!(soils[0].points, soils[1].points);
         // What all pass is one row: the finest of them.
-        assert_eq!((soils[0].points.len(), soils[0].points[0]), (8, [0.075, 38.0]));
+        assert_eq!((soils[0].points.len(), soils[0].points[0].row()), (8, [0.075, 38.0]));
     }
 }

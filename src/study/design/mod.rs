@@ -231,6 +231,7 @@ fn limits(options: &DesignOptions) -> crate::case::ResourceLimits {
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     let of_row = |row: &Row| {
         let base = row.stated.gradation.points();
+        let base: Vec<_> = base.iter().map(|point| (point.size, point.percent)).collect();
         let (thickness, d85) = (row.wanted.thickness, row.d85_mm);
         let sizes = (row.inverse, row.filter_has_size);
         format!("{} {thickness:?} {base:?} {d85:?} {sizes:?}", row.case.fingerprint())

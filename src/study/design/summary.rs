@@ -9,7 +9,7 @@ use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
 use crate::case::Input;
-use crate::gradation::Gradation;
+use crate::gradation::{CurvePoint, Gradation};
 use crate::outcome::design::band::{Band, SetBy};
 use crate::outcome::design::products::fits;
 use crate::outcome::design::{
@@ -363,7 +363,7 @@ fn inputs(row: &Row) -> Vec<InputFile> {
 }
 
 fn pairs(soil: &Gradation) -> Vec<[f64; 2]> {
-    soil.points().into_iter().map(|(size, percent)| [size, percent]).collect()
+    soil.points().into_iter().map(CurvePoint::row).collect()
 }
 
 fn base(row: &Row, name: &str) -> BaseStated {

@@ -1,6 +1,6 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
-use crate::gradation::{FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
+use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 use crate::outcome::design::DesignFinding;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
@@ -121,7 +121,7 @@ impl ReadCurve {
 }
 
 fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
-    curve.points().into_iter().map(|(size, percent)| [size, percent]).collect()
+    curve.points().into_iter().map(CurvePoint::row).collect()
 }
 
 /// What a reader must know of a base of these curves, with the name of the curve where there are several.
