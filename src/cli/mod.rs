@@ -47,7 +47,7 @@ use std::process::ExitCode;
 
 use clap::FromArgMatches;
 
-use crate::run::Exit;
+use crate::run::{Exit, RunError};
 use args::{Arguments, Command};
 use start::START;
 pub use start::Start;
@@ -65,7 +65,11 @@ fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
     let read = command.clone().try_get_matches_from(words);
     read.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| {
         let error = mistakes::explained(error, &command, words);
-        let _ = error.print();
+        if error.use_stderr() {
+            let _ = error.print();
+        } else {
+            print::by_stdout(|| error.print());
+        }
         u8::try_from(error.exit_code()).unwrap_or(Exit::Refused.code())
     })
 }
@@ -80,11 +84,19 @@ pub fn main_with(start: Start) -> u8 {
     crate::store::platform::signals::outlive_large_files();
     crate::store::platform::allocator::keep_memory();
     let words = &START.get_or_init(|| start).words;
-    let arguments = match arguments(words) {
-        Ok(arguments) => arguments,
-        Err(code) => return code,
+    let code = match arguments(words) {
+        Ok(arguments) => told(command(arguments), words),
+        Err(code) => code,
     };
-    let done = match arguments.command {
+    match print::whole_stdout() {
+        Err(lost) if [0, Exit::NotAccepted.code()].contains(&code) => told(Err(lost), words),
+        _ => code,
+    }
+}
+
+/// Runs a command.
+fn command(arguments: Arguments) -> Result<(), RunError> {
+    match arguments.command {
         Command::Run(args) => run::run(&args),
         Command::Judge(args) => judge::judge(&args),
         Command::Compare(args) => compare::compare(&args),
@@ -110,7 +122,11 @@ pub fn main_with(start: Start) -> u8 {
             Ok(())
         }
         Command::Man { folder } => shell::man(&folder),
-    };
+    }
+}
+
+/// Tells on stderr why a command ended early: its exit code.
+fn told(done: Result<(), RunError>, words: &[OsString]) -> u8 {
     let Err(error) = done else { return 0 };
     let exit = error.exit();
     let kind = match exit {

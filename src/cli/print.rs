@@ -1,7 +1,8 @@
-//! Printing that outlives a closed pipe.
+//! Printing that outlives a closed pipe, and remembers what else was lost.
 
-use std::io::Write;
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde::Serialize;
 
@@ -11,13 +12,32 @@ use crate::report::figures::visible;
 use crate::run::RunError;
 use crate::store::format::Format;
 
-/// Prints to stdout; a reader that has left is no fault of ours.
+/// The first failure to write to stdout.
+static LOST: OnceLock<String> = OnceLock::new();
+
+/// Prints to stdout; [`whole_stdout`] tells of a failure.
 pub fn to_stdout(text: &str) {
-    let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    by_stdout(|| io::stdout().write_all(text.as_bytes()));
 }
 
-/// Prints to stderr, likewise.
+/// Prints to stdout by a function, likewise.
+pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
+    let printed = print().and_then(|()| io::stdout().flush());
+    // A reader that has left is no fault of ours.
+    if let Some(error) = printed.err().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
+        LOST.get_or_init(|| error.to_string());
+    }
+}
+
+/// Confirms that all of stdout was written.
+///
+/// # Errors
+/// A part of it was not, other than to a closed pipe.
+pub fn whole_stdout() -> Result<(), RunError> {
+    LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
+}
+
+/// Prints to stderr, where nothing can tell of a failure.
 pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }

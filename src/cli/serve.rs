@@ -1,7 +1,7 @@
 //! `voidwalk serve`: the page on this machine.
 
 use super::args::ServeArgs;
-use super::print::{plain, shown, to_stdout};
+use super::print::{plain, shown, to_stdout, whole_stdout};
 use super::progress::stop_on_signals;
 use super::report::page;
 use super::run::command_line;
@@ -27,5 +27,7 @@ pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
         "open {address}\nfor this machine alone; whoever has the address can use it. Sheets and results are \
          in {folder}; Ctrl-C ends it\n"
     ));
+    // Nobody else is told the address.
+    whole_stdout()?;
     server.run(&stop)
 }

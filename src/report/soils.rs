@@ -11,7 +11,8 @@ pub fn soils_figure<'a>(
     coarse_left: bool,
 ) -> String {
     let soils: Vec<(&str, &[CurvePoint])> = soils.into_iter().collect();
-    let (low, high) = positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|point| point.size)));
+    let (low, high) =
+        positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|point| point.size)));
     // One size alone has a range all the same.
     let high = if high > low { high } else { 2.0 * low };
     let names: Vec<String> = soils.iter().map(|(name, _)| shorten(name, 40)).collect();

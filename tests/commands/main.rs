@@ -13,6 +13,8 @@ mod designs;
 mod first_hour;
 mod formats;
 mod full_disk;
+#[cfg(target_os = "linux")]
+mod full_stdout;
 mod graph;
 mod hostile_names;
 mod judge;

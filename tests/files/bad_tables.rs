@@ -104,7 +104,11 @@ fn unusual_curves_are_read() {
         "percent_smaller,diameter_mm\n0,0.1\n0,0.25\n50,0.5\n50,0.5\n100,1\n100,2\n",
     ] {
         let curve = Curve::from_csv_text("t.csv", text.as_bytes()).unwrap();
-        assert_eq!(curve.points().into_iter().map(|point| point.row()).collect::<Vec<_>>(), expected, "{text:?}");
+        assert_eq!(
+            curve.points().into_iter().map(|point| point.row()).collect::<Vec<_>>(),
+            expected,
+            "{text:?}"
+        );
     }
 }
 

@@ -96,7 +96,10 @@ pub fn sieve(bytes: &[u8]) {
     for d0_mm in [None, Some(0.05)] {
         let Some(gradation) = shown(Gradation::from_sieve_text("sieve.csv", bytes, d0_mm)) else { continue };
         let points = gradation.points();
-        assert!(points.windows(2).all(|pair| pair[0].size < pair[1].size && pair[0].percent <= pair[1].percent), "{points:?}");
+        assert!(
+            points.windows(2).all(|pair| pair[0].size < pair[1].size && pair[0].percent <= pair[1].percent),
+            "{points:?}"
+        );
         for percent in [0.0, 15.0, 50.0, 85.0, 100.0] {
             let size = gradation.d(percent);
             assert!(size.is_none_or(|size| size.is_finite() && size > 0.0), "D{percent} = {size:?}");
@@ -116,7 +119,11 @@ pub fn soil(bytes: &[u8]) {
         assert!(soil.name().len() < LONGEST_MESSAGE, "{} bytes", soil.name().len());
         shown(Soil::one("soils", bytes, Some(soil.name())));
         if let Some(summary) = shown(SoilSummary::of(&soil, None)) {
-            assert!(summary.points.windows(2).all(|pair| pair[0].percent <= pair[1].percent), "{:?}", summary.points);
+            assert!(
+                summary.points.windows(2).all(|pair| pair[0].percent <= pair[1].percent),
+                "{:?}",
+                summary.points
+            );
         }
     }
 }
