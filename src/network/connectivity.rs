@@ -17,6 +17,7 @@
 //!   possible exits brought nothing nearer, those that leave it as near are taken too, until one does.
 //!   A search that is stuck all the same is begun again from elsewhere: for a while some of what leads
 //!   farther away is taken. Otherwise one replicate would have a network and another none.
+//! - A search that has not ended after [`MOST_PROPOSALS`] is completed along chains ([`chains`]).
 //! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where
 //!   connectivities below 4 are wanted. The paper's Table 3 speaks for two: a void that one particle can
 //!   close retains so much that those of connectivity 4 would hold three times as much each as those of 5,
@@ -28,6 +29,8 @@
 //!
 //! Constrictions that are kept have the diameters that the cubic lattice has for the same seed; diagonals are
 //! further independent draws from the same curve. Layers are those of the lattice: voids with the same z.
+
+mod chains;
 
 use rand::Rng;
 
@@ -67,6 +70,9 @@ const LEAST_PATIENCE: u64 = 100_000;
 
 /// How often a search that is stuck is begun again from elsewhere.
 const SHAKES: u32 = 60;
+
+/// Proposals of all searches together, some seconds; what is missing then is changed along chains.
+const MOST_PROPOSALS: u64 = 50_000_000;
 
 /// Of so many proposals that lead farther away one is taken when a search begins elsewhere.
 const WORSE_IN: u64 = 4;
@@ -226,6 +232,8 @@ struct PossibleExits {
     kept_exits: u32,
     /// For each k: voids with connectivity up to k, less those wanted.
     surplus: [i64; MOST + 1],
+    /// Proposals that may still be made.
+    proposals_left: u64,
 }
 
 impl PossibleExits {
@@ -237,6 +245,7 @@ impl PossibleExits {
             entrances: vec![3; voids],
             kept_exits: KEPT_EXITS,
             surplus: [0; MOST + 1],
+            proposals_left: MOST_PROPOSALS,
         }
     }
 
@@ -299,16 +308,17 @@ impl PossibleExits {
         let mut draws =
             Key { seed, purpose: Purpose::Connectivity, run: 0, increment: 0, chunk: 0 }.generator();
         self.search(&mut draws, PATIENCE);
-        let mut found = self.check(&counts);
         for _ in 0..SHAKES {
-            if found.is_ok() {
+            if self.check(&counts).is_ok() || self.proposals_left == 0 {
                 break;
             }
             self.shake(&mut draws);
             self.search(&mut draws, PATIENCE_AGAIN);
-            found = self.check(&counts);
         }
-        found
+        if self.check(&counts).is_err() {
+            self.change_along_chains(&mut draws);
+        }
+        self.check(&counts)
     }
 
     /// How far the distribution is from the wanted one.
@@ -336,7 +346,9 @@ impl PossibleExits {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let mut distance = self.distance();
         let mut without_progress = 0;
-        while distance > 0 && without_progress < patience * possible + LEAST_PATIENCE {
+        let most = patience * possible + LEAST_PATIENCE;
+        while distance > 0 && without_progress < most && self.proposals_left > 0 {
+            self.proposals_left -= 1;
             without_progress += 1;
             let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
             if change < 0 {

@@ -135,6 +135,34 @@ fn what_one_seed_reaches_is_reached_by_others() {
 }
 
 #[test]
+fn a_distribution_that_is_hard_to_draw_is_reached_along_chains() {
+    let shape = [40, 40, 60];
+    for percent in [vec![(5, 50.0), (7, 50.0)], TABLE_3.to_vec()] {
+        let wanted = Connectivity::new(&percent).unwrap();
+        let mut exits = PossibleExits { proposals_left: 0, ..PossibleExits::cubic(shape) };
+        exits.change_to(&wanted, 1).unwrap();
+        assert_eq!(exits.distance(), 0);
+        let again = || {
+            let mut exits = PossibleExits { proposals_left: 0, ..PossibleExits::cubic(shape) };
+            exits.change_to(&wanted, 1).unwrap();
+            exits.present
+        };
+        assert!(exits.present == again());
+        for void in 0..96_000 {
+            assert!(exits.present[void].count_ones() >= KEPT_EXITS && exits.entrances[void] > 0);
+        }
+    }
+}
+
+#[test]
+fn a_search_makes_no_more_proposals_than_it_may() {
+    let impossible = Connectivity::new(&[(12, 100.0)]).unwrap();
+    let mut exits = PossibleExits { proposals_left: 1000, ..PossibleExits::cubic([6, 6, 6]) };
+    assert!(exits.change_to(&impossible, 1).is_err());
+    assert_eq!(exits.proposals_left, 0);
+}
+
+#[test]
 fn all_six_is_the_cubic_lattice() {
     let shape = [5, 4, 6];
     let network = connected(shape, 2, &[(6, 100.0)]).unwrap();
