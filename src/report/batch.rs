@@ -136,8 +136,8 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
             @for row in batch.governing(&filter.name) { li { (governs(folder, row, batch.inches)) } }
             @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
-                li { "An envelope of " (filter.curves.len()) " curves: retention by the coarsest, drainage \
-                    by the finest." }
+                li { "An envelope of " (filter.curves.len()) " curves: the worst of them counts for each \
+                    rule." }
             }
         }
     }

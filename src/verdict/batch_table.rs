@@ -30,7 +30,7 @@ impl BatchFilter {
         let mut said = vec![format!("{name}: {}", counts_in_words(rows, name))];
         if curves.len() > 1 {
             said.push(format!(
-                "an envelope of {} curves ({}): retention by the coarsest, drainage by the finest",
+                "an envelope of {} curves ({}): the worst of them counts for each rule",
                 curves.len(),
                 curves.join(", ")
             ));

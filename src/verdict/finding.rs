@@ -547,11 +547,6 @@ findings! {
         "envelope", "rules.md",
         "The {soil} has {curves:curve} ({names}), taken as the envelope of one soil.",
         to do "FILE#NAME takes one of them.";
-    /// A base curve with a stricter limit than the finest.
-    stricter_curve(curve: Text, limit: Mm, of_finest: Mm): Practice, Unsafe, Note;
-        "envelope", "rules.md",
-        "The base curve {curve} allows a D15F of {limit}, less than the {of_finest} of the finest curve, as \
-         its fines put it into another category.";
     /// A finest part of the filter that is not counted.
     pan_of_filter(share: Percent): Filter, Unsafe, Note;
         "finest part", "soils.md",

@@ -4,7 +4,7 @@ use super::entry::Finding;
 use super::finding;
 use super::words::capital;
 use crate::gradation::Gradation;
-use crate::outcome::rules::{BaseSoil, NamedCurve, Sides};
+use crate::outcome::rules::{BaseSoil, NamedCurve};
 use crate::outcome::three;
 
 /// Two tables that can hardly be a base and its filter.
@@ -113,11 +113,17 @@ impl Mistake {
         })
     }
 
-    /// The same of two envelopes: of the finest base and the coarsest filter, so that nothing is refused
-    /// which one pair of their curves makes sensible.
+    /// The same of two envelopes: of every base and the coarsest filter, so that nothing is refused which one
+    /// pair of their curves makes sensible.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
-        let sides = Sides::of(bases, filters);
-        Self::find(&bases.get(sides.finest_base)?.1, &filters.get(sides.coarsest_filter)?.1, false)
+        let d15 = |curve: &NamedCurve| curve.1.d(15.0).unwrap_or(0.0);
+        let (_, coarsest) = filters.iter().max_by(|a, b| d15(a).total_cmp(&d15(b)))?;
+        let mut all = Vec::new();
+        for (_, base) in bases {
+            all.push(Self::find(base, coarsest, false)?);
+        }
+        let refused = all.iter().position(|of| !of.is_refused()).unwrap_or(0);
+        all.into_iter().nth(refused)
     }
 
     /// Whether two tables are refused for it, unless whoever names them says that they are as given.

@@ -80,7 +80,7 @@ pub const RULES: &[FilterRule] = &[
                  9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
                  Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
                  (2013), p. 3315",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: retention::sherard_dunnigan,
     },
     FilterRule {
@@ -96,7 +96,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::Size,
         source: FELL,
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: retention::no_erosion,
     },
     FilterRule {
@@ -114,7 +114,7 @@ pub const RULES: &[FilterRule] = &[
         source: "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
                  9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
                  (RMC-CPD-2023-04), chapter Foster and Fell",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: retention::continuing,
     },
     FilterRule {
@@ -129,7 +129,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::One,
         source: "Terzaghi, as stated by Shire & O'Sullivan, section 2",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: retention::terzaghi,
     },
     FilterRule {
@@ -146,7 +146,7 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::Percent,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                  Constricted Exit, after Fell and Foster",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: exit::constricted,
     },
     FilterRule {
@@ -162,7 +162,7 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::Size,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  USBR (2011) and NRCS (2017)",
-        pairing: Pairing::FineFilterCoarseBase,
+        pairing: Pairing::EachPair,
         judge: drainage::permeability,
     },
     FilterRule {
@@ -178,7 +178,7 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::Size,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  EM 1110-2-1901 (2005)",
-        pairing: Pairing::FineFilterCoarseBase,
+        pairing: Pairing::EachPair,
         judge: drainage::least_permeability,
     },
     FilterRule {
@@ -238,7 +238,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::One,
         source: OURS,
-        pairing: Pairing::EachFilter,
+        pairing: Pairing::AllFilters,
         judge: drainage::band,
     },
     FilterRule {
@@ -331,7 +331,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::One,
         source: "Kenney et al., as stated by Shire & O'Sullivan, section 2",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: walk::largest_passing,
     },
     FilterRule {
@@ -346,7 +346,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 14(a)",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: walk::paper_no_erosion,
     },
     FilterRule {
@@ -361,7 +361,7 @@ pub const RULES: &[FilterRule] = &[
         at_least: false,
         unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 15",
-        pairing: Pairing::CoarseFilterFineBase,
+        pairing: Pairing::EachPair,
         judge: walk::paper_continuing,
     },
 ];

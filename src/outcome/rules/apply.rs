@@ -1,13 +1,11 @@
 //! Every rule, applied to two soils, or to two envelopes of curves.
 
-use std::cmp::Ordering::Equal;
-
-use super::all::RULES;
+use super::all::{DESIGN, RULES};
 use super::authority::Authority;
 use super::base::BaseSoil;
-use super::rule::{FilterRule, Pairing, RuleInputs, RuleUnit};
+use super::rule::{FilterRule, Judged, Pairing, RuleInputs, RuleUnit};
 use crate::gradation::Gradation;
-use crate::outcome::applied::{AppliedRule, ValueBound};
+use crate::outcome::applied::{AppliedRule, RuleRole, ValueBound, WithoutFiner};
 use crate::outcome::rule_note::RuleText;
 
 /// Applies every rule.
@@ -50,101 +48,141 @@ pub fn is_stated_by(rule: &AppliedRule, by: Authority) -> bool {
 /// A curve of a soil, with its name.
 pub type NamedCurve = (String, Gradation);
 
-/// Which curves of a filter and a base are their finest and coarsest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sides {
-    /// The filter with the minimum D15F.
-    pub finest_filter: usize,
-    /// The filter with the maximum D15F.
-    pub coarsest_filter: usize,
-    /// The base with the minimum D85B after regrading.
-    pub finest_base: usize,
-    /// The base with the maximum D15B before regrading.
-    pub coarsest_base: usize,
-}
-
-impl Sides {
-    /// Of these curves, of which there is at least one each. A size in a finest tail is finer than any.
-    pub fn of(bases: &[NamedCurve], filters: &[NamedCurve]) -> Self {
-        let sizes = |curves: &[NamedCurve], size: &dyn Fn(&Gradation) -> Option<f64>| -> Vec<f64> {
-            curves.iter().map(|(_, curve)| size(curve).unwrap_or(0.0)).collect()
-        };
-        let d15f = sizes(filters, &|curve| curve.d(15.0));
-        let d85b = sizes(bases, &|curve| BaseSoil::of(curve, false).gradation.d(85.0));
-        let d15b = sizes(bases, &|curve| curve.d(15.0));
-        let least = |sizes: &[f64]| (0..sizes.len()).min_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
-        // The first of equals, as for the least.
-        let most = |sizes: &[f64]| (0..sizes.len()).rev().max_by(|&a, &b| sizes[a].total_cmp(&sizes[b]));
-        Self {
-            finest_filter: least(&d15f).unwrap_or(0),
-            coarsest_filter: most(&d15f).unwrap_or(0),
-            finest_base: least(&d85b).unwrap_or(0),
-            coarsest_base: most(&d15b).unwrap_or(0),
-        }
-    }
-}
-
-/// Applies every rule to the curves of a filter and of a base: each to those that it is for, named by
-/// them.
+/// Applies every rule to the curves of a filter and of a base, of which there is at least one each: the
+/// curves that keep it worst count, and it is named by them.
 pub fn apply_to_envelopes(
     bases: &[NamedCurve],
     filters: &[NamedCurve],
     dispersive: bool,
     joint_mm: Option<f64>,
 ) -> Vec<AppliedRule> {
-    let sides = Sides::of(bases, filters);
+    apply_and_decide(bases, filters, dispersive, joint_mm).0
+}
+
+/// The same, and the places of the filter and of the base that keep the limit of design worst.
+pub fn apply_and_decide(
+    bases: &[NamedCurve],
+    filters: &[NamedCurve],
+    dispersive: bool,
+    joint_mm: Option<f64>,
+) -> (Vec<AppliedRule>, [usize; 2]) {
+    let soils: Vec<BaseSoil> = bases.iter().map(|(_, base)| BaseSoil::of(base, false)).collect();
     let every: Vec<&Gradation> = filters.iter().map(|(_, curve)| curve).collect();
     let inputs = |filter: usize, base: usize| RuleInputs {
         filter_curves: if filters.len() > 1 { every.clone() } else { Vec::new() },
         dispersive,
         joint_mm,
-        ..RuleInputs::of_soils(&bases[base].1, &filters[filter].1)
+        ..RuleInputs::with_soil(&bases[base].1, soils[base].clone(), &filters[filter].1)
     };
+    let mut worst: Vec<Option<Worst>> = RULES.iter().map(|_| None).collect();
+    // Of equal results that of the finest base is named.
+    let d85b = |base: &usize| soils[*base].gradation.d(85.0).unwrap_or(0.0);
+    let mut finest_first: Vec<usize> = (0..bases.len()).collect();
+    finest_first.sort_by(|a, b| d85b(a).total_cmp(&d85b(b)));
+    let places = finest_first.iter().flat_map(|&base| (0..filters.len()).map(move |filter| (filter, base)));
+    for (filter, base) in places {
+        let inputs = inputs(filter, base);
+        for (rule, worst) in RULES.iter().zip(&mut worst) {
+            let is_read = match rule.pairing {
+                Pairing::EachPair => true,
+                Pairing::EachFilter => base == 0,
+                Pairing::AllFilters => [filter, base] == [0, 0],
+            };
+            if is_read {
+                Worst::count(worst, rule, &inputs, [filter, base]);
+            }
+        }
+    }
     let name = |curves: &[NamedCurve], at: usize| match curves.len() {
         1 => String::new(),
         _ => curves[at].0.clone(),
     };
-    let one = |rule: &FilterRule, filter: usize, base: usize| {
-        let applied = applied(rule, &inputs(filter, base))?;
-        let of_both = rule.pairing != Pairing::EachFilter;
-        let base_curve = if of_both { name(bases, base) } else { String::new() };
-        Some(AppliedRule { filter_curve: name(filters, filter), base_curve, ..applied })
+    let decides = RULES.iter().zip(&worst).find(|(rule, _)| rule.id == DESIGN);
+    let at = decides.and_then(|(_, worst)| worst.as_ref()).map_or([0, 0], |worst| worst.at);
+    let named = |(rule, worst): (&FilterRule, Option<Worst>)| {
+        let worst = worst?;
+        let [filter, base] = worst.at;
+        let applied = record(rule, false, worst.into_judged(rule));
+        let [filter_curve, base_curve] = match rule.pairing {
+            Pairing::EachPair => [name(filters, filter), name(bases, base)],
+            Pairing::EachFilter => [name(filters, filter), String::new()],
+            Pairing::AllFilters => Default::default(),
+        };
+        Some(AppliedRule { filter_curve, base_curve, ..applied })
     };
-    let of = |rule: &FilterRule| match rule.pairing {
-        Pairing::CoarseFilterFineBase => one(rule, sides.coarsest_filter, sides.finest_base),
-        Pairing::FineFilterCoarseBase => one(rule, sides.finest_filter, sides.coarsest_base),
-        Pairing::EachFilter => {
-            let each = (0..filters.len()).filter_map(|filter| one(rule, filter, sides.finest_base));
-            let each: Vec<AppliedRule> = each.collect();
-            let left = each.iter().filter(|of| of.is_broken()).filter_map(|of| of.without_finer);
-            let coarsest = left.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
-            let worst = each.into_iter().min_by(|a, b| margin(a).partial_cmp(&margin(b)).unwrap_or(Equal))?;
-            // Any curve of the envelope may be delivered, and be left without its finer part.
-            Some(AppliedRule { without_finer: coarsest.or(worst.without_finer), ..worst })
+    (RULES.iter().zip(worst).filter_map(named).collect(), at)
+}
+
+/// The worst result of a rule among curves.
+struct Worst {
+    judged: Judged,
+    margin: (u8, f64, f64),
+    /// The least limit of all pairs.
+    least: f64,
+    /// The filter that is coarsest without a finer part that it may lose: any curve may be delivered.
+    lost: Option<WithoutFiner>,
+    /// Places of filter and base.
+    at: [usize; 2],
+}
+
+impl Worst {
+    /// Counts one more pair; of equals the first stays.
+    fn count(worst: &mut Option<Self>, rule: &FilterRule, inputs: &RuleInputs, at: [usize; 2]) {
+        let Some(judged) = judged(rule, inputs) else { return };
+        let margin = margin(rule, &judged);
+        let limit = judged.limit.filter(|_| judged.applies).unwrap_or(f64::INFINITY);
+        let lost = judged.without_finer.filter(|_| judged.met == Some(false));
+        let Some(before) = worst else {
+            *worst = Some(Self { judged, margin, least: limit, lost, at });
+            return;
+        };
+        let both = [before.lost, lost].into_iter().flatten();
+        before.least = before.least.min(limit);
+        before.lost = both.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
+        if margin < before.margin {
+            (before.judged, before.margin, before.at) = (judged, margin, at);
         }
-    };
-    RULES.iter().filter_map(of).collect()
+    }
+
+    /// What the envelope has by this rule.
+    fn into_judged(self, rule: &FilterRule) -> Judged {
+        let Self { mut judged, least, lost, .. } = self;
+        judged.without_finer = lost.or(judged.without_finer);
+        // Where one curve leaves the limit open, it is no more than another's.
+        let is_lower = judged.limit.is_some_and(|limit| least < limit);
+        if judged.applies && judged.met.is_none() && is_lower && !rule.at_least {
+            (judged.limit, judged.limit_at_most) = (Some(least), true);
+        }
+        judged
+    }
 }
 
 /// How well a rule is kept: the worst first.
-fn margin(rule: &AppliedRule) -> (u8, f64) {
-    let class = match (rule.met, rule.applies) {
-        (Some(false), _) => 0,
-        (None, true) => 1,
-        (Some(true), _) => 2,
-        (None, false) => 3,
+fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
+    // A boundary of erosion that tests did not find excludes less than one that is not reached.
+    let is_open = judged.applies || judged.needs.is_some() || rule.role == RuleRole::Continuation;
+    let class = match judged.met {
+        Some(false) => 0,
+        None if is_open => 1,
+        Some(true) => 2,
+        None => 3,
     };
-    let over = match (rule.value, rule.limit) {
+    let over = match (judged.value, judged.limit) {
         (Some(value), Some(limit)) if rule.at_least => value / limit,
         (Some(value), Some(limit)) => limit / value,
         (Some(value), None) => -value,
         _ => 0.0,
     };
-    (class, over)
+    (class, over, judged.limit.filter(|_| !rule.at_least).unwrap_or(f64::INFINITY))
 }
 
 /// One rule, applied; `None` where nobody asked for it.
 fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
+    Some(record(rule, inputs.scale_free, judged(rule, inputs)?))
+}
+
+/// What one rule finds, with its result; `None` where nobody asked for it.
+fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     let judged = (rule.judge)(inputs);
     if judged.is_left_out {
         return None;
@@ -157,7 +195,13 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
     // So is one of whose value only a bound is known: met where the bound itself meets it, or broken by it.
     let is_surely = |bound: ValueBound| (bound == ValueBound::AtMost) != rule.at_least;
     let met = met.filter(|met| value_bound.is_none_or(|bound| *met == is_surely(bound)));
-    Some(AppliedRule {
+    let met = met.filter(|_| judged.applies);
+    Some(Judged { value_bound, met, ..judged })
+}
+
+/// A rule as it is recorded.
+fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
+    AppliedRule {
         id: rule.id.into(),
         name: rule.name(),
         authority: rule.authority.into(),
@@ -165,17 +209,17 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
         applies: judged.applies,
         quantity: rule.quantity.clone(),
         value: judged.value,
-        value_bound,
+        value_bound: judged.value_bound,
         limit: judged.limit,
         unit: match rule.unit {
-            RuleUnit::Size if inputs.scale_free => "D0F".into(),
+            RuleUnit::Size if scale_free => "D0F".into(),
             RuleUnit::Size => "mm".into(),
             RuleUnit::One => String::new(),
             RuleUnit::Percent => "%".into(),
         },
         at_least: rule.at_least,
         limit_at_most: judged.limit_at_most,
-        met: met.filter(|_| judged.applies),
+        met: judged.met,
         needs: RuleText::Of(judged.needs.into_iter().collect()),
         note: RuleText::Of(judged.notes),
         applies_to: rule.applies_to.into(),
@@ -185,5 +229,5 @@ fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
         speaks_against: rule.role.speaks_against().into(),
         filter_curve: String::new(),
         base_curve: String::new(),
-    })
+    }
 }

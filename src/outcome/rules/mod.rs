@@ -21,7 +21,7 @@ pub use all::{
     TESTS_NO_EROSION,
 };
 pub(crate) use apply::authority_in_brief;
-pub use apply::{NamedCurve, Sides, apply, apply_to_envelopes, authority, is_stated_by};
+pub use apply::{NamedCurve, apply, apply_and_decide, apply_to_envelopes, authority, is_stated_by};
 pub use authority::Authority;
 pub use base::BaseSoil;
 pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};

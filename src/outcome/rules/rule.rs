@@ -48,12 +48,12 @@ impl FilterRule {
 /// Which curves a rule reads where a soil is an envelope of several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pairing {
-    /// The coarsest filter (D15F) and the finest base (D85B after regrading): retention.
-    CoarseFilterFineBase,
-    /// The finest filter (D15F) and the coarsest base (D15B before regrading): permeability.
-    FineFilterCoarseBase,
+    /// Every curve of the filter with every curve of the base; the worst pair counts.
+    EachPair,
     /// Every curve of the filter; the worst of them counts.
     EachFilter,
+    /// All curves of the filter at once.
+    AllFilters,
 }
 
 /// The unit of a rule's value and limit.
@@ -158,12 +158,17 @@ pub struct RuleInputs<'a> {
 impl<'a> RuleInputs<'a> {
     /// Two sieve curves in mm, without a walk.
     pub fn of_soils(base: &'a Gradation, filter: &'a Gradation) -> Self {
+        Self::with_soil(base, BaseSoil::of(base, false), filter)
+    }
+
+    /// The same of a base that was described already.
+    pub(super) fn with_soil(base: &'a Gradation, base_soil: BaseSoil, filter: &'a Gradation) -> Self {
         Self {
             filter,
             filter_is_measured: true,
             base,
             walked_base: base,
-            base_soil: BaseSoil::of(base, false),
+            base_soil,
             scale_free: false,
             filter_curves: Vec::new(),
             dispersive: false,
