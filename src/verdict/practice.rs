@@ -27,11 +27,12 @@ pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule>
 /// What rules that are not kept say of a class. What several authors say alike is one finding, and rules of
 /// retention that agree with the class say nothing: the line of practice has them.
 pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
-    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(|role| broken(rules, role));
-    // Of a filter that is too coarse by design tests have the second limit; one number is one finding.
-    let is_second = met_of(rules, DESIGN) == Some(false) && without_margin(rules).is_none();
-    let tests = rules.iter().filter(|rule| is_second && rule.id == TESTS_NO_EROSION && rule.is_broken());
-    let mut all: Vec<Finding> = each.chain(tests).map(of_rule).filter(|of| of.is_against(verdict)).collect();
+    let of_role = |role| rules.iter().filter(move |rule| rule.role == role && rule.is_broken());
+    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(of_role);
+    // One number is one finding, and of a filter that practice does not call too coarse its line has the tests.
+    let counts = without_margin(rules).is_none() && !broken(rules, RuleRole::Retention).is_empty();
+    let each = each.filter(|rule| rule.id != TESTS_NO_EROSION || counts);
+    let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();
     let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
         listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())
     };

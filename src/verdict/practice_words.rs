@@ -176,24 +176,30 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
     let continuing = broken(rules, RuleRole::Continuation);
+    let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION).or(continuing.first());
+    let beyond_tests = beyond_tests.filter(|_| met_of(rules, DESIGN) == Some(true));
     // Of a filter that fails in any case it is no second fault.
     let washout = washout(rules).filter(|_| retention.is_empty() || standing(rules) == Standing::WashedOut);
     said.push(match design {
-        Some(rule) => match (tests_are_stricter(rules), continuing.first()) {
-            (Some(_), Some(tests)) => {
+        Some(rule) => match (beyond_tests, tests_are_stricter(rules)) {
+            (Some(tests), _) => {
                 let [value, limit] = against(tests, 3);
+                let saw = match tests.role {
+                    RuleRole::Continuation => "beyond which tests saw continuing erosion",
+                    _ => "up to which tests saw no erosion",
+                };
                 format!(
-                    "D15F {value} is more than the {limit} beyond which tests saw continuing erosion (Foster \
-                     and Fell), though within the {} that Sherard and Dunnigan allow (design)",
+                    "D15F {value} is more than the {limit} {saw} (Foster and Fell), though within the {} \
+                     that Sherard and Dunnigan allow (design)",
                     against(rule, 3)[1]
                 )
             }
-            (Some(tests), None) => format!(
+            (None, Some(tests)) => format!(
                 "{}. Foster and Fell put the end of no erosion lower, at {}",
                 of_design(rule),
                 against(tests, 3)[1]
             ),
-            (None, _) => of_design(rule),
+            (None, None) => of_design(rule),
         },
         None => "the limit of design was not applied".into(),
     });
@@ -406,7 +412,7 @@ mod tests {
         assert_eq!(standing(&rules), Standing::Unstable);
         let line = practice_in_words(&rules);
         assert!(
-            line.starts_with("met, without a margin in the strictest limit: D15F ")
+            line.starts_with("met, without a margin in the limit: D15F ")
                 && line.contains("the filter is not internally stable by Kézdi (4.13, limit 4.00)"),
             "{line}"
         );

@@ -202,7 +202,7 @@ mod tests {
             }
             reasons += 1;
             let of = Reason::of(&record);
-            let said = of.as_ref().and_then(|of| of.soil().or(of.other())).cloned().unwrap_or_default();
+            let said = of.as_ref().map(Reason::in_words).unwrap_or_default();
             assert!(!said.is_empty() && !said.contains("NaN"), "{}: {said:?}", record.id);
         }
         assert!(reasons > 30, "{reasons}");

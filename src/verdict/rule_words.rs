@@ -2,6 +2,7 @@
 //! it.
 
 use crate::outcome::apart::{digits_of, value_and_limit};
+use crate::outcome::design::band::retaining;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
 use crate::outcome::rules::{
     DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
@@ -139,7 +140,8 @@ pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
 /// The boundary of no erosion of tests, where a filter within the limit of design lies beyond it.
 pub(super) fn tests_are_stricter(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let tests = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.is_broken())?;
-    (met_of(rules, DESIGN) == Some(true)).then_some(tests)
+    let counts = retaining(rules).any(|rule| rule.id == TESTS_NO_EROSION);
+    (met_of(rules, DESIGN) == Some(true) && !counts).then_some(tests)
 }
 
 /// Who gives the limit of a rule, as a sentence cites it.

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleQuantity, RuleRole};
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
 
 /// What set the answer.
@@ -69,12 +69,15 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
 }
 
 /// The rules by which a filter is to retain its base. Practice goes by the limit of design: the boundary of
-/// no erosion that one author proposed from tests stands in for it only where that is not known.
+/// no erosion that one author proposed from tests counts only where design is not known, and for dispersive
+/// bases, for which that author's limit is the one that is recommended.
 pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
-    let is_design = |rule: &AppliedRule| rule.id == DESIGN && rule.applies && !rule.limit_at_most;
-    let is_known = rules.iter().any(|rule| is_design(rule) && rule.limit.is_some());
-    let stands_in = move |rule: &&AppliedRule| rule.id != TESTS_NO_EROSION || !is_known;
-    rules.iter().filter(|rule| rule.role == RuleRole::Retention).filter(stands_in)
+    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
+    let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
+    let is_dispersive = design.is_some_and(|of| of.note.says(RuleNote::Dispersive));
+    let counts = move |tests: &AppliedRule| is_dispersive || !(is_known || tests.limit_at_most);
+    let retains = move |of: &&AppliedRule| of.role == RuleRole::Retention;
+    rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))
 }
 
 /// A rule of retention that was made for a base, and of whose limit only the most is known: with it the
