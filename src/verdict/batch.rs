@@ -9,7 +9,7 @@ use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
 use crate::gradation::SoilSample;
-use crate::outcome::design::band::retention;
+use crate::outcome::design::band::{retaining, retention};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
 use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY};
@@ -146,16 +146,14 @@ impl BatchRow {
         let rules = &pair.rules;
         // A D15F that lies in a finest tail has the limits in mm all the same.
         let strictest = retention(rules, pair.filter.d15_mm.unwrap_or(1.0));
-        let of_retention = |rule: &&AppliedRule| {
-            rule.applies && rule.role == RuleRole::Retention && rule.quantity != RuleQuantity::D15FOverD85B
-        };
-        let unknown = rules.iter().filter(of_retention).any(|rule| rule.met.is_none());
+        let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
+        let unknown = retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
         let washout = washout(rules);
-        let met = match (broken(rules, RuleRole::Retention).is_empty(), unknown || strictest.is_none()) {
-            _ if washout.is_some() => Some(false),
-            (false, _) => Some(false),
-            (true, true) => None,
-            (true, false) => Some(true),
+        let is_kept = |role| broken(rules, role).is_empty();
+        let met = match is_kept(RuleRole::Retention) && is_kept(RuleRole::Continuation) {
+            false => Some(false),
+            true if washout.is_some() => Some(false),
+            true => (!unknown && strictest.is_some()).then_some(true),
         };
         let unstable = washout.map_or_else(|| "may lose its finer part".into(), |of| of.in_brief());
         let also = [

@@ -58,12 +58,7 @@ impl Outcome {
         let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
         if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
-            // Why stands in the next step where that is to test the pair.
-            said += "; ";
-            match self.names_why_tested() {
-                true => said += self.confidence.words(),
-                false => said += &self.confidence_in_brief(),
-            }
+            said += &format!("; {}", self.confidence_in_brief());
         }
         if self.confidence == Confidence::Contradicted {
             said += &self.openings_of_few().unwrap_or_default();

@@ -9,6 +9,7 @@ use super::rule_words::{
 use super::tested::tested;
 use super::washout::washout;
 use crate::outcome::comparison::ComparedStanding;
+use crate::outcome::design::band::retaining;
 use crate::outcome::record::{AppliedRule, LimitOfDesign, Practice, RuleQuantity, RuleRole, Verdict};
 use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
@@ -17,16 +18,20 @@ pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
 /// The rules of a role that were made for these soils and are not kept.
 pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
-    rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect()
+    match role {
+        RuleRole::Retention => retaining(rules).filter(|rule| rule.is_broken()).collect(),
+        _ => rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect(),
+    }
 }
 
 /// What rules that are not kept say of a class. What several authors say alike is one finding, and rules of
 /// retention that agree with the class say nothing: the line of practice has them.
 pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
-    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(|role| broken(rules, role));
-    // One number is one finding.
-    let repeats = |rule: &&AppliedRule| rule.id == TESTS_NO_EROSION && without_margin(rules).is_some();
-    let each = each.filter(|rule| !repeats(rule));
+    let of_role = |role| rules.iter().filter(move |rule| rule.role == role && rule.is_broken());
+    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(of_role);
+    // One number is one finding, and of a filter that practice does not call too coarse its line has the tests.
+    let counts = without_margin(rules).is_none() && !broken(rules, RuleRole::Retention).is_empty();
+    let each = each.filter(|rule| rule.id != TESTS_NO_EROSION || counts);
     let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();
     let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
         listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())

@@ -3,7 +3,8 @@
 
 use super::practice::{DRAINAGE_UNKNOWN, Standing, broken, severity, standing};
 use super::rule_words::{
-    NoMargin, against, first_clause, is_of_dispersive, listed, met_of, no_margin, without_margin,
+    against, first_clause, has_no_margin, is_of_dispersive, listed, met_of, tests_are_stricter,
+    without_margin,
 };
 use super::tested::{is_beyond_tests, of_tests, tested, tested_words};
 use super::washout::{not_stable, washout};
@@ -174,26 +175,37 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
     let (design, retention) = (find(DESIGN), broken(rules, RuleRole::Retention));
     let mut said = Vec::new();
-    let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION);
+    let continuing = broken(rules, RuleRole::Continuation);
+    let beyond_tests = retention.iter().find(|rule| rule.id == TESTS_NO_EROSION).or(continuing.first());
+    let beyond_tests = beyond_tests.filter(|_| met_of(rules, DESIGN) == Some(true));
     // Of a filter that fails in any case it is no second fault.
     let washout = washout(rules).filter(|_| retention.is_empty() || standing(rules) == Standing::WashedOut);
     said.push(match design {
-        Some(rule) => match beyond_tests.filter(|_| rule.met == Some(true)) {
-            Some(tests) => {
+        Some(rule) => match (beyond_tests, tests_are_stricter(rules)) {
+            (Some(tests), _) => {
                 let [value, limit] = against(tests, 3);
+                let saw = match tests.role {
+                    RuleRole::Continuation => "beyond which tests saw continuing erosion",
+                    _ => "up to which tests saw no erosion",
+                };
                 format!(
-                    "D15F {value} is more than the {limit} up to which tests saw no erosion (Foster and \
-                     Fell), though within the {} that Sherard and Dunnigan allow (design)",
+                    "D15F {value} is more than the {limit} {saw} (Foster and Fell), though within the {} \
+                     that Sherard and Dunnigan allow (design)",
                     against(rule, 3)[1]
                 )
             }
-            None => of_design(rule),
+            (None, Some(tests)) => format!(
+                "{}. Foster and Fell put the end of no erosion lower, at {}",
+                of_design(rule),
+                against(tests, 3)[1]
+            ),
+            (None, None) => of_design(rule),
         },
         None => "the limit of design was not applied".into(),
     });
     // Within the one limit of a dispersive base tests have no other.
     let is_one_limit = without_margin(rules).is_some_and(|rule| rule.met == Some(true));
-    said.extend(of_tests(rules).filter(|_| !is_one_limit));
+    said.extend(of_tests(rules).filter(|_| !is_one_limit && tests_are_stricter(rules).is_none()));
     said.extend(washout.as_ref().map(|of| of.in_words()));
     for rule in retention.iter().filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id)) {
         // What the limit of design says already in millimetres is no second fault.
@@ -216,12 +228,12 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
     if drainage.is_some() && broken(rules, RuleRole::Drainage).is_empty() {
         said.push(DRAINAGE_UNKNOWN.into());
     }
-    let is_met = format!("{}: ", no_margin(rules).map_or("met", NoMargin::met));
+    let is_met = if has_no_margin(rules) { "met, without a margin in the limit: " } else { "met: " };
     let result = match design.and_then(|rule| rule.met) {
-        _ if !retention.is_empty() => "not met: ",
+        _ if !retention.is_empty() || !continuing.is_empty() => "not met: ",
         Some(true) if washout.is_some() => "not met: as placed ",
         _ if washout.is_some() => "not met: ",
-        Some(_) => &is_met,
+        Some(_) => is_met,
         None => "no result: ",
     };
     result.to_owned() + &said.join("; ")
@@ -400,7 +412,7 @@ mod tests {
         assert_eq!(standing(&rules), Standing::Unstable);
         let line = practice_in_words(&rules);
         assert!(
-            line.starts_with("met, without a margin in the strictest limit: D15F ")
+            line.starts_with("met, without a margin in the limit: D15F ")
                 && line.contains("the filter is not internally stable by Kézdi (4.13, limit 4.00)"),
             "{line}"
         );

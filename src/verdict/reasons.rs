@@ -11,7 +11,7 @@ use crate::outcome::record::{Confidence, FindingRecord, Outcome};
 const EVIDENCE_SAFE: &str = "evidence_safe";
 
 /// Reasons that are named in a line.
-pub(super) const REASONS: usize = 3;
+const REASONS: usize = 3;
 
 impl Outcome {
     /// How far the class can be relied on, in words; outside the checked range with the range, or with what
@@ -92,16 +92,6 @@ impl Reason {
             Self::Soil(said, Some([low, high])) => format!("{said}, checked for {low} to {high}"),
             Self::Soil(said, None) | Self::Other(said) => said.clone(),
         }
-    }
-
-    /// What a soil is.
-    pub fn soil(&self) -> Option<&String> {
-        if let Self::Soil(said, _) = self { Some(said) } else { None }
-    }
-
-    /// What else the class hangs on.
-    pub fn other(&self) -> Option<&String> {
-        if let Self::Other(said) = self { Some(said) } else { None }
     }
 }
 
@@ -212,7 +202,7 @@ mod tests {
             }
             reasons += 1;
             let of = Reason::of(&record);
-            let said = of.as_ref().and_then(|of| of.soil().or(of.other())).cloned().unwrap_or_default();
+            let said = of.as_ref().map(Reason::in_words).unwrap_or_default();
             assert!(!said.is_empty() && !said.contains("NaN"), "{}: {said:?}", record.id);
         }
         assert!(reasons > 30, "{reasons}");

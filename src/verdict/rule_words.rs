@@ -2,8 +2,11 @@
 //! it.
 
 use crate::outcome::apart::{digits_of, value_and_limit};
+use crate::outcome::design::band::retaining;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
-use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{
+    DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
+};
 
 /// What a rule of practice found. Every face shows this, and none works it out by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,39 +127,21 @@ pub(crate) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     (design.limit == tests.limit).then_some(design)
 }
 
-/// A strictest limit that is the boundary of no erosion of tests itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NoMargin {
-    /// Design has the same number, as for dispersive bases and for 40 % fines and more.
-    OneNumber,
-    /// The limit of design is above it.
-    DesignIsAbove,
-}
-
-impl NoMargin {
-    /// A limit that is kept all the same.
-    pub fn met(self) -> &'static str {
-        match self {
-            Self::OneNumber => "met, without a margin in the limit",
-            Self::DesignIsAbove => "met, without a margin in the strictest limit",
-        }
-    }
-}
-
-/// Whether the strictest limit of a base has no margin: its limit of design is not below the boundary of no
-/// erosion, which is the lower end of the range in which erosion began in tests, or within that range. `None`
-/// where design is below it, and where one of them is not known.
-pub(super) fn no_margin(rules: &[AppliedRule]) -> Option<NoMargin> {
+/// Whether the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
+/// the lower end of the range in which erosion began in tests, or within that range.
+pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     let limit = |id: &str| {
         let rule = rules.iter().find(|rule| rule.id == id && rule.applies && !rule.limit_at_most)?;
         rule.limit
     };
-    let (design, tests) = (limit(DESIGN)?, limit(TESTS_NO_EROSION)?);
-    match without_margin(rules) {
-        Some(_) => Some(NoMargin::OneNumber),
-        None if design > tests * (1.0 + 1e-9) => Some(NoMargin::DesignIsAbove),
-        None => (design >= tests * (1.0 - 1e-9)).then_some(NoMargin::OneNumber),
-    }
+    limit(DESIGN).zip(limit(TESTS_NO_EROSION)).is_some_and(|(design, tests)| design >= tests * (1.0 - 1e-9))
+}
+
+/// The boundary of no erosion of tests, where a filter within the limit of design lies beyond it.
+pub(super) fn tests_are_stricter(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+    let tests = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.is_broken())?;
+    let counts = retaining(rules).any(|rule| rule.id == TESTS_NO_EROSION);
+    (met_of(rules, DESIGN) == Some(true) && !counts).then_some(tests)
 }
 
 /// Who gives the limit of a rule, as a sentence cites it.
@@ -188,6 +173,7 @@ pub(super) fn cited(id: &str, authority: &str) -> String {
     let which = match id {
         DESIGN => "limit of design",
         TESTS_NO_EROSION => "boundary of no erosion",
+        TESTS_CONTINUING => "boundary of continuing erosion",
         _ => "rule",
     };
     format!("{authority}'s {which}")
@@ -229,7 +215,7 @@ fn short(value: f64) -> String {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::rules::{PERMEABILITY, TESTS_CONTINUING, range_of_tests};
+    use crate::outcome::rules::{PERMEABILITY, range_of_tests};
     use crate::verdict::PairRules;
 
     fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
@@ -242,28 +228,20 @@ mod tests {
     #[test]
     fn a_limit_has_no_margin_where_design_is_not_below_the_tests() {
         let fines = |percent: f64| [(0.001, 0.0), (0.075, percent), (2.0, 100.0)];
-        let no_margin_of = |base: &[(f64, f64)]| no_margin(&rules(base, 0.3));
-        for (percent, wanted) in [
-            (5.0, None),
-            (25.0, None),
-            (38.0, Some(NoMargin::DesignIsAbove)),
-            (60.0, Some(NoMargin::OneNumber)),
-            (90.0, Some(NoMargin::OneNumber)),
-        ] {
+        let no_margin_of = |base: &[(f64, f64)]| has_no_margin(&rules(base, 0.3));
+        for (percent, wanted) in [(5.0, false), (25.0, false), (38.0, true), (60.0, true), (90.0, true)] {
             assert_eq!(no_margin_of(&fines(percent)), wanted, "{percent} % fines");
         }
-        // The same as the range of tests has it, where the strictest limit is at or above its lower end.
+        // The same as the range of tests has it, where the limit of design is at or above its lower end.
         for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
             let base = Gradation::from_points(&fines(percent), None).unwrap();
             let all = rules(&fines(percent), 0.3);
-            let limits = [DESIGN, TESTS_NO_EROSION]
-                .map(|id| all.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap());
+            let design = all.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.limit).unwrap();
             let [low, _] = range_of_tests(percent, base.d(85.0).unwrap());
-            let strictest = limits[0].min(limits[1]);
-            assert_eq!(no_margin(&all).is_some(), strictest >= low * (1.0 - 1e-9), "{percent} % fines");
+            assert_eq!(has_no_margin(&all), design >= low * (1.0 - 1e-9), "{percent} % fines");
         }
         // Of fines that are not known no more is known than the most of the limits.
-        assert_eq!(no_margin_of(&[(0.2, 30.0), (0.5, 85.0), (1.0, 100.0)]), None);
+        assert!(!no_margin_of(&[(0.2, 30.0), (0.5, 85.0), (1.0, 100.0)]));
     }
 
     /// A folder of a run that is read back has the same results.

@@ -10,7 +10,7 @@ use super::quantity::fixed;
 use super::rule_words::{against, bounded, listed, met_of, with_unit, without_margin};
 use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::apart::value_and_limit;
-use crate::outcome::design::band::limits;
+use crate::outcome::design::band::{limits, retention};
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
 use crate::outcome::rules::{
     DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS_NO_EROSION, authority_in_brief,
@@ -38,11 +38,12 @@ pub(super) struct Washout<'r> {
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
-    let limits = limits(rules, d15f.unwrap_or(1.0));
-    let limits: Vec<_> = limits.into_iter().filter(|(rule, _)| rule.role == RuleRole::Retention).collect();
-    let least = limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min);
+    let d15f = d15f.unwrap_or(1.0);
+    let least = retention(rules, d15f).map_or(f64::INFINITY, |(_, limit)| limit);
     let (by, left) = lost(&unstable, least)?;
-    let beyond = limits.iter().filter(|(_, limit)| is_beyond(&left, *limit));
+    let retains = |(rule, _): &(&AppliedRule, f64)| rule.role == RuleRole::Retention;
+    let beyond =
+        limits(rules, d15f).into_iter().filter(retains).filter(|(_, limit)| is_beyond(&left, *limit));
     let boundary = rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.applies);
     Some(Washout {
         continuing: boundary.filter(|rule| rule.limit.is_some_and(|limit| is_beyond(&left, limit))),

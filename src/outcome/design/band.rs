@@ -3,7 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleQuantity, RuleRole};
+use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
 
 /// What set the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,33 +53,50 @@ pub struct Band {
 /// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of
 /// the base as it is walked or as practice regrades it, the rule alone knows.
 pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
-    let one = |rule| -> Option<(&AppliedRule, f64)> {
-        let rule: &AppliedRule = rule;
-        let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
-        match rule.quantity {
-            RuleQuantity::D15F => Some((rule, limit)),
-            RuleQuantity::D15FOverD85B | RuleQuantity::D15FOverD95B => {
-                let value = rule.value.filter(|value| *value > 0.0 && value.is_finite())?;
-                Some((rule, limit * d15f / value))
-            }
-            RuleQuantity::Named(_) => None,
+    rules.iter().filter_map(|rule| limit(rule, d15f)).collect()
+}
+
+fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
+    let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
+    match rule.quantity {
+        RuleQuantity::D15F => Some((rule, limit)),
+        RuleQuantity::D15FOverD85B | RuleQuantity::D15FOverD95B => {
+            let value = rule.value.filter(|value| *value > 0.0 && value.is_finite())?;
+            Some((rule, limit * d15f / value))
         }
-    };
-    rules.iter().filter_map(one).collect()
+        RuleQuantity::Named(_) => None,
+    }
+}
+
+/// The rules by which a filter is to retain its base. Practice goes by the limit of design: the boundary of
+/// no erosion that one author proposed from tests counts only where design is not known, and for dispersive
+/// bases, for which that author's limit is the one that is recommended.
+pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
+    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
+    let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
+    let is_dispersive = design.is_some_and(|of| of.note.says(RuleNote::Dispersive));
+    let counts = move |tests: &AppliedRule| is_dispersive || !(is_known || tests.limit_at_most);
+    let retains = move |of: &&AppliedRule| of.role == RuleRole::Retention;
+    rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))
 }
 
 /// A rule of retention that was made for a base, and of whose limit only the most is known: with it the
 /// strictest limit of the base is not known.
 pub fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
-    rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.applies && rule.limit_at_most)
+    retaining(rules).find(|rule| rule.applies && rule.limit_at_most)
+}
+
+/// The limits of D15F by which a filter retains its base: no design goes beyond where tests saw continuing
+/// erosion, either.
+pub fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item = (&AppliedRule, f64)> {
+    let continues = rules.iter().filter(|of| of.role == RuleRole::Continuation && !of.limit_at_most);
+    retaining(rules).chain(continues).filter_map(move |rule| limit(rule, d15f))
 }
 
 /// The strictest rule by which a filter retains a base, with its limit of D15F: no more than the most of it
 /// where [`open_retention`] finds a rule.
 pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
-    let of_role = |rule: &AppliedRule| rule.role == RuleRole::Retention && !rule.at_least;
-    let all = limits(rules, d15f).into_iter().filter(|(rule, _)| of_role(rule));
-    all.min_by(|a, b| a.1.total_cmp(&b.1))
+    retaining_limits(rules, d15f).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 impl Band {

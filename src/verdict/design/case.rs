@@ -1,9 +1,9 @@
 //! Which of walk and practice sets the answer of a design: one case with its numbers.
 
 use super::sizes::Sizes;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::band::{open_retention, retaining, retention};
 use crate::outcome::design::{Design, DesignRow};
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::DESIGN;
 use crate::verdict::rule_words::against;
 use crate::verdict::washout::washout;
@@ -28,8 +28,7 @@ impl FinestBase {
     /// the finer part that it may lose; `kept` is the ratio up to which every base kept all. `None` where it
     /// keeps all.
     pub fn at(rules: &[AppliedRule], kept: Option<f64>) -> Option<Self> {
-        let is_broken = |rule: &&AppliedRule| rule.role == RuleRole::Retention && rule.is_broken();
-        let broken = rules.iter().find(is_broken);
+        let broken = retaining(rules).find(|rule| rule.is_broken());
         let washout = washout(rules);
         let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value).unwrap_or(1.0);
         let strictest = retention(rules, d15f).map(|(rule, _)| rule).filter(|_| washout.is_some());
@@ -95,7 +94,7 @@ pub(super) fn strictest<'a>(design: &'a Design, sizes: &Sizes) -> Option<(&'a Ap
 impl<'a> Case<'a> {
     pub fn of(design: &'a Design, sizes: &Sizes, finest: Option<&'a FinestBase>) -> Self {
         // Files of an earlier version know only whether the base that the walk holds breaks a rule.
-        let broken = design.rules.iter().find(|rule| rule.role == RuleRole::Retention && rule.is_broken());
+        let broken = retaining(&design.rules).find(|rule| rule.is_broken());
         let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
         let none = finest.filter(|of| of.ratio.is_none());
         if let Some(of) = none.filter(|of| of.is_open) {

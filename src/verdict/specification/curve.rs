@@ -10,7 +10,7 @@ use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInpu
 use crate::verdict::base_cautions::broad_base;
 use crate::verdict::entry::Finding;
 use crate::verdict::finding;
-use crate::verdict::rule_words::{cited_rule, no_margin};
+use crate::verdict::rule_words::{cited_rule, has_no_margin};
 
 /// D15F (mm) of the filter at which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
@@ -61,7 +61,7 @@ impl ReadCurve {
                 category: soil.category,
                 d15f_max_mm: strictest.filter(|_| unknown.is_none()).map(|(_, limit)| limit),
                 d15f_max_rule: strictest.map_or_else(String::new, |(rule, _)| cited_rule(rule)),
-                without_margin: no_margin(&rules).is_some(),
+                without_margin: has_no_margin(&rules),
                 d15f_min_mm: drainage.and_then(|rule| rule.limit),
             },
             percent_no_4: base.percent_finer_by_mass(GRAVEL_MM),

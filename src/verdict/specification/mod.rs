@@ -205,8 +205,9 @@ impl Specification {
                 rounded_up(high)
             ),
             (false, [low, high]) => format!(
-                "it lies in the range in which tests put the boundary of no erosion ({} to {} mm; Fell et \
+                "it lies {} the range in which tests put the boundary of no erosion ({} to {} mm; Fell et \
                  al., Table 9.2)",
+                if limit > high { "beyond" } else { "in" },
                 rounded_down(low),
                 rounded_up(high)
             ),
