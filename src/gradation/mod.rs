@@ -23,6 +23,7 @@
 //! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
 //! on every length changes no bit of any ratio.
 
+mod between;
 mod burenkova;
 mod comma;
 mod curve_point;
@@ -41,6 +42,8 @@ mod supply;
 mod surface;
 mod table;
 
+pub(crate) use between::{End, TIE};
+pub use between::{Step, USUAL_STEP, WIDE_STEP};
 pub use burenkova::UniformityFactors;
 pub use curve_point::CurvePoint;
 pub(crate) use error::shortened;

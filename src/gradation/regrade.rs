@@ -2,7 +2,8 @@
 
 use super::Gradation;
 use super::group::{FINES_MM, GRAVEL_MM};
-use super::shape::Gap;
+use super::between::TIE;
+use super::shape::{FLAT_PERCENT, GAP_PERCENT, Gap};
 
 /// Percent of fines below which a base has few.
 pub const FEW_FINES: f64 = 15.0;
@@ -72,7 +73,19 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn regraded(&self) -> Regraded {
-        let (at, cause) = self.regrading();
+        self.regraded_on(self.regrading(self.gap(FINES_MM)))
+    }
+
+    /// This soil as practice regrades it where its curve is flat enough to be a gap, and is not read as one
+    /// by [`Gradation::regraded`], or the other way round; `None` of a curve that is steep, or level.
+    pub(crate) fn regraded_otherwise(&self) -> Option<Regraded> {
+        let flat = self.flattest(FINES_MM)?;
+        let is_open = (100.0 * TIE..FLAT_PERCENT - 100.0 * TIE).contains(&flat.within);
+        let is_gap = flat.within < GAP_PERCENT;
+        is_open.then(|| self.regraded_on(self.regrading(Some(flat).filter(|_| !is_gap))))
+    }
+
+    fn regraded_on(&self, (at, cause): (Option<f64>, RegradeCause)) -> Regraded {
         let why = RegradeReason { cause, nothing_passes: false };
         match at.map(|at| self.passing(at)) {
             None => Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm: None },
@@ -86,8 +99,8 @@ impl Gradation {
     }
 
     /// The size on which practice regrades this base, and why.
-    fn regrading(&self) -> (Option<f64>, RegradeCause) {
-        let Some(Gap { from_mm, .. }) = self.gap(FINES_MM) else { return self.regrading_for_gravel() };
+    fn regrading(&self, gap: Option<Gap>) -> (Option<f64>, RegradeCause) {
+        let Some(Gap { from_mm, .. }) = gap else { return self.regrading_for_gravel() };
         let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
         let no_4 = finer.and_then(|finer| finer.regrading_for_gravel().0);
         match no_4.filter(|no_4| self.passing(*no_4).is_some()) {

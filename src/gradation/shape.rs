@@ -1,9 +1,13 @@
 //! What practice reads from a sieve curve besides its sizes: curvature, a gap, the part that passes a sieve.
 
 use super::Gradation;
+use super::between::TIE;
 
 /// Sizes are missing where less of the mass than this (%) lies between D and 4 D.
 pub(crate) const GAP_PERCENT: f64 = 5.0;
+
+/// A curve may be gap-graded where less of the mass than this (%) lies between D and 4 D.
+pub(crate) const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
 /// A gap is looked for where this much of the mass is finer, and no more than the second (%).
 const GAP_RANGE: [f64; 2] = [10.0, 80.0];
@@ -43,12 +47,15 @@ impl Gradation {
             Gap { from_mm: d, percent, within: self.percent_finer_by_mass(4.0 * d) - percent }
         };
         let range = self.smallest_mm().max(least_mm)..=self.largest_mm();
-        let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([least_mm]);
-        candidates
-            .filter(|d| range.contains(d))
-            .map(at)
-            .filter(|gap| (GAP_RANGE[0]..=GAP_RANGE[1]).contains(&gap.percent))
-            .min_by(|a, b| a.within.total_cmp(&b.within).then(a.from_mm.total_cmp(&b.from_mm)))
+        let [low, high] = [GAP_RANGE[0] - 100.0 * TIE, GAP_RANGE[1] + 100.0 * TIE];
+        // On a straight stretch every D has as much between itself and 4 D: the finest counts.
+        let ends = [self.d(GAP_RANGE[0]), Some(least_mm)].into_iter().flatten();
+        let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain(ends);
+        let flat = candidates.filter(|d| range.contains(d)).map(at);
+        let flat: Vec<Gap> = flat.filter(|gap| (low..=high).contains(&gap.percent)).collect();
+        let least = flat.iter().map(|gap| gap.within).fold(f64::INFINITY, f64::min);
+        let ties = flat.into_iter().filter(|gap| gap.within <= least + 100.0 * TIE);
+        ties.min_by(|a, b| a.from_mm.total_cmp(&b.from_mm))
     }
 
     /// The part of this soil that passes a sieve, as a soil of its own: every percent divided by that
@@ -77,7 +84,7 @@ impl Gradation {
             (0..below).map(|i| (self.size_mm[i], self.percent[i] / of * 100.0)).unzip();
         size_mm.push(self.size_mm[below].min(opening_mm));
         percent.push(100.0);
-        (size_mm.len() > 1).then(|| Gradation::new(size_mm, percent))
+        (size_mm.len() > 1).then(|| Gradation::sieved(size_mm, percent, self.lines))
     }
 }
 

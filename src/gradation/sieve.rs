@@ -32,6 +32,8 @@ pub struct Gradation {
     pub(super) log_ratio: Vec<f64>,
     /// Particles finer than each point, in one mm3 of solid.
     pub(super) number: Vec<f64>,
+    /// Segments, from the finest on, that are stated as straight lines and are no steps between two sieves.
+    pub(super) lines: usize,
 }
 
 impl Gradation {
@@ -90,11 +92,17 @@ impl Gradation {
         Gradation::from_points(&points, None)
     }
 
-    /// A curve from checked points.
+    /// A curve of straight lines from checked points.
     pub(super) fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
+        let lines = size_mm.len();
+        Gradation::sieved(size_mm, percent, lines)
+    }
+
+    /// A curve from checked points, of which all but the first segments lie between sieves.
+    pub(super) fn sieved(size_mm: Vec<f64>, percent: Vec<f64>, lines: usize) -> Gradation {
         let log_ratio: Vec<f64> = size_mm.windows(2).map(|w| libm::log(w[1] / w[0])).collect();
         let number = cumulative(&size_mm, &percent, &log_ratio);
-        Gradation { size_mm, percent, log_ratio, number }
+        Gradation { size_mm, percent, log_ratio, number, lines }
     }
 
     /// This curve with every size multiplied by `factor`.
@@ -107,7 +115,7 @@ impl Gradation {
         for &d in &size_mm {
             check_size("scaled size", d)?;
         }
-        Ok(Gradation::new(size_mm, self.percent.clone()))
+        Ok(Gradation::sieved(size_mm, self.percent.clone(), self.lines))
     }
 
     /// D_x: the smallest size (mm) that `percent` of the mass is finer than or equal to.
@@ -235,5 +243,5 @@ pub(super) fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Resul
         }
         .into());
     }
-    Ok(Gradation::new(size_mm.split_off(start), percent.split_off(start)))
+    Ok(Gradation::sieved(size_mm.split_off(start), percent.split_off(start), usize::from(d0_mm.is_some())))
 }

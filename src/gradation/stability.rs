@@ -20,6 +20,7 @@
 //! they are found exactly. A pan fraction is left out: what it would say is not known.
 
 use super::Gradation;
+use super::between::TIE;
 
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
@@ -116,9 +117,11 @@ impl Gradation {
             (finer > 0.0 && finer <= limit * (1.0 + 1e-9)).then_some((next / of, finer))
         };
         let sizes: Vec<f64> = candidates.filter(|d| (self.smallest_mm()..=last).contains(d)).collect();
-        let indices = sizes.iter().filter_map(|&d| index(d));
-        let (value, percent) = indices.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let is_lost = |d: f64| index(d).is_some_and(|(value, _)| value < 1.0);
+        let indices: Vec<(f64, f64)> = sizes.iter().filter_map(|&d| index(d)).collect();
+        let least = indices.iter().map(|(value, _)| *value).reduce(f64::min)?;
+        let ties = indices.into_iter().filter(|(value, _)| *value <= least + TIE);
+        let (value, percent) = ties.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_lost = |d: f64| index(d).is_some_and(|(value, _)| value < 1.0 - TIE);
         let lost_percent = greatest(&sizes, is_lost).map(|d| self.percent_finer_by_mass(d));
         Some(ShapeIndex { value, percent, lost_percent })
     }
@@ -137,15 +140,18 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn kezdi(&self) -> Option<SoilSplit> {
-        let splits = self.splits(KEZDI_RANGE[1]);
-        splits.filter_map(|finer| self.split(finer)).max_by(|a, b| a.value.total_cmp(&b.value))
+        let splits: Vec<SoilSplit> =
+            self.splits(KEZDI_RANGE[1]).filter_map(|finer| self.split(finer)).collect();
+        let most = splits.iter().map(|split| split.value).reduce(f64::max)?;
+        let ties = splits.into_iter().filter(|split| split.value >= most * (1.0 - TIE));
+        ties.max_by(|a, b| a.percent.total_cmp(&b.percent))
     }
 
     /// Kezdi: the greatest split at up to so many percent with a D'15 / d'85 above this limit; `None` where
     /// there is none.
     pub fn greatest_split_above(&self, limit: f64, most_percent: f64) -> Option<SoilSplit> {
         let splits: Vec<f64> = self.splits(0.85 * most_percent).collect();
-        let is_above = |finer: f64| self.split(finer).is_some_and(|split| split.value > limit);
+        let is_above = |finer: f64| self.split(finer).is_some_and(|split| split.value > limit * (1.0 + TIE));
         self.split(greatest(&splits, is_above)?)
     }
 
@@ -168,11 +174,7 @@ impl Gradation {
     /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives
     /// the smallest.
     fn highest_size_at(&self, percent: f64) -> Option<f64> {
-        let above = self.percent.partition_point(|&p| p <= percent);
-        match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
-            Some((p, d)) if p == percent => Some(d),
-            _ => self.d(percent),
-        }
+        self.coarse_d(percent)
     }
 }
 

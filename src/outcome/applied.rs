@@ -41,7 +41,8 @@ pub struct AppliedRule {
     /// Whether `limit` is the least that the rule allows instead of the most.
     #[serde(default)]
     pub at_least: bool,
-    /// Whether the true limit is not known, and is at most `limit`.
+    /// Whether the true limit is not known, and is at most `limit`; on either side of it where `needs` names
+    /// sieves that stand far apart.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub limit_at_most: bool,
     /// Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing

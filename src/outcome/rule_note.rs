@@ -50,7 +50,23 @@ notes! {
     /// A first run that erodes something.
     NeedsErosion,
 
+    // What lies between two sieves (mm) that stand far apart.
+    /// D15 of the filter.
+    D15FBetween(f64, f64),
+    /// D15 of the base.
+    D15BBetween(f64, f64),
+    /// D85 of the base.
+    D85BBetween(f64, f64),
+    /// D95 of the base.
+    D95BBetween(f64, f64),
+    /// Sizes of the filter.
+    FilterBetween(f64, f64),
+    /// Sizes of the base.
+    BaseBetween(f64, f64),
+
     // What the base was taken as.
+    /// The other limit (mm) of a base whose curve is flat, which may be a gap.
+    FlatBase(f64),
     /// It is dispersive.
     Dispersive,
     /// Its category of NRCS.

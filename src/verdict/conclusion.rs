@@ -259,6 +259,10 @@ pub fn headline(
             format!("does not hold: {walked} in the model, and the filter may lose its finer part")
         }
         (Standing::Unstable, _) => "may not hold: the filter may lose its finer part".into(),
+        (Standing::Open(between), Verdict::Undecided) => {
+            format!("practice is not known: {between}; the walk is undecided")
+        }
+        (Standing::Open(between), _) => format!("practice is not known: {between}; {walked} in the model"),
         (Standing::Unknown(needs), Verdict::Undecided) => {
             format!("nobody can say yet: practice needs {needs}, and the walk is undecided")
         }
@@ -281,7 +285,7 @@ pub fn headline(
     };
     // Of a filter that is too coarse as it is the line of practice says so.
     let unstable =
-        matches!(standing, Standing::NoMargin | Standing::Unknown(_)) && breaks(rules, RuleRole::Stability);
+        matches!(standing, Standing::NoMargin | Standing::Unknown(_) | Standing::Open(_)) && breaks(rules, RuleRole::Stability);
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);

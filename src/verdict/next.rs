@@ -32,6 +32,7 @@ impl Outcome {
                 [Some(self.of_stability()), test].into_iter().flatten().collect::<Vec<_>>().join("; ")
             }
             Standing::Unknown(needs) => format!("get {needs}"),
+            Standing::Open(_) => "test the sieves between".into(),
             Standing::Met | Standing::NoRules => test
                 .or_else(|| self.of_drainage())
                 .or_else(|| self.of_placing())

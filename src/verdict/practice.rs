@@ -145,6 +145,8 @@ pub enum Standing {
     Unstable,
     /// The limit of design has no result: what is missing.
     Unknown(String),
+    /// A result hangs on sizes between two sieves that stand far apart: which.
+    Open(String),
     /// The limit of design is kept.
     Met,
     /// No rule of design was applied.
@@ -163,11 +165,21 @@ impl Standing {
             Self::Fails | Self::WashedOut => ComparedStanding::Fails,
             Self::NoMargin => ComparedStanding::NoMargin,
             Self::Unstable => ComparedStanding::Unstable,
-            Self::Unknown(_) => ComparedStanding::Unknown,
+            Self::Unknown(_) | Self::Open(_) => ComparedStanding::Unknown,
             Self::Met => ComparedStanding::Met,
             Self::NoRules => ComparedStanding::NoRules,
         }
     }
+}
+
+/// The sizes between two sieves that stand far apart, on which the limit of design or the stability of the
+/// filter hangs.
+fn open_sieves(rules: &[AppliedRule]) -> Option<String> {
+    let counts = |rule: &&AppliedRule| {
+        [DESIGN, TESTS_CONTINUING].contains(&&*rule.id) || rule.role == RuleRole::Stability
+    };
+    let open = rules.iter().filter(counts).filter(|rule| rule.applies && rule.met.is_none());
+    open.filter_map(|rule| rule.needs.of_sieves_between()).next()
 }
 
 /// Where the filter of a pair stands.
@@ -181,11 +193,13 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
         retention.clear();
     }
     let fails = !retention.is_empty() || !broken(rules, RuleRole::Continuation).is_empty();
+    let open = open_sieves(rules);
     match design.met {
         _ if fails => Standing::Fails,
         _ if washout(rules).is_some() => Standing::WashedOut,
         Some(false) => Standing::NoMargin,
         _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
+        _ if open.is_some() => Standing::Open(open.unwrap_or_default()),
         Some(true) => Standing::Met,
         None => {
             let needs = first_clause(&design.needs.to_string());

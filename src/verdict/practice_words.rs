@@ -236,7 +236,11 @@ pub fn practice_in_words(rules: &[AppliedRule]) -> String {
         Some(_) => is_met,
         None => "no result: ",
     };
-    result.to_owned() + &said.join("; ")
+    let open = match standing(rules) {
+        Standing::Open(between) => format!("not known: {between}; "),
+        _ => result.to_owned(),
+    };
+    open + &said.join("; ")
 }
 
 fn of_design(rule: &AppliedRule) -> String {
@@ -255,6 +259,10 @@ fn of_design(rule: &AppliedRule) -> String {
     match (rule.met, rule.limit) {
         (Some(true), _) => format!("D15F {value} is within the {limit} {whose}"),
         (Some(false), _) => format!("D15F {value} is more than the {limit}{at_most} {whose}"),
+        (None, Some(_)) if rule.needs.of_sieves_between().is_some() => match rule.limit_at_most {
+            true => format!("D15F {value}; the limit of Sherard and Dunnigan (design) is not known"),
+            false => format!("the limit of Sherard and Dunnigan (design) is {limit}"),
+        },
         (None, Some(_)) => format!(
             "the limit of Sherard and Dunnigan (design) is {limit}{at_most}, D15F {value}: {}",
             first_clause(&rule.needs.to_string())

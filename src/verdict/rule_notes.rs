@@ -34,6 +34,16 @@ impl RuleNote {
                  with so few fines; that of other soils is the most that it can be"
             }
             Self::NeedsErosion => "needs a walk whose first run erodes something",
+            Self::D15FBetween(from, to) => return between("D15F lies", from, to),
+            Self::D15BBetween(from, to) => return between("D15B lies", from, to),
+            Self::D85BBetween(from, to) => return between("D85B lies", from, to),
+            Self::D95BBetween(from, to) => return between("D95B lies", from, to),
+            Self::FilterBetween(from, to) => return between("sizes of the filter are not known", from, to),
+            Self::BaseBetween(from, to) => return between("sizes of the base are not known", from, to),
+            Self::FlatBase(limit) => {
+                let limit = rounded_down(limit);
+                return format!("the base may be gap-graded: the stricter limit; the other is {limit} mm");
+            }
             Self::Dispersive => "dispersive",
             Self::Category(category) => return format!("base category {category}"),
             Self::RegradedOn(size) => return format!("base regraded on {} mm", significant(size)),
@@ -143,6 +153,14 @@ impl RuleNote {
     }
 }
 
+/// The end of every note on two sieves that stand far apart.
+const TEST_BETWEEN: &str = ": test the sieves between";
+
+fn between(what: &str, from: f64, to: f64) -> String {
+    let [from, to] = [from, to].map(|size| given((1e6 * size).round() / 1e6));
+    format!("{what} between {from} and {to} mm{TEST_BETWEEN}")
+}
+
 impl RegradeReason {
     /// What it says, as a part of a sentence.
     pub fn words(&self) -> String {
@@ -172,6 +190,11 @@ impl RegradeReason {
 }
 
 impl RuleText {
+    /// The words by which a rule hangs on sizes between two sieves that stand far apart.
+    pub fn of_sieves_between(&self) -> Option<String> {
+        Some(self.to_string()).filter(|words| words.ends_with(TEST_BETWEEN))
+    }
+
     /// Whether it says this note, also as a file has it that was read back.
     pub fn says(&self, note: RuleNote) -> bool {
         match self {

@@ -3,14 +3,20 @@
 use super::all::{DESIGN, RULES};
 use super::authority::Authority;
 use super::base::BaseSoil;
+use super::open::{OpenBase, OpenFilter, judged_over};
 use super::rule::{FilterRule, Judged, Pairing, RuleInputs, RuleUnit};
-use crate::gradation::Gradation;
+use crate::gradation::{Gradation, TIE};
 use crate::outcome::applied::{AppliedRule, RuleRole, ValueBound, WithoutFiner};
 use crate::outcome::rule_note::RuleText;
 
 /// Applies every rule.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
-    RULES.iter().filter_map(|rule| applied(rule, inputs)).collect()
+    let base = OpenBase::of(inputs.base, inputs.scale_free);
+    let filter = OpenFilter::of(inputs.filter, inputs.filter_is_measured);
+    let applied = |rule: &FilterRule| {
+        Some(record(rule, inputs.scale_free, judged_over(rule, inputs, &base, &filter)?))
+    };
+    RULES.iter().filter_map(applied).collect()
 }
 
 /// Whose rule it is, as a sentence cites it; its name where nobody is cited.
@@ -67,6 +73,9 @@ pub fn apply_and_decide(
     joint_mm: Option<f64>,
 ) -> (Vec<AppliedRule>, [usize; 2]) {
     let soils: Vec<BaseSoil> = bases.iter().map(|(_, base)| BaseSoil::of(base, false)).collect();
+    let open_bases: Vec<OpenBase> = bases.iter().map(|(_, base)| OpenBase::of(base, false)).collect();
+    let open_filters: Vec<OpenFilter> =
+        filters.iter().map(|(_, filter)| OpenFilter::of(filter, true)).collect();
     let every: Vec<&Gradation> = filters.iter().map(|(_, curve)| curve).collect();
     let inputs = |filter: usize, base: usize| RuleInputs {
         filter_curves: if filters.len() > 1 { every.clone() } else { Vec::new() },
@@ -88,8 +97,9 @@ pub fn apply_and_decide(
                 Pairing::EachFilter => base == 0,
                 Pairing::AllFilters => [filter, base] == [0, 0],
             };
-            if is_read {
-                Worst::count(worst, rule, &inputs, [filter, base]);
+            let over = || judged_over(rule, &inputs, &open_bases[base], &open_filters[filter]);
+            if let Some(judged) = is_read.then(over).flatten() {
+                Worst::count(worst, rule, judged, [filter, base]);
             }
         }
     }
@@ -127,8 +137,7 @@ struct Worst {
 
 impl Worst {
     /// Counts one more pair; of equals the first stays.
-    fn count(worst: &mut Option<Self>, rule: &FilterRule, inputs: &RuleInputs, at: [usize; 2]) {
-        let Some(judged) = judged(rule, inputs) else { return };
+    fn count(worst: &mut Option<Self>, rule: &FilterRule, judged: Judged, at: [usize; 2]) {
         let margin = margin(rule, &judged);
         let limit = judged.limit.filter(|_| judged.applies).unwrap_or(f64::INFINITY);
         let lost = judged.without_finer.filter(|_| judged.met == Some(false));
@@ -158,7 +167,7 @@ impl Worst {
 }
 
 /// How well a rule is kept: the worst first.
-fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
+pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
     // A boundary of erosion that tests did not find excludes less than one that is not reached.
     let is_open = judged.applies || judged.needs.is_some() || rule.role == RuleRole::Continuation;
     let class = match judged.met {
@@ -176,18 +185,16 @@ fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
     (class, over, judged.limit.filter(|_| !rule.at_least).unwrap_or(f64::INFINITY))
 }
 
-/// One rule, applied; `None` where nobody asked for it.
-fn applied(rule: &FilterRule, inputs: &RuleInputs) -> Option<AppliedRule> {
-    Some(record(rule, inputs.scale_free, judged(rule, inputs)?))
-}
-
 /// What one rule finds, with its result; `None` where nobody asked for it.
-fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
+pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     let judged = (rule.judge)(inputs);
     if judged.is_left_out {
         return None;
     }
-    let keeps = |(value, limit): (f64, f64)| if rule.at_least { value >= limit } else { value <= limit };
+    let keeps = |(value, limit): (f64, f64)| match rule.at_least {
+        true => value >= limit * (1.0 - TIE),
+        false => value <= limit * (1.0 + TIE),
+    };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
     // A limit that can only be less is broken for certain, or kept for certain where it is the least allowed.
     let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());

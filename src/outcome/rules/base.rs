@@ -1,6 +1,6 @@
 //! The base as practice describes it: regraded where it is broad, and its category by fines.
 
-use crate::gradation::{FEW_FINES, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded};
+use crate::gradation::{FEW_FINES, TIE, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded};
 
 /// A base soil as practice describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,10 +39,20 @@ impl BaseSoil {
                 category: None,
             };
         }
-        let Regraded { gradation, at_mm, why, hidden_below_mm } = base.regraded();
+        Self::regraded(base.regraded())
+    }
+
+    /// The same of a base whose curve is flat enough that it may be gap-graded or not, as practice reads it
+    /// otherwise than [`Self::of`]; `None` of others.
+    pub(super) fn otherwise(base: &Gradation) -> Option<Self> {
+        base.regraded_otherwise().map(Self::regraded)
+    }
+
+    fn regraded(regraded: Regraded) -> Self {
+        let Regraded { gradation, at_mm, why, hidden_below_mm } = regraded;
         let at_most = match hidden_below_mm {
             Some(_) => 100.0,
-            None => gradation.percent_finer_by_mass(FINES_MM),
+            None => whole(gradation.percent_finer_by_mass(FINES_MM)),
         };
         let is_known = match hidden_below_mm {
             Some(below) => below <= FINES_MM,
@@ -66,6 +76,12 @@ impl BaseSoil {
             category,
         }
     }
+}
+
+/// A percent without the last digits that hang on how its curve was written.
+fn whole(percent: f64) -> f64 {
+    let whole = percent.round();
+    if (percent - whole).abs() <= 100.0 * TIE { whole } else { percent }
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ pub fn least_permeability(inputs: &RuleInputs) -> Judged {
 
 fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_D15F_MM };
-    let (d15f, d15b) = (inputs.d15f(), inputs.base.d(15.0));
+    let (d15f, d15b) = (inputs.d15f(), inputs.base.coarse_d(15.0));
     let of_base = times * d15b.unwrap_or(inputs.base.smallest_mm());
     let limit = of_base.max(least);
     let finest = inputs.filter.smallest_mm();

@@ -87,7 +87,7 @@ pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
 /// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
 /// and a filter beyond that breaks the rule whatever a test of the soil may show.
 fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_category: bool) -> Judged {
-    let (d15f, d85b) = (inputs.d15f(), inputs.size_of_base(85.0));
+    let (d15f, d85b) = (inputs.coarse_d15f(), inputs.size_of_base(85.0));
     let known = match inputs.fines() {
         Fines::Percent(percent) => Some(percent),
         Fines::Few | Fines::Assumed => Some(0.0),
@@ -142,7 +142,7 @@ fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
 /// Terzaghi's ratio, for bases with few fines.
 pub fn terzaghi(inputs: &RuleInputs) -> Judged {
     let d85b = Some(inputs.size_of_base(85.0)).filter(|size| size.is_known).map(|size| size.most);
-    let value = inputs.d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
+    let value = inputs.coarse_d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
     let judged = Judged::of(value, Some(4.0));
     match inputs.fines() {
         Fines::Percent(percent) if percent >= FEW_FINES => judged.not_for(RuleNote::LimitsByFines(percent)),
@@ -159,7 +159,7 @@ const CLEAR_TO_MM: f64 = 2.0;
 /// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit to
 /// keep, and where nobody knows whether they did it has no result; beyond it a rule is broken all the same.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
-    let (d15f, d95b) = (inputs.d15f(), inputs.size_of_base(95.0));
+    let (d15f, d95b) = (inputs.coarse_d15f(), inputs.size_of_base(95.0));
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
     let is_beyond = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
     let fines = inputs.fines();

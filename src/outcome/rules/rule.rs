@@ -177,6 +177,20 @@ impl<'a> RuleInputs<'a> {
         }
     }
 
+    /// The same inputs, to be changed.
+    pub(super) fn same(&self) -> RuleInputs<'_> {
+        RuleInputs {
+            filter_curves: self.filter_curves.clone(),
+            base_soil: self.base_soil.clone(),
+            ..*self
+        }
+    }
+
+    /// D15 of the filter for a rule that it may not exceed: where the curve is flat, its coarse end.
+    pub fn coarse_d15f(&self) -> Option<f64> {
+        self.filter.coarse_d(15.0)
+    }
+
     /// D15 of the filter.
     pub fn d15f(&self) -> Option<f64> {
         self.filter.d(15.0)

@@ -6,7 +6,7 @@ use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::numbers::{rounded_down, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive};
-use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply};
+use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply, sieved_limit};
 use crate::verdict::base_cautions::broad_base;
 use crate::verdict::entry::Finding;
 use crate::verdict::finding;
@@ -41,8 +41,10 @@ impl ReadCurve {
         let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
         let soil = BaseSoil::of(base, false);
+        let over_sieves = sieved_limit(DESIGN, base, dispersive).and_then(|limit| limit.hangs_on);
         // A limit that can only be less may be the strictest.
         let unknown = open_retention(&rules).map(|rule| rule.needs.to_string());
+        let unknown = over_sieves.map(|note| note.words()).or(unknown);
         let unknown =
             unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
         let strictest = retention(&rules, ANY_D15F);
@@ -62,7 +64,7 @@ impl ReadCurve {
                 d15f_max_mm: strictest.filter(|_| unknown.is_none()).map(|(_, limit)| limit),
                 d15f_max_rule: strictest.map_or_else(String::new, |(rule, _)| cited_rule(rule)),
                 without_margin: has_no_margin(&rules),
-                d15f_min_mm: drainage.and_then(|rule| rule.limit),
+                d15f_min_mm: sieved_limit(PERMEABILITY, base, dispersive).map(|limit| limit.strictest),
             },
             percent_no_4: base.percent_finer_by_mass(GRAVEL_MM),
             flattest: base.flattest(FINES_MM),

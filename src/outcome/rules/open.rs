@@ -1,0 +1,309 @@
+//! Rules of soils whose sieves stand far apart: each is judged for every way in which the mass between them
+//! may be spread, at its finer or at its coarser sieve.
+//!
+//! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it a rule whose answer hangs on the step
+//! has no result, and rules of internal stability have none beyond [`USUAL_STEP`].
+//!
+//! [`USUAL_STEP`]: crate::gradation::USUAL_STEP
+//! [`WIDE_STEP`]: crate::gradation::WIDE_STEP
+
+use std::cmp::Ordering;
+
+use super::all::RULES;
+use super::apply::{judged, margin};
+use super::base::BaseSoil;
+use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
+use crate::gradation::{End, Gradation, Step};
+use crate::outcome::applied::RuleRole;
+use crate::outcome::record::RuleNote;
+
+/// Most steps of a curve that are looked at one by one; the widest are, and the others lie all at one end.
+const MOST_STEPS: usize = 6;
+
+/// Something that a table of sieves leaves open, which has two ends.
+#[derive(Clone, Copy, Debug)]
+enum Choice {
+    /// How the mass of a step of the filter is spread.
+    OfFilter(Step),
+    /// The same of the base.
+    OfBase(Step),
+    /// Whether a flat part of the base is a gap, on which practice regrades.
+    Gap,
+}
+
+impl Choice {
+    /// Ratio of the two sieves.
+    fn width(self) -> f64 {
+        match self {
+            Self::OfFilter(step) | Self::OfBase(step) => step.to_mm / step.from_mm,
+            Self::Gap => 1.0,
+        }
+    }
+
+    fn is_wide(self) -> bool {
+        match self {
+            Self::OfFilter(step) | Self::OfBase(step) => step.is_wide(),
+            Self::Gap => false,
+        }
+    }
+}
+
+/// Every curve that a base may have, with what its bits choose.
+pub struct OpenBase {
+    choices: Vec<Choice>,
+    curves: Vec<(Gradation, BaseSoil)>,
+}
+
+impl OpenBase {
+    /// Of a base; without curves where its table leaves nothing open.
+    pub fn of(base: &Gradation, scale_free: bool) -> Self {
+        let steps = if scale_free { Vec::new() } else { base.open_steps() };
+        let has_gap = |curve: &Gradation| (!scale_free).then(|| BaseSoil::otherwise(curve)).flatten();
+        let curves: Vec<Gradation> = spread(base, &steps);
+        let others: Vec<Option<BaseSoil>> = curves.iter().map(has_gap).collect();
+        let soil = |curve: &Gradation| BaseSoil::of(curve, scale_free);
+        let mut choices: Vec<Choice> = chosen(&steps).iter().map(|step| Choice::OfBase(*step)).collect();
+        let is_flat = others.iter().any(Option::is_some);
+        let mut all: Vec<(Gradation, BaseSoil)> =
+            curves.iter().map(|curve| (curve.clone(), soil(curve))).collect();
+        if is_flat {
+            choices.push(Choice::Gap);
+            let other = |(curve, other): (&Gradation, Option<BaseSoil>)| {
+                (curve.clone(), other.unwrap_or_else(|| soil(curve)))
+            };
+            all.extend(curves.iter().zip(others).map(other));
+        }
+        if choices.is_empty() {
+            all.clear();
+        }
+        Self { choices, curves: all }
+    }
+}
+
+/// Every curve that a filter may have.
+pub struct OpenFilter {
+    steps: Vec<Step>,
+    curves: Vec<Gradation>,
+}
+
+impl OpenFilter {
+    /// Of a filter; without curves where its table leaves nothing open.
+    pub fn of(filter: &Gradation, is_measured: bool) -> Self {
+        let steps = if is_measured { filter.open_steps() } else { Vec::new() };
+        let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps) };
+        Self { steps: chosen(&steps), curves }
+    }
+}
+
+/// The steps that are looked at one by one: the widest.
+fn chosen(steps: &[Step]) -> Vec<Step> {
+    let mut widest = steps.to_vec();
+    widest.sort_by(|a, b| (b.to_mm / b.from_mm).total_cmp(&(a.to_mm / a.from_mm)));
+    widest.truncate(MOST_STEPS);
+    widest.sort_by(|a, b| a.from_mm.total_cmp(&b.from_mm));
+    widest
+}
+
+/// A curve with the mass of each step at either end: bit `i` of a place is set where step `i` has it at its
+/// coarser sieve. Steps that are not looked at one by one go with the last of those that are.
+fn spread(curve: &Gradation, steps: &[Step]) -> Vec<Gradation> {
+    let chosen = chosen(steps);
+    let end = |place: usize, step: &Step| {
+        let at = chosen.iter().position(|of| of == step).unwrap_or(chosen.len().saturating_sub(1));
+        if place >> at & 1 == 1 { End::Coarse } else { End::Fine }
+    };
+    let at = |place: usize| {
+        let ends: Vec<(Step, End)> = steps.iter().map(|step| (*step, end(place, step))).collect();
+        curve.with_mass_at(&ends)
+    };
+    (0..1usize << chosen.len()).map(at).collect()
+}
+
+/// What one rule finds for two soils, and what their tables leave open; `None` where nobody asked for it.
+pub fn judged_over(
+    rule: &FilterRule,
+    inputs: &RuleInputs,
+    base: &OpenBase,
+    filter: &OpenFilter,
+) -> Option<Judged> {
+    let plain = judged(rule, inputs)?;
+    let over = match (rule.role, rule.pairing) {
+        (RuleRole::Walk, _) => return Some(plain),
+        (_, Pairing::EachPair) => of_pair(rule, inputs, base, filter),
+        (_, Pairing::EachFilter) => of_filter(rule, inputs, filter),
+        (_, Pairing::AllFilters) => of_filters(rule, inputs),
+    };
+    Some(match over {
+        Some((choices, results)) => combined(rule, inputs, plain, &choices, results),
+        None => plain,
+    })
+}
+
+type Over = Option<(Vec<Choice>, Vec<Judged>)>;
+
+/// Rules that read no more of the filter than D15F.
+fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &OpenFilter) -> Over {
+    let d15f = inputs.filter.d(15.0);
+    let step = filter.steps.iter().find(|step| d15f.is_some_and(|d15f| step.encloses(d15f)));
+    let filters: Vec<&Gradation> = match step {
+        Some(_) => vec![filter.curves.first()?, filter.curves.last()?],
+        None => vec![inputs.filter],
+    };
+    let choices: Vec<Choice> =
+        step.map(|step| Choice::OfFilter(*step)).into_iter().chain(base.choices.iter().copied()).collect();
+    if choices.is_empty() {
+        return None;
+    }
+    let given = [(inputs.base.clone(), inputs.base_soil.clone())];
+    let bases = if base.curves.is_empty() { &given[..] } else { &base.curves[..] };
+    let pairs = bases.iter().flat_map(|base| filters.iter().map(move |filter| (base, *filter)));
+    let results = pairs.filter_map(|((base, soil), filter)| {
+        judged(rule, &RuleInputs { filter, base, base_soil: soil.clone(), ..inputs.same() })
+    });
+    Some((choices, results.collect()))
+}
+
+/// Rules of the filter alone.
+fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Over {
+    if filter.curves.is_empty() {
+        return None;
+    }
+    let results = filter.curves.iter().filter_map(|filter| judged(rule, &RuleInputs { filter, ..inputs.same() }));
+    Some((filter.steps.iter().map(|step| Choice::OfFilter(*step)).collect(), results.collect()))
+}
+
+/// A rule of all filters at once: the finest of each beside the coarsest of each.
+fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
+    let open: Vec<OpenFilter> = inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
+    let step = open.iter().flat_map(|filter| &filter.steps).max_by(|a, b| {
+        (a.to_mm / a.from_mm).total_cmp(&(b.to_mm / b.from_mm))
+    });
+    let step = Choice::OfFilter(*step?);
+    let ends = |(given, open): (&&'_ Gradation, &OpenFilter)| match &open.curves[..] {
+        [finest, .., coarsest] => vec![finest.clone(), coarsest.clone()],
+        _ => vec![(*given).clone()],
+    };
+    let every: Vec<Gradation> = inputs.filter_curves.iter().zip(&open).flat_map(ends).collect();
+    let apart = judged(rule, &RuleInputs { filter_curves: every.iter().collect(), ..inputs.same() })?;
+    Some((vec![step], vec![judged(rule, inputs)?, apart]))
+}
+
+/// The class of a rule that is kept; one that was not made for the soils speaks as little against them.
+const MET: u8 = 2;
+
+/// One result of those that what is open leaves possible; bit `i` of a place is choice `i`.
+fn combined(
+    rule: &FilterRule,
+    inputs: &RuleInputs,
+    plain: Judged,
+    choices: &[Choice],
+    results: Vec<Judged>,
+) -> Judged {
+    let places = 0..results.len();
+    let class = |judged: &Judged| margin(rule, judged).0.min(MET);
+    let by_margin = |a: &&Judged, b: &&Judged| {
+        margin(rule, a).partial_cmp(&margin(rule, b)).unwrap_or(Ordering::Equal)
+    };
+    let Some(worst) = results.iter().chain([&plain]).min_by(by_margin).cloned() else { return plain };
+    let is_wide = |i: &usize| choices[*i].is_wide() || rule.role == RuleRole::Stability;
+    let wide: Vec<usize> = (0..choices.len()).filter(is_wide).collect();
+    let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
+    // Of what is not far apart the worst counts.
+    let answer = |place: usize| {
+        let same = places.clone().filter(|of| of & mask == place & mask);
+        same.map(|of| class(&results[of])).min()
+    };
+    let flips = |i: &usize| places.clone().any(|place| answer(place) != answer(place ^ 1 << i));
+    let moves = |i: &usize| places.clone().any(|place| is_moved(&results[place], &results[place ^ 1 << i]));
+    // The widest step is the one to be sieved first.
+    let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
+    if let Some(flips) = wide.iter().copied().filter(flips).max_by(width) {
+        let is_of_base = matches!(choices[flips], Choice::OfBase(_));
+        return Judged {
+            met: None,
+            applies: true,
+            value: plain.value.filter(|_| is_of_base),
+            limit_at_most: is_of_base || plain.limit_at_most,
+            needs: note(rule, inputs, choices[flips], &worst, &results),
+            without_finer: None,
+            ..plain
+        };
+    }
+    let Some(moves) = (0..choices.len()).filter(moves).max_by(width) else { return plain };
+    // Where all agree, numbers between sieves far apart are those of the straight line.
+    let is_plain = class(&plain) == class(&worst) && (choices[moves].is_wide() || !plain.applies);
+    let lost = results.iter().chain([&plain]).filter_map(|judged| judged.without_finer);
+    let lost = lost.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
+    let judged = if is_plain { plain } else { worst };
+    let note = note(rule, inputs, choices[moves], &judged, &results);
+    let without_finer = lost.filter(|_| judged.met == Some(false)).or(judged.without_finer);
+    Judged { without_finer, ..judged }.noted(note)
+}
+
+/// Whether two results differ in more than their last digits.
+fn is_moved(here: &Judged, there: &Judged) -> bool {
+    let apart = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() > 1e-6 * a.abs().max(b.abs()),
+        _ => a != b,
+    };
+    apart(here.value, there.value) || apart(here.limit, there.limit) || here.met != there.met
+}
+
+/// The limit of a rule of D15F over all that the table of a base leaves open.
+pub struct SievedLimit {
+    /// The strictest.
+    pub strictest: f64,
+    /// The sieves far apart on which it hangs, where it does.
+    pub hangs_on: Option<RuleNote>,
+}
+
+/// The limit of a rule of D15F for a base in mm; `None` where it has none.
+pub fn sieved_limit(id: &str, base: &Gradation, dispersive: bool) -> Option<SievedLimit> {
+    let rule = RULES.iter().find(|rule| rule.id == id)?;
+    let filter = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
+    let inputs = RuleInputs { dispersive, ..RuleInputs::of_soils(base, &filter) };
+    let open = OpenBase::of(base, false);
+    let plain = judged(rule, &inputs)?;
+    let over = of_pair(rule, &inputs, &open, &OpenFilter::of(&filter, false));
+    let (choices, results) = over.unwrap_or_default();
+    let strictest = results.iter().chain([&plain]).filter_map(|judged| judged.limit);
+    let strictest = strictest.reduce(if rule.at_least { f64::max } else { f64::min })?;
+    let moves = |i: &usize| {
+        let places = 0..results.len();
+        choices[*i].is_wide() && places.into_iter().any(|at| is_moved(&results[at], &results[at ^ 1 << i]))
+    };
+    let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
+    let moves = (0..choices.len()).filter(moves).max_by(width);
+    let hangs_on = moves.and_then(|i| note(rule, &inputs, choices[i], &plain, &results));
+    Some(SievedLimit { strictest, hangs_on })
+}
+
+/// What a result says of a choice that it hangs on, among all results.
+fn note(
+    rule: &FilterRule,
+    inputs: &RuleInputs,
+    choice: Choice,
+    judged: &Judged,
+    results: &[Judged],
+) -> Option<RuleNote> {
+    let step = match choice {
+        Choice::OfFilter(step) if rule.pairing == Pairing::EachPair => {
+            return Some(RuleNote::D15FBetween(step.from_mm, step.to_mm));
+        }
+        Choice::OfFilter(step) => return Some(RuleNote::FilterBetween(step.from_mm, step.to_mm)),
+        Choice::Gap => {
+            let limits = results.iter().filter_map(|of| of.limit).filter(|limit| Some(*limit) != judged.limit);
+            return limits.reduce(f64::max).map(RuleNote::FlatBase);
+        }
+        Choice::OfBase(step) => step,
+    };
+    let encloses = |size: Option<f64>| size.is_some_and(|size| step.encloses(size));
+    let regraded = |percent| encloses(inputs.base_soil.gradation.d(percent));
+    let of = match rule.role {
+        RuleRole::Drainage if encloses(inputs.base.d(15.0)) => RuleNote::D15BBetween,
+        RuleRole::Continuation if regraded(95.0) => RuleNote::D95BBetween,
+        RuleRole::Retention if regraded(85.0) => RuleNote::D85BBetween,
+        _ => RuleNote::BaseBetween,
+    };
+    Some(of(step.from_mm, step.to_mm))
+}
