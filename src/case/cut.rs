@@ -59,7 +59,7 @@ mod tests {
     /// ASTM C33 fine aggregate, the middle of its band.
     fn c33() -> Gradation {
         let table = [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5)];
-        Gradation::from_points(&[&table[..], &[(9.5, 100.0)]].concat(), None).unwrap()
+        Gradation::from_lines(&[&table[..], &[(9.5, 100.0)]].concat()).unwrap()
     }
 
     #[test]
@@ -86,7 +86,7 @@ mod tests {
         // In a gap the part ends where the sizes do.
         let gap_at = |percent| {
             let table = [(0.2, 0.0), (0.5, percent), (5.0, percent), (10.0, 100.0)];
-            Gradation::from_points(&table, None).unwrap()
+            Gradation::from_lines(&table).unwrap()
         };
         let gap = gap_at(40.0);
         let (part, packed) = that_can_be_packed(&gap, width).unwrap();

@@ -86,7 +86,7 @@ mod tests {
         // ASTM C33 fine aggregate, the middle of its band.
         let points =
             [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5), (9.5, 100.0)];
-        let filter = Gradation::from_points(&points, None).unwrap();
+        let filter = Gradation::from_lines(&points).unwrap();
         let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
         assert!(found.is_some_and(|of| of.part.is_some()));
     }

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn both_readings_keep_the_mass_and_lie_where_they_must() {
-        let base = Gradation::from_points(&[(0.075, 35.0), (0.5, 80.0), (2.0, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.075, 35.0), (0.5, 80.0), (2.0, 100.0)]).unwrap();
         assert!(!may_block(&base, 0.075) && may_block(&base, 0.0749));
         let fine = taken_as(&base, PanSize::Passive, 0.04).unwrap();
         let coarse = taken_as(&base, PanSize::FinestSieve, 0.04).unwrap();
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_likely_tail_is_that_of_silts_and_ends_where_all_is_passive() {
-        let base = Gradation::from_points(&[(0.063, 40.0), (0.5, 80.0), (2.0, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.063, 40.0), (0.5, 80.0), (2.0, 100.0)]).unwrap();
         let likely = taken_as(&base, PanSize::Continued, 0.005).unwrap();
         assert_eq!(likely.pan_fraction(), 0.0);
         for (size, percent) in [(0.063, 40.0), (0.02, 28.0), (0.006, 18.0), (0.5, 80.0)] {
@@ -130,7 +130,7 @@ mod tests {
     #[test]
     fn above_the_silts_a_tail_falls_as_in_soils_that_were_measured() {
         let at = |points: &[(f64, f64)], size| {
-            let base = Gradation::from_points(points, None).unwrap();
+            let base = Gradation::from_lines(points).unwrap();
             taken_as(&base, PanSize::Continued, 0.01).unwrap().percent_finer_by_mass(size)
         };
         // Medians of soils by the slope of their sieves: 0.78 and 0.50 of what passes 0.15 mm pass 0.063 mm.

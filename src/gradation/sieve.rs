@@ -86,10 +86,20 @@ impl Gradation {
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
     }
 
+    /// A curve that is stated as straight lines between these points, and not by sieves: nothing is open
+    /// between them.
+    ///
+    /// # Errors
+    /// As [`Gradation::from_points`].
+    pub fn from_lines(points: &[(f64, f64)]) -> Result<Gradation, GradationError> {
+        let curve = Gradation::from_points(points, None)?;
+        Ok(Gradation { lines: curve.size_mm.len(), ..curve })
+    }
+
     /// The same from rows as records hold them: size (mm), percent finer by mass.
     pub(crate) fn of_rows(rows: &[[f64; 2]]) -> Result<Gradation, GradationError> {
         let points: Vec<(f64, f64)> = rows.iter().map(|&[size, percent]| (size, percent)).collect();
-        Gradation::from_points(&points, None)
+        Gradation::from_lines(&points)
     }
 
     /// A curve of straight lines from checked points.

@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn the_pan_fraction_would_leave() {
         let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
-        let base = Gradation::from_points(&[(0.3, 40.0), (0.6, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.3, 40.0), (0.6, 100.0)]).unwrap();
         let found = infiltration(&curve, &base, 60);
         assert!((found.eroded_without_blocking - 0.4).abs() < 1e-12);
         assert_eq!(found.sizes[0].name, "D50B");

@@ -282,7 +282,7 @@ mod tests {
     use crate::verdict::practice_words::practice_in_words;
 
     fn rules(base: &[(f64, f64)], filter: &[(f64, f64)]) -> Vec<AppliedRule> {
-        let of = |points| Gradation::from_points(points, None).unwrap();
+        let of = |points| Gradation::from_lines(points).unwrap();
         PairRules::of(&of(base), &of(filter)).rules
     }
 

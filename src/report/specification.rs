@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn products_are_said_to_fit_as_far_as_is_known() {
-        let base = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let said = core.products_in_words();
         assert!(said.contains("ASTM C33 fine aggregate (leaves the band at "), "{said}");

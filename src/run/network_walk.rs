@@ -404,7 +404,7 @@ mod tests {
         refused(NetworkWalk { n_base: 0, ..plan.clone() }, "n_base = 0");
         let huge = NetworkWalk { n_base: 1 << 60, engine: Engine::Particles, ..plan.clone() };
         refused(huge, "of memory, but");
-        let tail = Gradation::from_points(&[(0.3, 20.0), (0.4, 100.0)], None).unwrap();
+        let tail = Gradation::from_lines(&[(0.3, 20.0), (0.4, 100.0)]).unwrap();
         refused(NetworkWalk { base: tail, ..plan.clone() }, "may not be passive");
         let stop = AtomicBool::new(true);
         let callbacks = Callbacks { stop: &stop, ..Callbacks::default() };

@@ -358,7 +358,7 @@ mod tests {
         use crate::verdict::finding;
         let rows = "0.01,0\n0.075,25\n0.3,92\n0.6,100\n";
         let points = [(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
-        let soil = BaseSoil::of(&crate::Gradation::from_points(&points, None).unwrap(), false);
+        let soil = BaseSoil::of(&crate::Gradation::from_lines(&points).unwrap(), false);
         let of = |d15f: f64| {
             let walked = walked_base(rows, d15f, &[]);
             let evidence = Evidence::of(&soil, walked.inputs.filter.d15_mm, Some(1.5), None);

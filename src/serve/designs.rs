@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn limits_are_rounded_inward_and_the_base_is_warned_of_once() {
         let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
-        let gap = Gradation::from_points(&gap, None).unwrap();
+        let gap = Gradation::from_lines(&gap).unwrap();
         let of = Specification::of("gap", &[("gap".into(), gap)], SpecificationOptions::default());
         let unstable = of.findings.iter().find(|of| of.finding.id == "unstable_base").unwrap().clone();
         let text = json!({

@@ -313,7 +313,7 @@ mod tests {
     use crate::verdict::batch_counts::counts_in_words;
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
-        Gradation::from_points(points, None).unwrap()
+        Gradation::from_lines(points).unwrap()
     }
 
     fn row(name: &str, curve: &Gradation, filter: &[NamedCurve], options: PairOptions) -> BatchRow {

@@ -134,7 +134,7 @@ mod tests {
     use crate::verdict::{BatchFilter, BatchRow, PairOptions};
 
     fn walked(sample: &str, met: bool, walk: Option<(Verdict, Confidence, bool)>) -> WalkedRow {
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
         let of = SoilSample { name: sample.into(), path: sample.into(), curve };
         let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];

@@ -223,9 +223,9 @@ mod tests {
     use crate::verdict::PairRules;
 
     fn pair(filter_scale: f64) -> PairRules {
-        let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)]).unwrap();
         let sizes = [(0.5 * filter_scale, 0.0), (2.0 * filter_scale, 100.0)];
-        PairRules::of(&base, &Gradation::from_points(&sizes, None).unwrap())
+        PairRules::of(&base, &Gradation::from_lines(&sizes).unwrap())
     }
 
     #[test]
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn an_authority_with_criteria_of_stability_does_not_call_met_what_is_too_coarse_after_washout() {
         use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let pair = PairRules::of(&soil(&REGRADED_TILL), &soil(&GRAVEL_0_32));
         let said = |by| of_pair(&pair.rules, by, pair.filter.d15_mm, None).unwrap();
         let corps = said(Authority::Usace);
@@ -282,10 +282,10 @@ mod tests {
     /// A clay has the floor of both rules of drainage; of a sand they ask for 5 and 3 times D15B.
     #[test]
     fn a_limit_of_drainage_is_listed_once() {
-        let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None).unwrap();
+        let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)]).unwrap();
         let clay = [(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)];
         for (base, count) in [(&clay[..], 1), (&[(0.1, 0.0), (0.4, 100.0)], 2)] {
-            let pair = PairRules::of(&Gradation::from_points(base, None).unwrap(), &filter);
+            let pair = PairRules::of(&Gradation::from_lines(base).unwrap(), &filter);
             let drains = |rule: &&AppliedRule| rule.id.starts_with(PERMEABILITY);
             let listed = stated_by(&pair.rules, Authority::Usace);
             assert_eq!(listed.iter().filter(drains).count(), count);
@@ -297,10 +297,10 @@ mod tests {
     /// A design reads its rules at a D15F that keeps them all: its sentence goes by limits.
     #[test]
     fn every_stricter_limit_is_named_beside_a_design() {
-        let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None).unwrap();
-        let fine = Gradation::from_points(&[(0.01, 0.0), (0.06, 90.0), (0.2, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)]).unwrap();
+        let fine = Gradation::from_lines(&[(0.01, 0.0), (0.06, 90.0), (0.2, 100.0)]).unwrap();
         let till =
-            Gradation::from_points(&[(0.01, 0.0), (0.075, 37.0), (0.6, 80.0), (4.0, 100.0)], None).unwrap();
+            Gradation::from_lines(&[(0.01, 0.0), (0.075, 37.0), (0.6, 80.0), (4.0, 100.0)]).unwrap();
         let mut named = 0;
         for base in [base, fine, till] {
             let least = PairRules::of(&base, &Gradation::linear_from_dx(15.0, 0.15, 1.5).unwrap()).rules;
@@ -338,7 +338,7 @@ mod tests {
     fn what_has_no_result_is_named_and_none_is_broken_only_where_all_are_met() {
         use crate::verdict::PairOptions;
         let soil =
-            |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_points(points, None).unwrap())];
+            |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_lines(points).unwrap())];
         let filter = soil(&[(0.5, 0.0), (2.0, 100.0)]);
         let options = PairOptions { joint_mm: Some(2.0), ..PairOptions::default() };
         let base = soil(&[(0.08, 0.0), (0.3, 100.0)]);
@@ -364,8 +364,8 @@ mod tests {
 
     #[test]
     fn a_filter_with_its_d15_in_the_pan_has_the_limit_all_the_same() {
-        let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None).unwrap();
-        let filter = Gradation::from_points(&[(0.5, 30.0), (2.0, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)]).unwrap();
+        let filter = Gradation::from_lines(&[(0.5, 30.0), (2.0, 100.0)]).unwrap();
         let pair = PairRules::of(&base, &filter);
         assert_eq!(pair.filter.d15_mm, None);
         let said = of_pair(&pair.rules, Authority::Nrcs, None, None).unwrap();

@@ -340,7 +340,7 @@ mod tests {
     use crate::verdict::{PairRules, judge};
 
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
-        let soil = |points| Gradation::from_points(points, None).unwrap();
+        let soil = |points| Gradation::from_lines(points).unwrap();
         let rules = PairRules::of(&soil(base), &soil(filter)).rules;
         headline(&rules, verdict, judge(verdict, &rules, Vec::new()).confidence, None)
     }

@@ -292,7 +292,7 @@ mod tests {
     use crate::verdict::SpecificationOptions;
 
     fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
-        let curve = Gradation::from_points(points, None).unwrap();
+        let curve = Gradation::from_lines(points).unwrap();
         let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
         let of = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
         DesignedSample::of(&sample, &of)

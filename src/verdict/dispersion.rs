@@ -206,7 +206,7 @@ mod tests {
         verdict: Verdict,
         d15f: f64,
     ) -> (Option<(&'static str, String)>, Confidence) {
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let base = soil(base);
         let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
         let pair = PairRules::of(&base, &filter);
@@ -272,7 +272,7 @@ mod tests {
         let lacks = "If it is, D15F is to be at most 0.480 mm, as D85B is not known; have the base tested \
                      with a hydrometer. ";
         assert!(sentence.contains(lacks), "{sentence}");
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let (base, filter) = (soil(&clay), soil(&[(0.5, 0.0), (0.8, 15.0), (2.0, 100.0)]));
         let beyond =
             IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
@@ -296,7 +296,7 @@ mod tests {
         let base = base.unwrap();
         let said = |d15f: f64| {
             let points = [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
-            let filter = Gradation::from_points(&points, None).unwrap();
+            let filter = Gradation::from_lines(&points).unwrap();
             let inputs = RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) };
             let of = IfDispersive::of(&inputs).unwrap();
             of.beyond_in_words(&PairRules::of(&base, &filter).rules, Some(d15f))
@@ -316,7 +316,7 @@ mod tests {
         let of_gap = |scale: f64| {
             let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
             let filter = gap.map(|(size, percent)| (scale * size, percent));
-            let filter = Gradation::from_points(&filter, None).unwrap();
+            let filter = Gradation::from_lines(&filter).unwrap();
             let pair = PairRules::of(&base, &filter);
             (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
         };

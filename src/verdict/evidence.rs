@@ -193,7 +193,7 @@ mod tests {
     use crate::verdict::PairRules;
 
     fn soil(points: &[(f64, f64)]) -> BaseSoil {
-        BaseSoil::of(&Gradation::from_points(points, None).unwrap(), false)
+        BaseSoil::of(&Gradation::from_lines(points).unwrap(), false)
     }
 
     /// A sand without fines, D85B 0.487 mm.
@@ -208,7 +208,7 @@ mod tests {
     /// The rules of practice of a base and a uniform filter of this D15.
     fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
         let filter = Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap();
-        PairRules::of(&Gradation::from_points(base, None).unwrap(), &filter).rules
+        PairRules::of(&Gradation::from_lines(base).unwrap(), &filter).rules
     }
 
     fn margin(holds: f64, erodes: f64) -> Margin {

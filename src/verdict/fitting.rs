@@ -207,7 +207,7 @@ mod tests {
     /// A core of category 2, whose limit practice sets at 0.7 mm: D15 of C33 sand is 0.178 to 0.424 mm, and
     /// at 1.18 mm it leaves the band.
     fn core(confidence: Confidence) -> Design {
-        let base = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let of = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let fit = |name: &str, holds| {
             serde_json::json!({"name": name, "d15_mm": [0.178, 0.424], "drains": true, "holds": holds,

@@ -192,7 +192,7 @@ mod tests {
         ];
         let is_open = between(0.0, 1.0) < 0.4;
         let rows: Vec<(f64, f64)> = rows.into_iter().filter(|row| !is_open || row.0 >= 0.075).collect();
-        let base = Gradation::from_points(&rows, None).ok()?;
+        let base = Gradation::from_lines(&rows).ok()?;
         let any = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
         let rules = PairRules::of(&base, &any).rules;
         let limit = rules.iter().find(|rule| rule.id == "sherard-dunnigan")?.limit?;
@@ -246,7 +246,7 @@ mod tests {
     /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter is exchanged with.
     #[test]
     fn a_base_that_is_regraded_at_a_gap_is_no_exchange() {
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let gravel = soil(&[(0.01, 0.0), (0.05, 9.0), (0.06, 12.0), (2.0, 12.0), (8.0, 60.0), (20.0, 100.0)]);
         let filter = soil(&[(0.15, 0.0), (0.2, 15.0), (0.6, 60.0), (2.0, 100.0)]);
         let BaseSoil { regraded_at_mm, gradation, .. } = BaseSoil::of(&gravel, false);
@@ -260,10 +260,10 @@ mod tests {
     #[test]
     fn a_broad_till_is_no_exchange() {
         let till = [(0.002, 2.0), (0.02, 15.0), (0.075, 22.0), (0.425, 34.0), (5.0, 50.0), (75.0, 100.0)];
-        let till = Gradation::from_points(&till, None).unwrap();
+        let till = Gradation::from_lines(&till).unwrap();
         let c33 =
             [(0.075, 1.5), (0.15, 5.0), (0.3, 17.5), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (9.5, 100.0)];
-        let c33 = Gradation::from_points(&c33, None).unwrap();
+        let c33 = Gradation::from_lines(&c33).unwrap();
         assert!(till.d(50.0) > c33.d(50.0) && till.d(15.0).unwrap() < 0.021);
         assert_eq!(Mistake::find(&till, &c33, false), None);
         assert_eq!(Mistake::find(&c33, &till, false).unwrap().kind, MistakeKind::Exchanged);

@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn a_filter_is_asked_for_by_the_limit_of_design() {
         let base = [(0.01, 10.0), (0.075, 38.0), (0.425, 60.0), (2.0, 90.0), (4.75, 100.0)];
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let rules = PairRules::of(&soil(&base), &soil(&[(0.7, 0.0), (3.0, 100.0)])).rules;
         let limit = |id: &str| rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
         assert!(limit(DESIGN) > 1.0 && (limit(TESTS_NO_EROSION) - 0.7).abs() < 1e-9, "{rules:?}");

@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_till_on_a_gravel_is_not_retained() {
         let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
-        let till = Gradation::from_points(&till, None).unwrap();
+        let till = Gradation::from_lines(&till).unwrap();
         let gravel = Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap();
         let pair = PairRules::of(&till, &gravel);
         assert_eq!((pair.base.category, pair.base.regraded), (Some(3), true));
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn a_limit_that_a_dispersive_base_would_have_stands_in_the_line() {
         let soil =
-            |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())];
+            |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
         let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
         let said = |d15f: f64, dispersive| {
             let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
@@ -274,7 +274,7 @@ mod tests {
                 points.push((size, if points.len() > 11 { 100.0 } else { percent }));
                 percent = points[points.len() - 1].1;
             }
-            Gradation::from_points(&points, None).unwrap()
+            Gradation::from_lines(&points).unwrap()
         };
         (0..count).map(|at| (format!("{name}{at}"), curve(draw))).collect()
     }
@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn the_curve_with_the_lower_limit_counts_though_its_d85_is_larger() {
         let soil = |name: &str, points: &[(f64, f64)]| {
-            (name.to_owned(), Gradation::from_points(points, None).unwrap())
+            (name.to_owned(), Gradation::from_lines(points).unwrap())
         };
         let clay = soil("clay", &[(0.002, 54.0), (0.09, 62.8), (0.71, 72.1), (1.7, 91.0), (6.3, 100.0)]);
         let sand = soil("sand", &[(0.075, 0.0), (0.18, 12.0), (0.355, 54.0), (0.425, 73.9), (0.5, 100.0)]);
@@ -345,7 +345,7 @@ mod tests {
         for bases in [[clay.clone(), sand.clone()], [sand, clay]] {
             let pair = PairRules::of_envelopes(&bases, &filter, PairOptions::default());
             let design = pair.rules.iter().find(|rule| rule.id == DESIGN).unwrap();
-            assert_eq!((design.met, design.limit, &*design.base_curve), (Some(false), Some(0.7), "clay"));
+            assert_eq!((design.met, design.limit, &*design.base_curve), (Some(false), Some(0.2), "clay"));
             assert_eq!((pair.base.curve.as_str(), pair.base.category), ("clay", Some(2)));
         }
     }

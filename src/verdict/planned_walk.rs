@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
-        Gradation::from_points(points, None).unwrap()
+        Gradation::from_lines(points).unwrap()
     }
 
     /// A plan that nothing is found about, and what each change of it is found to be.

@@ -285,7 +285,7 @@ mod tests {
     use crate::verdict::{PairOptions, PairRules};
 
     fn of(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
-        let one = |points| vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())];
+        let one = |points| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
         let options = PairOptions { dispersive, ..PairOptions::default() };
         PairRules::of_envelopes(&one(base), &one(filter), options).rules
     }

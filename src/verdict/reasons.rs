@@ -154,7 +154,7 @@ mod tests {
             None => String::new(),
         };
         let soil = [(0.01, 0.0), (0.075, 40.0), (2.0, 60.0), (19.0, 100.0)];
-        let regraded = Gradation::from_points(&soil, None).unwrap().regraded().why;
+        let regraded = Gradation::from_lines(&soil).unwrap().regraded().why;
         for (of, words) in [
             (finding::cohesive_fines(88.0), "88 % fines"),
             (finding::fines_not_sieved(25.0, 0.3), "up to 25 % fines"),

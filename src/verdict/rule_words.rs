@@ -219,7 +219,7 @@ mod tests {
     use crate::verdict::PairRules;
 
     fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
-        let base = Gradation::from_points(base, None).unwrap();
+        let base = Gradation::from_lines(base).unwrap();
         PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
     }
 
@@ -234,7 +234,7 @@ mod tests {
         }
         // The same as the range of tests has it, where the limit of design is at or above its lower end.
         for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
-            let base = Gradation::from_points(&fines(percent), None).unwrap();
+            let base = Gradation::from_lines(&fines(percent)).unwrap();
             let all = rules(&fines(percent), 0.3);
             let design = all.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.limit).unwrap();
             let [low, _] = range_of_tests(percent, base.d(85.0).unwrap());

@@ -108,7 +108,7 @@ mod tests {
 
     /// The rules of a base and a filter of this D15.
     fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         PairRules::of(&soil(base), &soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])).rules
     }
 

@@ -155,7 +155,7 @@ pub(in crate::verdict) mod tests {
     use crate::verdict::PairRules;
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)]) -> Vec<AppliedRule> {
-        let soil = |points| Gradation::from_points(points, None).unwrap();
+        let soil = |points| Gradation::from_lines(points).unwrap();
         PairRules::of(&soil(base), &soil(filter)).rules
     }
 
@@ -268,7 +268,7 @@ pub(in crate::verdict) mod tests {
     #[test]
     fn one_of_several_criteria_is_a_doubt_alone() {
         let broad = Gradation::linear_from_d0(0.1, 60.0).unwrap();
-        let base = Gradation::from_points(&[(0.05, 0.0), (0.2, 100.0)], None).unwrap();
+        let base = Gradation::from_lines(&[(0.05, 0.0), (0.2, 100.0)]).unwrap();
         let rules = PairRules::of(&base, &broad).rules;
         let unstable = rules.iter().filter(|of| of.is_broken() && of.role == RuleRole::Stability);
         assert!(unstable.count() > 0 && met_of(&rules, LI_FANNIN) == Some(true));

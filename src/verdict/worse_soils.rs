@@ -63,7 +63,7 @@ impl Chance {
 }
 
 fn soil(points: &[(f64, f64)]) -> Option<Gradation> {
-    Gradation::from_points(points, None).ok()
+    Gradation::from_lines(points).ok()
 }
 
 fn rules(filter: &Gradation, base: &Gradation, dispersive: bool, joint_mm: Option<f64>) -> Vec<AppliedRule> {
@@ -125,6 +125,9 @@ fn testing_more_of_the_fines_never_takes_a_failure_back() {
             let soil = BaseSoil::of(base, false);
             soil.regraded_at_mm.or(soil.hidden_below_mm)
         };
+        // A flat part that finer sieves show may be a gap.
+        let flat = |base: &Gradation| base.regraded_otherwise().and_then(|other| other.at_mm);
+        let is_same = [part(&open), flat(&open)] == [part(&whole), flat(&whole)];
         let (before, after) = (part(&open), part(&whole));
         let [open, whole] = [&open, &whole].map(|base| rules(&filter, base, dispersive, None));
         let met = |id: &str| {
@@ -144,12 +147,12 @@ fn testing_more_of_the_fines_never_takes_a_failure_back() {
             let [was, is] = met(id);
             found_out += usize::from(was.is_none() && is.is_some());
             assert!(was != Some(false) || is == Some(false), "{id}: {points:?} from {missing}");
-            if before == after {
+            if is_same {
                 assert!(was != Some(true) || is == Some(true), "{id}: {points:?} from {missing}");
             }
         }
         let [was, is] = met("terzaghi");
-        assert!(before != after || was != Some(true) || is == Some(true), "{points:?} from {missing}");
+        assert!(!is_same || was != Some(true) || is == Some(true), "{points:?} from {missing}");
         if was != Some(false) || is == Some(false) {
             let retention = |rules: &[AppliedRule]| -> Vec<AppliedRule> {
                 rules.iter().filter(|rule| rule.role == RuleRole::Retention).cloned().collect()

@@ -144,7 +144,7 @@ mod tests {
         let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
         let gravel = [(0.2, 0.0), (0.5, 10.0), (2.0, 30.0), (4.75, 58.0), (19.0, 100.0)];
         for points in [&gap[..], &gravel] {
-            let base = Gradation::from_points(points, None).unwrap();
+            let base = Gradation::from_lines(points).unwrap();
             let regraded = base.regraded();
             let (whole, part) = (base.d(85.0).unwrap(), regraded.gradation.d(85.0).unwrap());
             assert!(regraded.at_mm.is_some() && whole > 2.0 * part, "{whole} {part}");

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     fn soil(points: &[(f64, f64)]) -> BaseSoil {
-        BaseSoil::of(&Gradation::from_points(points, None).unwrap(), false)
+        BaseSoil::of(&Gradation::from_lines(points).unwrap(), false)
     }
 
     /// The till of the first trial: 35 % finer than 0.075 mm of the whole, 92 % finer than 4.75 mm.

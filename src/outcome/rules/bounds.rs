@@ -7,7 +7,7 @@ use crate::outcome::applied::{AppliedRule, ValueBound};
 
 /// Rules of a filter, or of a band of several.
 fn rules(filters: &[&[(f64, f64)]]) -> Vec<AppliedRule> {
-    let soil = |points: &[(f64, f64)]| ("soil".to_owned(), Gradation::from_points(points, None).unwrap());
+    let soil = |points: &[(f64, f64)]| ("soil".to_owned(), Gradation::from_lines(points).unwrap());
     let filters: Vec<NamedCurve> = filters.iter().map(|points| soil(points)).collect();
     apply_to_envelopes(&[soil(&[(0.2, 0.0), (0.6, 100.0)])], &filters, false, None)
 }

@@ -236,8 +236,12 @@ fn combined(
     let lost = lost.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
     let judged = if is_plain { plain } else { worst };
     let note = note(rule, inputs, choices[moves], &judged, &results);
+    // Where one reading leaves the limit open, it is no more than another's.
+    let least = results.iter().filter_map(|judged| judged.limit).reduce(f64::min);
+    let is_open = judged.met.is_none() && judged.limit_at_most && !rule.at_least && !is_plain;
+    let limit = if is_open { least } else { judged.limit };
     let without_finer = lost.filter(|_| judged.met == Some(false)).or(judged.without_finer);
-    Judged { without_finer, ..judged }.noted(note)
+    Judged { without_finer, limit, ..judged }.noted(note)
 }
 
 /// Whether two results differ in more than their last digits.

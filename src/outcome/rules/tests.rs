@@ -6,7 +6,7 @@ use crate::outcome::applied::{AppliedRule, RuleRole};
 use crate::outcome::record::RuleNote;
 
 fn sieve(points: &[(f64, f64)]) -> Gradation {
-    Gradation::from_points(points, None).unwrap()
+    Gradation::from_lines(points).unwrap()
 }
 
 fn of(id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {

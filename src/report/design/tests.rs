@@ -172,7 +172,7 @@ fn a_filter_that_holds_all_that_was_searched_says_so_and_is_not_green() {
 #[test]
 fn the_figure_is_of_the_row_that_counts_and_its_limits_are_those_of_the_rules() {
     let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
-    let base = Gradation::from_points(&gap, None).unwrap();
+    let base = Gradation::from_lines(&gap).unwrap();
     let (d85, part) = (base.d(85.0).unwrap(), base.regraded().gradation.d(85.0).unwrap());
     let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85));
     let mut design = design(of(5.0), Confidence::Outside);
@@ -192,7 +192,7 @@ fn the_figure_is_of_the_row_that_counts_and_its_limits_are_those_of_the_rules() 
 #[test]
 fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
     let points = [(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)];
-    let base = Gradation::from_points(&points, None).unwrap();
+    let base = Gradation::from_lines(&points).unwrap();
     let d85 = base.d(85.0).unwrap();
     let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85));
     let mut open = design(of(3.0), Confidence::Within);
@@ -240,7 +240,7 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
 #[test]
 fn a_boundary_that_does_not_decide_is_not_in_bold() {
     let silt =
-        Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+        Gradation::from_lines(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]).unwrap();
     let d85 = silt.d(85.0).unwrap();
     let with = |ratio: f64| {
         let mut of = design(Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85)), Confidence::Outside);

@@ -32,11 +32,11 @@ fn design(base: &Gradation, held: Option<f64>) -> Design {
 
 fn till() -> Gradation {
     let points = [(0.001, 0.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
-    Gradation::from_points(&points, None).unwrap()
+    Gradation::from_lines(&points).unwrap()
 }
 
 fn sand() -> Gradation {
-    Gradation::from_points(&[(0.1, 0.0), (0.5, 100.0)], None).unwrap()
+    Gradation::from_lines(&[(0.1, 0.0), (0.5, 100.0)]).unwrap()
 }
 
 /// The till of the third trial: the walk holds it to 12.6 D85B, here 19.3 mm, and practice to 1.12 mm.
@@ -186,9 +186,9 @@ fn the_inverse_stops_at_the_base_that_practice_allows() {
 /// `judge` calls this gravel not met on this till: its D15F of 0.61 mm is 2.84 mm without its finest 19.4 %.
 #[test]
 fn a_filter_that_washes_out_is_said_to_be_beyond_the_limit_of_its_design() {
-    let till = Gradation::from_points(&REGRADED_TILL, None).unwrap();
+    let till = Gradation::from_lines(&REGRADED_TILL).unwrap();
     let gravel = |times: f64| {
-        Gradation::from_points(&GRAVEL_0_32.map(|(size, percent)| (times * size, percent)), None).unwrap()
+        Gradation::from_lines(&GRAVEL_0_32.map(|(size, percent)| (times * size, percent))).unwrap()
     };
     let of = |times: f64| {
         let mut found = design(&till, Some(12.6));

@@ -9,7 +9,7 @@ use crate::verdict::washout::washout;
 use crate::verdict::{PairOptions, PairRules};
 
 fn soil(points: &[(f64, f64)]) -> Gradation {
-    Gradation::from_points(points, None).unwrap()
+    Gradation::from_lines(points).unwrap()
 }
 
 fn of(points: &[(f64, f64)]) -> Specification {
