@@ -1899,11 +1899,11 @@ class SizeBand(TypedDict):
     Keys
     ----
     sizes
-        D5, D15, D60, D90 and D100 of both sides.
+        D5, D15 and D60 of both sides.
     fine_side
-        The fine side: size (mm) and percent finer, rising.
+        The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies above.
     coarse_side
-        The coarse side.
+        The coarse side, likewise.
     """
 
     sizes: List[BandSize]
@@ -1924,13 +1924,13 @@ class SieveLimit(TypedDict):
         Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where no
         whole percent lies within.
     max_percent_finer
-        Greatest percent finer, of the fine side, likewise.
+        Greatest percent finer, of the fine side, likewise; `None` above its D60.
     """
 
     sieve: str
     opening_mm: float
     min_percent_finer: float
-    max_percent_finer: float
+    max_percent_finer: Optional[float]
 
 
 class ProductMargin(TypedDict):
@@ -1949,11 +1949,9 @@ class ProductMargin(TypedDict):
         known whether it drains.
     holds_by
         The maximum D15F over D15 of its coarse side: at least 1 where it holds.
-    worst_sieve_mm
-        The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
-        within it.
-    leaves_band_by
-        By how much they leave it there (percentage points finer); 0 where they stay within.
+    not_kept
+        What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
+        empty where they keep all.
     source
         Where its limits were read.
     """
@@ -1963,8 +1961,7 @@ class ProductMargin(TypedDict):
     d15_coarse_mm: float
     drains_by: Optional[float]
     holds_by: Optional[float]
-    worst_sieve_mm: Optional[float]
-    leaves_band_by: Optional[float]
+    not_kept: str
     source: str
 
 
@@ -2015,6 +2012,8 @@ class Specification(_Specification, total=False):
         Minimum D15F (mm) that drains the base; `None` where it is not known.
     d15f_min_at_most
         Whether the true least is not known, and is at most that.
+    finer
+        Whether the band lies at the finer end of what is allowed, and not at the coarser.
     d15f_max_mm
         Maximum D15F (mm) that is allowed; `None` where it is not known.
     if_dispersive
@@ -2036,6 +2035,7 @@ class Specification(_Specification, total=False):
     inputs: List[InputFile]
     findings: List[DesignFinding]
     d15f_min_at_most: bool
+    finer: bool
     if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
 
