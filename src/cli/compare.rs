@@ -5,11 +5,11 @@ use std::path::Path;
 
 use super::args::{CompareArgs, SettingArgs, WalkArgs};
 use super::case_progress::CaseProgress;
-use super::exit::accept;
+use super::exit::{Answer, accept};
 use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
-use crate::outcome::comparison::Comparison;
+use crate::outcome::comparison::{ComparedCase, Comparison};
 use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
@@ -39,8 +39,11 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     } else if !quiet {
         show(&plan, &comparison, &args.out);
     }
-    let cases = comparison.cases.iter().map(|case| (case.name.as_str(), case.verdict, case.confidence));
-    accept(args.accept.fail_on, cases)
+    let answer = |case: &ComparedCase| {
+        let (verdict, confidence) = (case.verdict, case.confidence);
+        Answer { verdict, confidence, by_practice: case.by_practice }
+    };
+    accept(args.accept.fail_on, comparison.cases.iter().map(|case| (case.name.as_str(), answer(case))))
 }
 
 /// How cases are walked that options of the command line describe.

@@ -23,18 +23,39 @@ pub fn in_words() -> String {
     format!("Exit codes:\n{}", lines.concat())
 }
 
-/// Which verdicts are not accepted. An undecided verdict never is.
+/// Which answers are not accepted, by the worse of walk and practice. What nobody can say never is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FailOn {
-    /// Some erosion, continuing erosion, undecided
+    /// Some erosion, continuing erosion, undecided; practice not met or not known
     Some,
-    /// Continuing erosion, undecided
+    /// Continuing erosion, undecided; practice not known, or not met with continuing erosion not excluded
     Continuing,
-    /// Anything but no erosion within the checked range
+    /// Anything but practice met and no erosion within the checked range
     Doubt,
 }
 
+/// What a walk and practice say of a case.
+#[derive(Clone, Copy)]
+pub struct Answer {
+    pub verdict: Verdict,
+    pub confidence: Confidence,
+    /// The class as which practice counts; `None` where no rule was applied.
+    pub by_practice: Option<Verdict>,
+}
+
 impl FailOn {
+    /// Why an answer is not accepted, by the worse of walk and practice; `None` where it is.
+    fn refused(self, answer: Answer) -> Option<String> {
+        let Answer { verdict, confidence, by_practice } = answer;
+        if self.refuses(verdict, confidence) {
+            return Some(format!("{} ({})", verdict.words(), confidence.words()));
+        }
+        match by_practice.filter(|of| self.refuses(*of, Confidence::Within))? {
+            Verdict::Undecided => Some("nobody can say by practice".into()),
+            class => Some(format!("practice is not met ({} not excluded)", class.words())),
+        }
+    }
+
     fn refuses(self, verdict: Verdict, confidence: Confidence) -> bool {
         match self {
             Self::Some => verdict != Verdict::None,
@@ -59,9 +80,9 @@ impl FailOn {
 /// The cases whose verdict is not accepted.
 pub fn accept<'a>(
     fail_on: Option<FailOn>,
-    cases: impl IntoIterator<Item = (&'a str, Verdict, Confidence)>,
+    cases: impl IntoIterator<Item = (&'a str, Answer)>,
 ) -> Result<(), RunError> {
-    accept_walked(fail_on, cases.into_iter().map(|(name, verdict, label)| (name, Ok((verdict, label)))))
+    accept_walked(fail_on, cases.into_iter().map(|(name, answer)| (name, Ok(answer))))
 }
 
 /// As [`accept`], of cases of which some were not walked: why. Those are not accepted.
@@ -70,14 +91,11 @@ pub fn accept<'a>(
 /// The cases whose verdict is not accepted, or not known.
 pub fn accept_walked<'a>(
     fail_on: Option<FailOn>,
-    cases: impl IntoIterator<Item = (&'a str, Result<(Verdict, Confidence), &'a str>)>,
+    cases: impl IntoIterator<Item = (&'a str, Result<Answer, &'a str>)>,
 ) -> Result<(), RunError> {
     let Some(fail_on) = fail_on else { return Ok(()) };
-    let refused = |walked: Result<(Verdict, Confidence), &str>| match walked {
-        Ok((verdict, label)) => {
-            let said = || format!("{} ({})", verdict.words(), label.words());
-            fail_on.refuses(verdict, label).then(said)
-        }
+    let refused = |walked: Result<Answer, &str>| match walked {
+        Ok(answer) => fail_on.refused(answer),
         Err(why) => Some(format!("not walked ({why})")),
     };
     let said = |name: &str, why: String| {
@@ -106,7 +124,7 @@ mod tests {
         for (verdict, confidence) in every.concat() {
             let accepted = FailOn::value_variants()
                 .iter()
-                .map(|of| accept(Some(*of), [("a", verdict, confidence)]).is_ok());
+                .map(|of| accept(Some(*of), [("a", met(verdict, confidence))]).is_ok());
             let expected = match (verdict, confidence) {
                 (Verdict::None, Confidence::Within) => [true, true, true],
                 (Verdict::None, _) => [true, true, false],
@@ -114,13 +132,32 @@ mod tests {
                 _ => [false; 3],
             };
             assert_eq!(accepted.collect::<Vec<_>>(), expected, "{verdict:?}, {confidence:?}");
-            assert!(accept(None, [("a", verdict, confidence)]).is_ok());
+            assert!(accept(None, [("a", met(verdict, confidence))]).is_ok());
+        }
+    }
+
+    fn met(verdict: Verdict, confidence: Confidence) -> Answer {
+        Answer { verdict, confidence, by_practice: Some(Verdict::None) }
+    }
+
+    #[test]
+    fn the_worse_of_practice_and_walk_decides() {
+        for (by_practice, accepted) in [
+            (None, [true; 3]),
+            (Some(Verdict::None), [true; 3]),
+            (Some(Verdict::Some), [false, true, false]),
+            (Some(Verdict::Continuing), [false; 3]),
+            (Some(Verdict::Undecided), [false; 3]),
+        ] {
+            let answer = Answer { by_practice, ..met(Verdict::None, Confidence::Within) };
+            let each = FailOn::value_variants().iter().map(|of| accept(Some(*of), [("a", answer)]).is_ok());
+            assert_eq!(each.collect::<Vec<_>>(), accepted, "{by_practice:?}");
         }
     }
 
     #[test]
     fn a_case_that_was_not_walked_is_not_accepted() {
-        let within = Ok((Verdict::None, Confidence::Within));
+        let within = Ok(met(Verdict::None, Confidence::Within));
         for of in FailOn::value_variants() {
             assert!(accept_walked(Some(*of), [("a", within)]).is_ok());
             let problem = accept_walked(Some(*of), [("a", within), ("b", Err("no table"))]).unwrap_err();

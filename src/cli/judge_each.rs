@@ -7,7 +7,7 @@ use super::args::JudgeArgs;
 use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
 use super::compare::{campaign_options, of_earlier_cover};
-use super::exit::accept_walked;
+use super::exit::{Answer, accept_walked};
 use super::print::{json, plain, shown, to_stdout};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
@@ -54,8 +54,11 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let is_asked = |row: &WalkedRow| !args.governing || row.governs.is_some() || row.rules.is_refused;
     let asked = batch.rows.iter().zip(&names).filter(|(row, _)| row.walk.is_some() || is_asked(row));
     let pairs = asked.map(|(row, name)| {
-        let class = row.walk.as_ref().map(|walk| (walk.verdict, walk.confidence));
-        (name.as_str(), class.ok_or(row.not_walked.as_str()))
+        let answer = row.walk.as_ref().map(|walk| {
+            let (verdict, confidence) = (walk.verdict, walk.confidence);
+            Answer { verdict, confidence, by_practice: walk.by_practice }
+        });
+        (name.as_str(), answer.ok_or(row.not_walked.as_str()))
     });
     accept_walked(results.accept.fail_on, pairs)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::exit::accept;
+use super::exit::{Answer, accept};
 use super::print::{count, counted, grains_per_void, json, of_base, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
@@ -16,6 +16,7 @@ use crate::run::folder::claim;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
+use crate::verdict::counts_as;
 use crate::verdict::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.
@@ -31,7 +32,9 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
 impl AcceptArgs {
     /// Ends a command by the verdict of its run.
     pub fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
-        accept(self.fail_on, [("", run.outcome.verdict, run.outcome.confidence)])
+        let outcome = &run.outcome;
+        let (verdict, confidence) = (outcome.verdict, outcome.confidence);
+        accept(self.fail_on, [("", Answer { verdict, confidence, by_practice: counts_as(&outcome.rules) })])
     }
 }
 

@@ -26,6 +26,7 @@ pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String])
     let options = SpecifyOptions {
         base: base.to_owned(),
         dispersive: args.dispersive,
+        finer: args.finer,
         sieves: args.sieves,
         cover: about.cover(),
         inches: about.shows_inches(),
@@ -91,11 +92,13 @@ fn words(of: &Specification) -> String {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {
             line(&format!(
-                "{:<12} {:>11}   {} to {}",
+                "{:<12} {:>11}   {}",
                 limit.sieve,
                 significant(limit.opening_mm),
-                trimmed(limit.min_percent_finer),
-                trimmed(limit.max_percent_finer)
+                match limit.max_percent_finer {
+                    Some(most) => format!("{} to {}", trimmed(limit.min_percent_finer), trimmed(most)),
+                    None => format!("{} or more", trimmed(limit.min_percent_finer)),
+                }
             ));
         }
         let beside = of.beside_limits().map(|said| sized(&said));

@@ -69,6 +69,9 @@ pub struct ComparedCase {
     /// Where the filter stands by practice; records of earlier versions do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub standing: Option<ComparedStanding>,
+    /// The class as which practice counts; records of earlier versions do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_practice: Option<Verdict>,
     /// Whether the filter holds, in a line; records of earlier versions do not say.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub headline: String,
@@ -238,6 +241,7 @@ impl ComparedCase {
             reasons: outcome.reasons.clone(),
             practice: String::new(),
             standing: None,
+            by_practice: None,
             headline: String::new(),
             walk: String::new(),
             next: String::new(),

@@ -12,7 +12,7 @@ const BETWEEN: [&str; 2] = [" to ", " and "];
 const OF_BAND: [&str; 3] = ["from ", "between ", "D15F "];
 
 /// What a limit is called before its number; the last of them in its clause counts.
-const LIMITS: [(&str, Limit); 15] = [
+const LIMITS: [(&str, Limit); 24] = [
     ("least", Limit::Least),
     ("minimum", Limit::Least),
     ("down to", Limit::Least),
@@ -29,10 +29,19 @@ const LIMITS: [(&str, Limit); 15] = [
     ("not stated: less than", Limit::Greatest),
     ("up to", Limit::Greatest),
     ("limit of design is", Limit::Greatest),
+    ("limit is", Limit::Greatest),
+    ("limit of practice is", Limit::Greatest),
+    ("(design) is", Limit::Greatest),
+    ("within", Limit::Greatest),
+    ("more than", Limit::Greatest),
+    ("beyond", Limit::Greatest),
+    ("below a D15F of", Limit::Greatest),
+    ("no erosion lower, at", Limit::Greatest),
+    ("limit", Limit::Greatest),
 ];
 
-/// Ends of clauses.
-const ENDS: [&str; 2] = ["; ", ". "];
+/// Ends of clauses; behind a limit the size of the filter is none.
+const ENDS: [&str; 5] = ["; ", ". ", ", D15F ", ", and ", ": D15F "];
 
 /// Which limit a length is, so that its inches do not go beyond it.
 #[derive(Clone, Copy)]
@@ -105,8 +114,14 @@ fn inches(mm: f64, limit: Option<Limit>) -> String {
 
 /// Which limit a number is, by the words around it; `None` where it is none.
 fn limit(before: &str, after: &str) -> Option<Limit> {
-    if after.starts_with(" or more") {
-        return Some(Limit::Least);
+    let behind = [
+        (" or more", Limit::Least),
+        (" at the least", Limit::Least),
+        (" or less", Limit::Greatest),
+        (" at most", Limit::Greatest),
+    ];
+    if let Some((_, limit)) = behind.into_iter().find(|(words, _)| after.starts_with(words)) {
+        return Some(limit);
     }
     let clause = ENDS.iter().filter_map(|end| before.rfind(end)).max().unwrap_or(0);
     let called = |(words, limit): &(&str, Limit)| {

@@ -17,7 +17,7 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, unbroken};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::comparison::{ComparedCase, ComparedPair, ComparedStanding, Comparison};
+use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::{Confidence, Verdict};
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
@@ -177,8 +177,7 @@ fn lead(comparison: &Comparison) -> String {
 fn answers(comparison: &Comparison) -> Markup {
     html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
         @let headline = if case.headline.is_empty() { case.verdict.words() } else { &case.headline };
-        @let fails = case.standing == Some(ComparedStanding::Fails);
-        section.verdict.(colour(case.verdict, case.confidence, fails)) {
+        section.verdict.(colour(case.verdict, case.confidence, case.standing)) {
             p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
             ul {
                 @let lines = [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)];
@@ -298,7 +297,7 @@ mod tests {
             }],
         }))
         .unwrap();
-        let own = colour(Verdict::Some, Confidence::Within, standing(rules) == Standing::Fails);
+        let own = colour(Verdict::Some, Confidence::Within, Some(standing(rules).recorded()));
         (answers(&comparison).into_string(), own)
     }
 

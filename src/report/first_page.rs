@@ -12,6 +12,7 @@ use super::rules::{result, value_and_limit};
 use super::shell::{clean, model, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
+use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::record::{
     AppliedRule, Confidence, FindingRecord, NetworkKind, Outcome, SheetCover, Verdict,
 };
@@ -93,8 +94,7 @@ pub(super) fn answer(outcome: &Outcome) -> Markup {
     let all = findings(outcome);
     let (foremost, more) = all.split_at(all.len().min(FOREMOST));
     html! {
-        @let fails = standing(&outcome.rules).fails();
-        section.verdict.(colour(outcome.verdict, outcome.confidence, fails)) {
+        section.verdict.(colour_of(outcome)) {
             p.word { (clean(&capital(&headline))) "." }
             @for (name, said) in &lines {
                 p.practice { b { (name) } ": " (unbroken(said)) "." }
@@ -130,16 +130,27 @@ pub(super) fn findings(outcome: &Outcome) -> Vec<FindingRecord> {
     all.filter(|finding| !is_elsewhere(finding)).collect()
 }
 
-/// The colour of the answer: never green where the model was not checked or practice does not agree, and
-/// never that of a filter that holds where practice says that it does not.
-pub(super) fn colour(verdict: Verdict, confidence: Confidence, fails: bool) -> &'static str {
-    match verdict {
-        Verdict::Continuing => "continuing",
-        Verdict::Some | Verdict::Undecided if fails => "continuing",
-        Verdict::None if fails || confidence != Confidence::Within => "doubted",
-        Verdict::None => "none",
-        Verdict::Some => "some",
-        Verdict::Undecided => "undecided",
+/// The colour of the answer to a pair.
+pub fn colour_of(outcome: &Outcome) -> &'static str {
+    colour(outcome.verdict, outcome.confidence, Some(standing(&outcome.rules).recorded()))
+}
+
+/// The colour of the answer: that of a filter that does not hold where practice says so, whatever the walk
+/// says, and not where practice is met; never green where the model was not checked or practice does not
+/// agree.
+pub(super) fn colour(
+    verdict: Verdict,
+    confidence: Confidence,
+    standing: Option<ComparedStanding>,
+) -> &'static str {
+    match (standing, verdict) {
+        (Some(ComparedStanding::Fails), _) => "continuing",
+        (Some(ComparedStanding::Met), Verdict::Continuing) => "some",
+        (_, Verdict::Continuing) => "continuing",
+        (_, Verdict::None) if confidence != Confidence::Within => "doubted",
+        (_, Verdict::None) => "none",
+        (_, Verdict::Some) => "some",
+        (_, Verdict::Undecided) => "undecided",
     }
 }
 

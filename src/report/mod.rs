@@ -82,6 +82,7 @@ pub use design::write_design;
 pub use designs::write_designs;
 pub use error::ReportError;
 pub use export::{Exported, export};
+pub use first_page::colour_of;
 pub use folder::RunTexts;
 pub use network_walk::{network_walk_brief, network_walk_page};
 pub use packing::write_packing;

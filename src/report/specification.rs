@@ -180,39 +180,23 @@ fn limits(of: &Specification) -> Markup {
             .name("Sieve", |limit| clean(&limit.sieve))
             .number("Opening (mm)", |limit| significant(limit.opening_mm))
             .number("Least finer (%)", |limit| trimmed(limit.min_percent_finer))
-            .number("Greatest finer (%)", |limit| trimmed(limit.max_percent_finer))
+            .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), trimmed))
             .render())
         @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
         @if of.if_dispersive_in_words(DESIGN_AGAIN).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
-            "Percent finer by mass, rounded into the band. At most 5 % may be finer than \
+            "Percent finer by mass, rounded into the band; above D60F of a side no text was read for it. At most 5 % may be finer than \
              0.075 mm, and these fines must not be plastic. Segregation is not checked: the maximum D90F is \
              still to be set (see its step)."
         }
     }
 }
 
-/// Percentage points by which a product leaves the limit that stands at a sieve, which is rounded into the
-/// band: as a reader reckons them from what is printed.
-fn points_beyond(of: &Specification, product: &ProductMargin, points: f64, sieve_mm: f64) -> String {
-    let band = of.band.as_ref();
-    let printed = band.and_then(|band| band.printed_left_by(&product.product, sieve_mm));
-    trimmed((printed.unwrap_or(points) * 100.0).round() / 100.0)
-}
-
 /// Margins of standard products; who judges them elsewhere says there whether they fit.
 fn products(of: &Specification, says_fit: bool) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
-    let beyond = |product: &ProductMargin| match (product.leaves_band_by, product.worst_sieve_mm) {
-        (Some(points), Some(sieve)) => {
-            let points = points_beyond(of, product, points, sieve);
-            format!("{points} percentage points, at {} mm", significant(sieve))
-        }
-        (Some(_), None) => "nowhere".into(),
-        _ => "–".into(),
-    };
     let unit = SizeUnit::of(false, of.inches);
     let mut table = Table::of(&of.products)
         .class("study")
@@ -223,7 +207,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         })
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
-        .text("Leaves the band by most", beyond);
+        .text("What else its sides do not keep", |of| clean(&of.not_kept));
     if says_fit {
         table = table.text("", |product| match (&*of.product_in_words(product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
@@ -236,8 +220,8 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         @if !of.products.is_empty() {
             (table.render())
             p.small {
-                "A margin of 1 and more is kept. A product that fits by its D15 may still leave the band: \
-                 its supplier’s gradation decides."
+                "A margin of 1 and more is kept. Each product is tested with its own two sides; its \
+                 supplier’s gradation decides."
                 @if let Some(said) = to_check { " " (clean(&said)) }
             }
         }
@@ -248,7 +232,7 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::specification::{SizeBand, margins};
+    use crate::outcome::design::specification::margins;
     use crate::verdict::SpecificationOptions;
 
     #[test]
@@ -256,32 +240,18 @@ mod tests {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let said = core.products_in_words();
-        assert!(said.contains("ASTM C33 fine aggregate (leaves the band at "), "{said}");
+        assert_eq!(said, "Standard products that fit: ASTM C33 fine aggregate");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
         // The greatest is not known, and the least alone refuses the finest product.
-        let unknown = Specification {
-            d15f_max_mm: None,
-            products: margins((Some(0.2), false), None, None),
-            ..core.clone()
-        };
+        let unknown =
+            Specification { d15f_max_mm: None, products: margins((Some(0.2), false), None), ..core.clone() };
         assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
-        let unknown = Specification { products: margins((Some(0.1), false), None, None), ..unknown };
-        assert!(unknown.products_in_words().starts_with("No standard product is known to fit"));
+        let unknown = Specification { products: margins((Some(0.1), false), None), ..unknown };
+        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
         let page = products(&core, true).into_string();
         assert!(
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"
         );
-        // As a reader reckons from what is printed: 85 % at No. 16, and at most so much.
-        let sieve = core.limits.iter().find(|of| of.opening_mm == 1.18).unwrap();
-        let printed = 85.0 - sieve.max_percent_finer;
-        assert!(page.contains(&format!("{printed:.0} percentage points, at 1.18 mm")), "{page}");
-        // Of a band so narrow that its limit there has tenths.
-        let [fine_side, coarse_side] = [61.87, 61.31].map(|at| vec![[0.1, 0.0], [1.18, at], [10.0, 100.0]]);
-        let narrow = SizeBand { sizes: Vec::new(), fine_side, coarse_side };
-        let tenths = Specification { band: Some(narrow), ..core.clone() };
-        let [narrow, wide] =
-            [&tenths, &core].map(|of| points_beyond(of, &of.products[0], 85.0 - 61.87, 1.18));
-        assert_eq!((narrow, wide), ("23.2".into(), format!("{printed:.0}")));
     }
 }

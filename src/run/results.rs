@@ -57,6 +57,7 @@ pub fn outcome(
     found.extend(pan_bounds.as_ref().map(beside::pan).or_else(|| case.to_be_walked()));
     found.extend(other.range.as_ref().map(beside::curve_range));
     let mut outcome = Outcome {
+        headline: String::new(),
         verdict,
         confidence: Confidence::default(),
         findings: Vec::new(),
@@ -109,6 +110,7 @@ pub fn outcome(
     let answer = judge(verdict, &outcome.rules, found);
     (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
     outcome.findings = answer.findings;
+    outcome.headline = outcome.headline();
     outcome
 }
 
@@ -362,11 +364,29 @@ mod tests {
         let of = |d15f: f64| {
             let walked = walked_base(rows, d15f, &[]);
             let evidence = Evidence::of(&soil, walked.inputs.filter.d15_mm, Some(1.5), None);
-            Outcome { confidence: Confidence::Within, evidence, ..walked }
+            Outcome { confidence: Confidence::Within, findings: Vec::new(), evidence, ..walked }
         };
         let (within, beyond) = (of(0.5), of(9.0));
         let said = within.walk_in_words();
         assert!(said.contains("Probability of no erosion in a test"), "{said}");
+        // A worse label hides nothing, and no probability comes back with it.
+        let few = |id: &[crate::verdict::Finding]| Outcome {
+            verdict: Verdict::None,
+            confidence: Confidence::MayNotDrain,
+            findings: id.iter().map(|of| of.record(true)).collect(),
+            ..within.clone()
+        };
+        let dry = finding::fines_of_filter("8 %");
+        let all =
+            [dry.clone(), finding::cu_unchecked("filter", 18.0, 1.2, 6.0), finding::may_segregate("Cu")];
+        let (dry, all) = (few(&[dry]), few(&all));
+        assert!(dry.shows_probabilities() && !all.shows_probabilities());
+        assert!(!all.walk_in_words().contains("robability") && all.walk_in_words().contains("filter 18"));
+        let words = all.confidence_in_words();
+        for word in ["may not drain", "outside checked range", "may segregate"] {
+            assert!(words.contains(word), "{words}");
+        }
+        assert!(all.headline().starts_with(&dry.headline()) && all.headline().contains("may segregate"));
         let said = beyond.walk_in_words();
         assert!(!said.contains("robability") && said.contains(" times the highest D15F without "), "{said}");
         assert!(beyond.evidence.is_some_and(|of| of.probability_by_tests.is_some()));

@@ -350,10 +350,12 @@ function showRules(pair) {
     ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
   `; ${base.why}.`));
   parts.push(el("p", {}, el("b", {}, "Practice: "), `${pair.practice}.`));
-  parts.push(el("p", {}, broken.length
-    ? el("span", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.map(({ named }) => named[0]).join("; "))
-    : "Every rule that was made for these soils and has a result is met. What the walk says is another question."),
-  el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
+  const named = (some) => some.map((row) => row.named[0]).join("; ");
+  const open = rows.filter(({ found }) => found === "no result");
+  if (broken.length) parts.push(el("p", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), named(broken)));
+  if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), named(open)));
+  if (!broken.length && !open.length) parts.push(el("p", {}, "Every rule that was made for these soils is met. What the walk says is another question."));
+  parts.push(el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
   const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source], shown: [value, limit], found, sign, ends, bound }) => {
     return el("tr", {}, el("td", {}, result(found)), el("td", {}, name),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
@@ -540,10 +542,8 @@ function plot(runs) {
 const eroded = (run) => percent(run.mean) + (run.low === null ? ", no interval from one replicate"
   : ` (95 % interval ${percent(run.low)} to ${percent(run.high)})`);
 
-function colour(verdict, confidence) {
-  if (verdict === "no erosion") return confidence === "within checked range" ? "green" : "amber";
-  return { "some erosion": "amber", "continuing erosion": "red" }[verdict] || "";
-}
+/** The colour of a card by that of the first page. */
+const COLOURS = { none: "green", some: "amber", doubted: "amber", continuing: "red" };
 
 const list = (items) => (items && items.length ? el("ul", {}, ...items.map((item) => el("li", {}, item))) : null);
 const confidenceOf = (words) => (words === "within checked range" ? el("span", {}, words) : el("span", { class: "mark" }, words));
@@ -663,7 +663,7 @@ function card(job) {
     if (problem && shown) shown.textContent = problem;
   };
   const isDone = job.state === "done" && job.result;
-  const kind = isDone && job.kind === "judge" ? colour(job.result.verdict, job.result.confidence)
+  const kind = isDone && job.kind === "judge" ? COLOURS[job.result.colour] || ""
     : isDone && job.kind === "design" ? colourOfDesign(job.result) : job.state;
   const words = { waiting: `waits, ${job.before} before it`, running: job.stopping ? "stops, and saves what is done" : "is walked", stopped: "stopped",
     done: "", refused: "refused", failed: "failed" }[job.state];

@@ -144,6 +144,7 @@ mod tests {
             in_full,
             headline: String::new(),
             verdict,
+            by_practice: None,
             confidence,
             reason: None,
             replicates: 2,

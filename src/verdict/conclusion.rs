@@ -28,7 +28,7 @@ pub const FOREMOST: usize = 3;
 impl Outcome {
     /// Whether the filter holds, does not, or nobody can say, in a line.
     pub fn headline(&self) -> String {
-        let said = headline(&self.rules, self.verdict, self.confidence, worse_in_words(self));
+        let said = headline(&self.rules, self.verdict, &self.doubts(), worse_in_words(self));
         match self.beyond_if_dispersive() {
             Some(_) => unless_dispersive(&said),
             None => said,
@@ -57,7 +57,7 @@ impl Outcome {
         let mass = mass + &self.beyond_over_readings().unwrap_or_default();
         let mut said = format!("{}; eroded {mass}", self.verdict.words());
         // What practice says of the filter itself stands in the lines above.
-        if matches!(self.confidence, Confidence::Outside | Confidence::Contradicted) {
+        if self.hides_probability() {
             said += &format!("; {}", self.confidence_in_brief());
         }
         if self.confidence == Confidence::Contradicted {
@@ -158,7 +158,7 @@ impl Outcome {
     /// Whether both probabilities that a test would show no erosion stand beside the verdict: where one
     /// alone does, or none, [`Outcome::beside_tests`] says which and why.
     pub fn shows_probabilities(&self) -> bool {
-        !self.confidence.hides_probability() && !is_beyond_tests(&self.rules)
+        !self.hides_probability() && !is_beyond_tests(&self.rules)
     }
 
     /// The probability that a test would show no erosion. Outside the checked range, against practice, and
@@ -166,7 +166,7 @@ impl Outcome {
     /// range of tests.
     pub fn beside_tests(&self) -> Option<String> {
         let evidence = self.evidence.as_ref()?;
-        if self.confidence.hides_probability() || is_beyond_range(evidence.probability_by_tests) {
+        if self.hides_probability() || is_beyond_range(evidence.probability_by_tests) {
             return Some(beside_range(self.inputs.filter.d15_mm, evidence.range_of_tests_mm?, ""));
         }
         let each = evidence.probabilities(is_beyond_tests(&self.rules))?;
@@ -224,14 +224,14 @@ const FEW_PERCENT: f64 = 1.0;
 /// Beyond the limit of design, and within the boundary of no erosion.
 const NO_MARGIN: &str = "does not meet the limit of design, though tests held such filters";
 
-/// Whether a filter of a class, with this label, holds, does not, or nobody can say, in a line; with the
+/// Whether a filter of a class, with these doubts, holds, does not, or nobody can say, in a line; with the
 /// class of the walk and the worse one that another amount of base gives, where there is one.
 ///
 /// Practice speaks first: a walk that is more favourable never makes a filter a good one.
 pub fn headline(
     rules: &[AppliedRule],
     verdict: Verdict,
-    confidence: Confidence,
+    doubts: &[Confidence],
     by_amount: Option<String>,
 ) -> String {
     let standing = standing(rules);
@@ -272,13 +272,14 @@ pub fn headline(
         (Standing::Unknown(needs), _) => {
             format!("may not hold: {walked} in the model; practice needs {needs}")
         }
-        (Standing::Met, Verdict::None) if confidence == Confidence::Within => {
-            "holds: practice and walk agree".into()
-        }
+        (Standing::Met, Verdict::None) if doubts.is_empty() => "holds: practice and walk agree".into(),
         (Standing::Met, Verdict::None) => {
-            let said = by_amount.filter(|_| confidence == Confidence::Outside);
-            let said = said.map(|by_amount| format!("the walk: {by_amount}"));
-            format!("holds by practice; {}", said.unwrap_or_else(|| reservation(confidence).into()))
+            let by_amount = by_amount.map(|by_amount| format!("the walk: {by_amount}"));
+            let said = doubts.iter().map(|doubt| match (doubt, &by_amount) {
+                (Confidence::Outside, Some(by_amount)) => by_amount,
+                _ => reservation(*doubt),
+            });
+            format!("holds by practice; {}", said.collect::<Vec<_>>().join("; "))
         }
         (Standing::Met, Verdict::Undecided) => "holds by practice; the walk is undecided".into(),
         (Standing::Met, _) => format!("holds by practice; the walk is stricter: {walked} in the model"),
@@ -342,7 +343,9 @@ mod tests {
     fn said(filter: &[(f64, f64)], base: &[(f64, f64)], verdict: Verdict) -> String {
         let soil = |points| Gradation::from_lines(points).unwrap();
         let rules = PairRules::of(&soil(base), &soil(filter)).rules;
-        headline(&rules, verdict, judge(verdict, &rules, Vec::new()).confidence, None)
+        let label = judge(verdict, &rules, Vec::new()).confidence;
+        let doubts: Vec<Confidence> = Confidence::DOUBTS.into_iter().filter(|of| *of == label).collect();
+        headline(&rules, verdict, &doubts, None)
     }
 
     const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
@@ -378,7 +381,7 @@ mod tests {
             margin,
             "does not meet the limit of design, though tests held such filters; no erosion in the model"
         );
-        assert_eq!(headline(&[], Verdict::None, Confidence::Outside, None), "no erosion in the model");
+        assert_eq!(headline(&[], Verdict::None, &[Confidence::Outside], None), "no erosion in the model");
     }
 
     #[test]

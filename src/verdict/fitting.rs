@@ -5,85 +5,33 @@ use crate::outcome::design::Design;
 use crate::outcome::design::products::Fit;
 use crate::outcome::design::specification::{ProductMargin, SieveLimit, Specification};
 use crate::outcome::digits::percent;
-use crate::outcome::numbers::{significant, trimmed};
+use crate::outcome::numbers::trimmed;
 
-/// Said of a product that fits by its D15 and stays within the band.
-pub const FITS: &str = "D15 fits";
-
-/// Where a product leaves the band that its D15 fits, at the sieve (mm) at which its limits do so by most.
-pub fn leaves_at(sieve_mm: f64) -> String {
-    format!("leaves the band at {} mm", significant(sieve_mm))
-}
+/// Said of a product both whose sides keep every requirement.
+pub const FITS: &str = "fits";
 
 /// Percentage points by which a gradation leaves a limit that is printed in whole percents, and is said to.
 const SEEN: f64 = 0.5;
 
-/// The band that a product whose D15 fits is compared with.
-enum Beside {
-    Within,
-    /// It leaves the band, by most at this sieve (mm).
-    Outside(f64),
-    NoBand,
-}
-
-/// What is said of a product whose D15 fits, of walk and practice or of practice alone. One that leaves the
-/// band does not fit, though its D15 does.
-fn fits_in_words(by_practice: bool, beside: &Beside) -> String {
-    let by = if by_practice { " by practice" } else { "" };
-    match beside {
-        Beside::Within => format!("{FITS}{by}"),
-        Beside::Outside(sieve) => format!("{}; only its D15 is allowed{by}", leaves_at(*sieve)),
-        Beside::NoBand => format!("{FITS}{by}; there is no band"),
-    }
-}
-
-/// Products whose D15 fits: those that stay within the band, and those that leave it.
-#[derive(Default)]
-struct Fitting {
-    within: Vec<String>,
-    /// Each with the sieve at which it leaves the band.
-    leaving: Vec<String>,
-}
-
-impl Fitting {
-    fn of<'a>(products: impl Iterator<Item = (&'a str, Beside)>) -> Self {
-        let mut all = Self::default();
-        for (name, beside) in products {
-            match beside {
-                Beside::Outside(sieve) => all.leaving.push(format!("{name} ({})", leaves_at(sieve))),
-                Beside::Within | Beside::NoBand => all.within.push(name.into()),
-            }
-        }
-        all
-    }
-
-    /// Behind what is said of those within the band: of which the D15 alone is allowed, `by` practice or by
-    /// both.
-    fn with_leaving(&self, within: String, by: &str) -> String {
-        match self.leaving.is_empty() {
-            true => within,
-            false => format!("{within}. Only the D15 is allowed{by} of {}", self.leaving.join(", ")),
-        }
-    }
-}
-
 /// Said where no product fits.
 const NONE_FITS: &str = "None of the standard products fits";
 
-impl Specification {
-    fn beside(&self, of: &ProductMargin) -> Beside {
-        match of.worst_sieve_mm {
-            _ if self.band.is_none() => Beside::NoBand,
-            Some(sieve) => Beside::Outside(sieve),
-            None => Beside::Within,
-        }
-    }
+/// What is said of a product that fits, of walk and practice or of practice alone.
+fn fits_in_words(by_practice: bool) -> String {
+    format!("{FITS}{}", if by_practice { " by practice" } else { "" })
+}
 
+/// Said of a product that does not fit, with what its sides do not keep beside D15F.
+fn does_not_fit(not_kept: &str) -> String {
+    if not_kept.is_empty() { "does not fit".into() } else { format!("does not fit: {not_kept}") }
+}
+
+impl Specification {
     /// What is said of a standard product, by practice alone.
     pub fn product_in_words(&self, of: &ProductMargin) -> String {
         match of.fits() {
-            Some(true) => fits_in_words(false, &self.beside(of)),
-            Some(false) => "does not fit".into(),
+            Some(true) => FITS.into(),
+            Some(false) => does_not_fit(&of.not_kept),
             None if self.d15f_min_at_most && of.drains_by.is_none() => {
                 "may drain: needs a hydrometer test".into()
             }
@@ -94,13 +42,9 @@ impl Specification {
     /// Which standard products fit by practice alone, or which comes closest: sentences without the last end.
     pub fn products_in_words(&self) -> String {
         let fitting = self.products.iter().filter(|of| of.fits() == Some(true));
-        let fitting = Fitting::of(fitting.map(|of| (of.product.as_str(), self.beside(of))));
-        if !fitting.within.is_empty() {
-            let no_band = if self.band.is_none() { ", though there is no band" } else { "" };
-            return fitting.with_leaving(format!("{FITS}{no_band}: {}", fitting.within.join(", ")), "");
-        }
-        if !fitting.leaving.is_empty() {
-            return fitting.with_leaving(NONE_FITS.into(), "");
+        let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();
+        if !fitting.is_empty() {
+            return format!("Standard products that fit: {}", fitting.join(", "));
         }
         let other =
             if self.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
@@ -117,21 +61,15 @@ impl Specification {
 }
 
 impl Design {
-    /// Where a product lies beside the band of the specification; within where no specification says more.
-    fn beside(&self, product: &str) -> Beside {
-        let Some(specification) = &self.specification else { return Beside::Within };
-        let of = specification.products.iter().find(|of| of.product == product);
-        of.map_or(Beside::Within, |of| specification.beside(of))
-    }
-
     /// What is said of a product.
     pub fn product_in_words(&self, fit: &Fit) -> String {
         let by_practice = !self.may_fit() && self.fits_by_practice();
-        match (fit.fits(), self.may_fit() || by_practice) {
-            (true, true) => fits_in_words(by_practice, &self.beside(&fit.name)),
+        let not_kept = self.not_kept(&fit.name);
+        match (self.fits(fit), self.may_fit() || by_practice) {
+            (true, true) => fits_in_words(by_practice),
             (true, false) => "in doubt".into(),
-            (false, _) if fit.may_fit() => "not known".into(),
-            (false, _) => "does not fit".into(),
+            (false, _) if fit.may_fit() && not_kept.is_empty() => "not known".into(),
+            (false, _) => does_not_fit(if fit.fits() { not_kept } else { "" }),
         }
     }
 
@@ -146,7 +84,7 @@ impl Design {
         let known = specification.limits.iter().filter(|limit| limit.opening_mm >= judged.smallest_mm());
         let beyond = |limit: &SieveLimit| {
             let finer = judged.percent_finer_by_mass(limit.opening_mm);
-            let [least, most] = [limit.min_percent_finer, limit.max_percent_finer];
+            let (least, most) = (limit.min_percent_finer, limit.max_percent_finer.unwrap_or(100.0));
             let (by, bound) = match finer < least {
                 true => (least - finer, format!("asks for at least {}", trimmed(least))),
                 false => (finer - most, format!("allows at most {}", trimmed(most))),
@@ -175,24 +113,19 @@ impl Design {
         if !self.may_fit() && !by_practice {
             return Some("No standard product is said to fit, as the answer is in doubt".into());
         }
-        let fitting = self.products.iter().filter(|fit| fit.fits());
-        let fitting = Fitting::of(fitting.map(|fit| (fit.name.as_str(), self.beside(&fit.name))));
+        let fitting = self.products.iter().filter(|fit| self.fits(fit));
+        let fitting: Vec<&str> = fitting.map(|fit| fit.name.as_str()).collect();
         let by = if by_practice { " by practice" } else { "" };
-        let no_band = match &self.specification {
-            Some(of) if of.band.is_none() => ", though there is no band",
-            _ => "",
-        };
-        let within = match fitting.within.is_empty() {
-            false => {
-                let names = fitting.within.join(", ");
-                format!("{FITS}{by}{no_band} (their own shapes were not walked): {names}")
-            }
+        Some(match fitting.is_empty() {
+            false => format!(
+                "Standard products that fit{by} (their own shapes were not walked): {}",
+                fitting.join(", ")
+            ),
             true if self.products.iter().any(Fit::may_fit) => {
                 "Of the standard products none is known to fit".into()
             }
             true => NONE_FITS.into(),
-        };
-        Some(fitting.with_leaving(within, by))
+        })
     }
 }
 
@@ -233,54 +166,32 @@ mod tests {
         serde_json::from_value(text).unwrap()
     }
 
+    /// C33 sand has a D15 of 0.178 to 0.424 mm, and a Cu of 4.0 and 4.2; 0.100 to 0.700 mm are allowed.
     #[test]
-    fn a_product_that_fits_by_its_d15_is_never_said_to_fit_a_band_that_it_leaves() {
+    fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
         let said = |of: &Design| of.products.iter().map(|fit| of.product_in_words(fit)).collect::<Vec<_>>();
         let by_practice = core(Confidence::Outside);
-        assert_eq!(
-            said(&by_practice),
-            ["leaves the band at 1.18 mm; only its D15 is allowed by practice", "does not fit"]
-        );
-        assert_eq!(
-            by_practice.products_in_words().unwrap(),
-            "None of the standard products fits. Only the D15 is allowed by practice of ASTM C33 fine \
-             aggregate (leaves the band at 1.18 mm)"
-        );
-        let leaves = "leaves the band at 1.18 mm; only its D15 is allowed";
-        assert_eq!(said(&core(Confidence::Within))[0], leaves);
-        let alone = Design { specification: None, ..core(Confidence::Within) };
-        assert_eq!(said(&alone)[0], FITS);
-        // No band is left that a product could keep.
-        let none = |of: Specification| Specification { band: None, ..of };
-        let specification = by_practice.specification.clone().map(none);
-        let of_practice = specification.clone().unwrap();
-        let words: Vec<_> = of_practice.products.iter().map(|of| of_practice.product_in_words(of)).collect();
-        assert!(words.iter().any(|of| of == "D15 fits; there is no band"), "{words:?}");
-        assert!(words.iter().all(|of| of != FITS), "{words:?}");
-        let without = Design { specification, ..core(Confidence::Within) };
-        assert_eq!(said(&without)[0], "D15 fits; there is no band");
-        assert!(without.products_in_words().unwrap().starts_with("D15 fits, though there is no band ("));
+        assert_eq!(said(&by_practice), ["fits by practice", "does not fit"]);
+        assert!(by_practice.products_in_words().unwrap().ends_with(": ASTM C33 fine aggregate"));
+        assert_eq!(said(&core(Confidence::Within))[0], FITS);
         let given = by_practice.specification.as_ref().unwrap();
-        let c33 = given.products.iter().find(|of| of.product == "ASTM C33 fine aggregate").unwrap();
-        assert_eq!(given.product_in_words(c33), leaves);
-        // The specification says it as the design does.
-        assert_eq!(
-            given.products_in_words(),
-            "None of the standard products fits. Only the D15 is allowed of ASTM C33 fine aggregate (leaves \
-             the band at 1.18 mm)"
-        );
-        assert!(of_practice.products_in_words().starts_with("D15 fits, though there is no band: ASTM C33 f"));
-        // The filter that the rules judge is another, and may leave the band: D100F at 0.7 mm of D15F.
+        let fits: Vec<_> = given.products.iter().filter(|of| of.fits() == Some(true)).collect();
+        assert_eq!(fits.iter().map(|of| &*of.product).collect::<Vec<_>>(), ["ASTM C33 fine aggregate"]);
+        assert_eq!(given.product_in_words(fits[0]), FITS);
+        // No. 8 stone may be delivered with a Cu of 1.6.
+        let stone = given.products.iter().find(|of| of.product.contains("No. 8 ")).unwrap();
+        assert!(stone.not_kept.starts_with("Cu of its coarse side is 1.59"), "{stone:?}");
+        // The filter that the rules judge is another, and may leave the band: at 2.36 mm at 0.7 mm of D15F.
         let shape = |points: Vec<[f64; 2]>| Design {
             filter_gradation: points,
             filter_d15_mm: Some(0.35),
             ..core(Confidence::Within)
         };
-        let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 60.0], [6.0, 95.0], [20.0, 100.0]];
+        let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 30.0], [6.0, 95.0], [20.0, 100.0]];
         let judged = shape(long).judged_filter_in_words().unwrap();
         assert!(
             judged.starts_with("The filter as given is judged, scaled to this D15F. It leaves the band at ")
-                && judged.contains(" are finer there, and the band asks for at least 100 %. Step 12 checks"),
+                && judged.contains(" are finer there, and the band asks for at least 49 %. Step 12 checks"),
             "{judged}"
         );
         let within = vec![[0.2, 0.0], [0.35, 15.0], [1.7, 60.0], [6.0, 100.0]];

@@ -82,6 +82,7 @@ pub use entry::{Entry, Finding};
 pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules, StatedByAuthority};
 pub use planned_walk::PlannedWalk;
+pub use practice::counts_as;
 pub use quantity::FindingValue;
 pub use specification::{DESIGN_AGAIN, DESIGN_EACH_AGAIN, SpecificationOptions};
 pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

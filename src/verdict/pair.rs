@@ -5,9 +5,10 @@ use serde::Serialize;
 use super::entry::Finding;
 use super::finding;
 use super::mistake::Mistake;
+use super::practice::standing;
 use super::practice_words::practice_line;
 use crate::gradation::Gradation;
-use crate::outcome::record::{AppliedRule, IfDispersive};
+use crate::outcome::record::{AppliedRule, IfDispersive, PracticeClass};
 use crate::outcome::rules::{BaseSoil, NamedCurve, apply_and_decide};
 
 /// What is said of two sieve curves by the rules of practice alone.
@@ -22,6 +23,8 @@ pub struct PairRules {
     pub rules: Vec<AppliedRule>,
     /// What they say together, in a line, as it stands on every page: whether practice is met, and why.
     pub practice: String,
+    /// The same for programs.
+    pub practice_class: PracticeClass,
     /// The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
@@ -201,6 +204,7 @@ impl PairRules {
                 cc: base.cc(),
             },
             practice: practice_line(&rules, if_dispersive, filter.d(15.0)),
+            practice_class: standing(&rules).class(),
             if_dispersive,
             rules,
             warnings: found.iter().map(Finding::with_to_do).collect(),
@@ -214,7 +218,7 @@ mod tests {
     use super::*;
     use crate::outcome::record::RuleRole;
     use crate::outcome::rules::{Authority, DESIGN};
-    use crate::verdict::practice::{Standing, standing};
+    use crate::verdict::practice::Standing;
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
     #[test]

@@ -6,11 +6,13 @@ use super::finding;
 use super::rule_words::{
     against, bounded, credit, first_clause, is_of_dispersive, listed, met_of, size, without_margin,
 };
-use super::tested::tested;
+use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
 use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::design::band::retaining;
-use crate::outcome::record::{AppliedRule, LimitOfDesign, Practice, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::record::{
+    AppliedRule, LimitOfDesign, Practice, PracticeClass, RuleQuantity, RuleRole, TestedClass, Verdict,
+};
 use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// Said where the rule of drainage has no result.
@@ -121,6 +123,7 @@ fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<Finding> {
 pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
     let rule = rules.iter().find(|rule| rule.id == DESIGN)?;
     Some(Practice {
+        class: standing(rules).class(),
         design: LimitOfDesign {
             rule: rule.id.clone(),
             limit_mm: rule.limit,
@@ -154,9 +157,13 @@ pub enum Standing {
 }
 
 impl Standing {
-    /// Whether practice is not met, and no test held such a filter.
-    pub fn fails(&self) -> bool {
-        matches!(self, Self::Fails | Self::WashedOut)
+    /// Whether practice is met.
+    pub fn class(&self) -> PracticeClass {
+        match self {
+            Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
+            Self::Unstable | Self::Unknown(_) | Self::Open(_) | Self::NoRules => PracticeClass::NotKnown,
+            Self::Met => PracticeClass::Meets,
+        }
     }
 
     /// The same as a record keeps it.
@@ -208,6 +215,24 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
     }
 }
 
+/// The class as which practice counts where verdicts are accepted or not, the worst that nobody excludes;
+/// `None` where no rule was applied.
+pub fn counts_as(rules: &[AppliedRule]) -> Option<Verdict> {
+    let coarse = match tested(rules) {
+        TestedClass::Continuing => Verdict::Continuing,
+        TestedClass::Unknown if is_beyond_tests(rules) => Verdict::Undecided,
+        _ => Verdict::Some,
+    };
+    match standing(rules) {
+        Standing::NoRules => None,
+        Standing::Met => Some(Verdict::None),
+        Standing::Unknown(_) | Standing::Open(_) => Some(Verdict::Undecided),
+        Standing::NoMargin | Standing::Unstable => Some(Verdict::Some),
+        Standing::WashedOut if washout(rules).is_some_and(|of| of.continues()) => Some(Verdict::Continuing),
+        Standing::Fails | Standing::WashedOut => Some(coarse),
+    }
+}
+
 /// 0 no erosion, 1 some, 2 continuing; `None` where it is undecided.
 pub(super) fn severity(verdict: Verdict) -> Option<u8> {
     match verdict {
@@ -215,5 +240,143 @@ pub(super) fn severity(verdict: Verdict) -> Option<u8> {
         Verdict::Some => Some(1),
         Verdict::Continuing => Some(2),
         Verdict::Undecided => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use crate::outcome::design::Specification;
+    use crate::outcome::rules::NamedCurve;
+    use crate::outcome::with_inches;
+    use crate::verdict::practice_words::practice_in_words;
+    use crate::verdict::{BatchRow, PairOptions, PairRules, SpecificationOptions};
+
+    fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
+        vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())]
+    }
+
+    fn filter(d15f: f64) -> Vec<NamedCurve> {
+        soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
+    }
+
+    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
+    const CLAY: [(f64, f64); 6] =
+        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
+    const SILTY: [(f64, f64); 6] =
+        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
+
+    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    #[test]
+    fn practice_goes_by_design_where_tests_are_stricter() {
+        for (base, d15f, [design, tests]) in
+            [(&CLAY, 0.178, ["0.200 mm", "0.166 mm"]), (&SILTY, 0.85, ["1.28 mm", "0.700 mm"])]
+        {
+            let options = PairOptions { dispersive: false, ..PairOptions::default() };
+            let rules = PairRules::of_envelopes(&soil(base), &filter(d15f), options).rules;
+            assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
+            assert_eq!(standing(&rules), Standing::Met);
+            assert_eq!(counts_as(&rules), Some(Verdict::None));
+            assert!(findings(Verdict::None, &rules).is_empty());
+            let line = practice_in_words(&rules);
+            let (first, second) = line.split_once(". ").unwrap();
+            assert!(first.starts_with("met") && first.contains(design), "{line}");
+            assert!(second.starts_with("Foster and Fell") && second.contains(tests), "{line}");
+            let sample = crate::gradation::SoilSample {
+                name: "s".into(),
+                path: "s".into(),
+                curve: soil(base).remove(0).1,
+            };
+            assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
+            // Beyond the limit of design it is not met.
+            let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options).rules;
+            assert_eq!(record(&coarse).unwrap().class, PracticeClass::DoesNotMeet);
+        }
+    }
+
+    #[test]
+    fn a_record_and_what_is_accepted_follow_where_the_filter_stands() {
+        let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
+        let hidden = soil(&[(0.3, 25.0), (1.0, 100.0)]);
+        let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+        let halved = gap.map(|(size, percent)| (0.5 * size, percent));
+        for (base, filter, class, counts) in [
+            (&sand, filter(1.0), PracticeClass::Meets, Verdict::None),
+            (&sand, filter(2.5), PracticeClass::DoesNotMeet, Verdict::Some),
+            (&sand, filter(4.0), PracticeClass::DoesNotMeet, Verdict::Some),
+            (&sand, filter(6.0), PracticeClass::DoesNotMeet, Verdict::Continuing),
+            (&sand, soil(&halved), PracticeClass::NotKnown, Verdict::Some),
+            (&hidden, filter(1.0), PracticeClass::NotKnown, Verdict::Undecided),
+        ] {
+            let rules = PairRules::of_envelopes(base, &filter, PairOptions::default()).rules;
+            assert_eq!((record(&rules).unwrap().class, counts_as(&rules)), (class, Some(counts)));
+        }
+        assert_eq!(counts_as(&[]), None);
+    }
+
+    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
+    #[test]
+    fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
+        let soil = |points: &[(f64, f64)], by: f64| {
+            let points: Vec<(f64, f64)> =
+                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
+            vec![("soil".to_owned(), Gradation::from_points(&points, None).unwrap())]
+        };
+        let bases: [&[(f64, f64)]; 4] = [
+            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+            &[(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)],
+            &[(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)],
+            &[(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)],
+        ];
+        let (mut checked, mut missed) = (0, Vec::new());
+        for step in 0..60 {
+            let by = libm::pow(1.01, f64::from(step));
+            for base in bases {
+                for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
+                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
+                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
+                    let mut said: Vec<String> = vec![pair.practice.clone()];
+                    said.extend(findings(Verdict::None, &pair.rules).iter().map(Finding::sentence));
+                    said.extend(pair.if_dispersive.map(|of| of.words()));
+                    let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
+                    said.extend(
+                        [of.band_in_words(), of.raised_in_words(), of.no_band.clone()].into_iter().flatten(),
+                    );
+                    said.extend(of.if_dispersive_in_words("again"));
+                    let limits = pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F);
+                    for rule in limits {
+                        let [value, limit] = against(rule, 3);
+                        if value == limit {
+                            continue;
+                        }
+                        let Ok(mm) = limit.trim_end_matches(" mm").parse::<f64>() else { continue };
+                        for sentence in &said {
+                            let text = with_inches(sentence);
+                            for (at, _) in text.match_indices(&format!(" {limit} (")) {
+                                let behind = text[at..].split_once('(').unwrap().1.split('\u{202f}').next();
+                                let inches = behind.unwrap().rsplit(' ').next().unwrap();
+                                let back = 25.4 * inches.parse::<f64>().unwrap();
+                                checked += 1;
+                                let is_within = if rule.at_least {
+                                    back >= mm * (1.0 - 1e-9)
+                                } else {
+                                    back <= mm * (1.0 + 1e-9)
+                                };
+                                if !is_within {
+                                    missed.push(text.clone());
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        assert!(
+            checked > 1000 && missed.is_empty(),
+            "{checked} {} {:#?}",
+            missed.len(),
+            &missed[..missed.len().min(6)]
+        );
     }
 }

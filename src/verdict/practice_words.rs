@@ -403,7 +403,6 @@ mod tests {
         let rules = of(&GRAVEL_0_32, &REGRADED_TILL, false);
         assert_eq!(standing(&rules), Standing::WashedOut);
         assert_eq!(standing(&rules).recorded(), ComparedStanding::Fails);
-        assert!(standing(&rules).fails() && !Standing::Unstable.fails());
         let line = practice_in_words(&rules);
         assert!(
             line.starts_with(
@@ -438,7 +437,7 @@ mod tests {
         let coarse = STEPPED.map(|(size, percent)| (2.2 * size, percent));
         let rules = of(&coarse, &SAND_OF_1_MM, false);
         assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(false), Some(true)));
-        assert!(standing(&rules) == Standing::WashedOut && standing(&rules).fails());
+        assert_eq!(standing(&rules), Standing::WashedOut);
         let line = practice_in_words(&rules);
         assert!(
             line.starts_with("not met: D15F ") && line.contains("; the filter is not internally stable by "),

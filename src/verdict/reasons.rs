@@ -4,6 +4,7 @@ use serde_json::Value as Json;
 
 use super::beside::is_evidence;
 use super::entry::COHESIVE_FINES;
+use super::finding::ALL;
 use super::quantity::FindingValue;
 use crate::outcome::record::{Confidence, FindingRecord, Outcome};
 
@@ -26,7 +27,18 @@ impl Outcome {
     }
 
     fn labelled(&self, most: usize) -> String {
-        let (label, reasons) = (self.confidence.words(), self.reasons_outside());
+        let doubts = self.doubts();
+        if doubts.is_empty() {
+            return self.confidence.words().into();
+        }
+        let outside = || self.outside_in_words(most);
+        let words = |of: &Confidence| if *of == Confidence::Outside { outside() } else { of.words().into() };
+        doubts.iter().map(words).collect::<Vec<_>>().join("; ")
+    }
+
+    /// That the pair lies outside what the model was checked against, with so many reasons.
+    fn outside_in_words(&self, most: usize) -> String {
+        let (label, reasons) = (Confidence::Outside.words(), self.reasons_outside());
         let mut said: Vec<String> = reasons.iter().take(most).map(Reason::in_words).collect();
         if said.is_empty() {
             return label.into();
@@ -37,10 +49,23 @@ impl Outcome {
         format!("{label} ({})", said.join("; "))
     }
 
+    /// Every doubt of the class, the worst first, which is its label: what is known against a pair adds up.
+    pub fn doubts(&self) -> Vec<Confidence> {
+        let sets = |of: &FindingRecord| ALL.iter().find(|entry| entry.id == of.id).map(|entry| entry.sets);
+        let found: Vec<Confidence> = self.against().iter().filter_map(sets).collect();
+        let all = Confidence::DOUBTS.into_iter();
+        all.filter(|doubt| *doubt == self.confidence || found.contains(doubt)).collect()
+    }
+
+    /// Whether a probability would say more than anybody can answer for.
+    pub(super) fn hides_probability(&self) -> bool {
+        self.doubts().into_iter().any(Confidence::hides_probability)
+    }
+
     /// Why the pair lies outside what the model was checked against, each once; none where it does not.
     pub(super) fn reasons_outside(&self) -> Vec<Reason> {
         let mut reasons: Vec<Reason> = Vec::new();
-        if self.confidence == Confidence::Outside {
+        if self.doubts().contains(&Confidence::Outside) {
             let is_named = |finding: &&FindingRecord| !is_evidence(finding) || finding.id == EVIDENCE_SAFE;
             for finding in self.against().iter().filter(is_named) {
                 reasons.extend(Reason::of(finding).filter(|reason| !reasons.contains(reason)));

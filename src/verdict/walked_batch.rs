@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::{BatchRow, columns};
 use super::batch_table::BatchFilter;
+use super::practice::counts_as;
 use super::probability::{is_beyond_range, probabilities};
 use super::tested::is_beyond_tests;
 use crate::outcome::BaseSize;
@@ -93,6 +94,9 @@ pub struct SampleWalk {
     pub headline: String,
     /// The class that its replicates together support.
     pub verdict: Verdict,
+    /// The class as which practice counts; `None` without a rule, and in files of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_practice: Option<Verdict>,
     /// How far it can be relied on.
     pub confidence: Confidence,
     /// The weightiest reason why no further.
@@ -127,13 +131,14 @@ pub struct SampleWalk {
 impl SampleWalk {
     /// Of the outcome in this folder.
     pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
-        let evidence = outcome.evidence.as_ref();
+        let evidence = outcome.evidence.as_ref().filter(|_| !outcome.hides_probability());
         let range = outcome.curve_range.as_ref();
         Self {
             folder,
             in_full,
             headline: outcome.headline(),
             verdict: outcome.verdict,
+            by_practice: counts_as(&outcome.rules),
             confidence: outcome.confidence,
             reason: outcome.reasons.first().cloned(),
             replicates: outcome.replicates.len() as u64,

@@ -127,6 +127,11 @@ impl Washout<'_> {
         )
     }
 
+    /// Whether what is left is beyond the boundary of continuing erosion of tests.
+    pub fn continues(&self) -> bool {
+        self.continuing.is_some()
+    }
+
     /// The same for the cell of a table.
     pub fn in_brief(&self) -> String {
         format!("may lose its finer part, too coarse without {}", self.part())

@@ -131,6 +131,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             }
         });
     Outcome {
+        headline: String::new(),
         verdict: Verdict::Some,
         confidence: Confidence::Within,
         findings: Vec::new(),

@@ -107,11 +107,12 @@ pub fn design(
 /// Makes the specification of a filter for a base by practice alone, into a folder: the JSON of
 /// `specification.json`.
 #[pyfunction]
-#[pyo3(signature = (base, dispersive, sieves, out, overwrite, progress))]
+#[pyo3(signature = (base, dispersive, finer, sieves, out, overwrite, progress))]
 pub fn specification(
     py: Python<'_>,
     base: PathBuf,
     dispersive: bool,
+    finer: bool,
     sieves: &str,
     out: PathBuf,
     overwrite: bool,
@@ -120,7 +121,7 @@ pub fn specification(
     let sieves =
         sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
     let cover = SheetCover::default();
-    let options = SpecifyOptions { base, dispersive, sieves, cover, inches: false, out, overwrite };
+    let options = SpecifyOptions { base, dispersive, finer, sieves, cover, inches: false, out, overwrite };
     let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
 }

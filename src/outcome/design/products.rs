@@ -1,11 +1,17 @@
-//! Standard products beside a band: which of them have their D15 between its two sides. Their own shapes are
-//! not walked.
+//! Standard products: which of them keep what a filter is asked for with both their own sides. Their own
+//! shapes are not walked.
 //!
 //! Only products whose limits could be read in a public source are here.
 
 use serde::{Deserialize, Serialize};
 
 use super::band::Band;
+use crate::gradation::FINES_MM;
+use crate::outcome::numbers::significant;
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
+
+/// Least Cu of a filter that is specified.
+pub const LEAST_CU: f64 = 2.0;
 
 /// A product as its standard limits it.
 pub struct Product {
@@ -145,6 +151,40 @@ impl Product {
             size_at(&points, 15.0)
         };
         [side(|row| row.2), side(|row| row.1)]
+    }
+
+    /// What its two sides do not keep of what a band is asked for beside D15F; a delivery may lie anywhere
+    /// between them.
+    pub fn not_kept(&self) -> Vec<String> {
+        let sides: [Vec<[f64; 2]>; 2] = [
+            self.limits.iter().map(|row| [row.0, row.2]).collect(),
+            self.limits.iter().map(|row| [row.0, row.1]).collect(),
+        ];
+        let mut said = Vec::new();
+        for (name, side) in ["fine", "coarse"].into_iter().zip(&sides) {
+            let cu = size_at(side, 60.0) / size_at(side, 10.0);
+            if !(LEAST_CU..=MOST_CU).contains(&cu) {
+                let cu = significant(cu);
+                said.push(format!("Cu of its {name} side is {cu}, and {LEAST_CU} to {MOST_CU} is asked for"));
+            }
+        }
+        let from_5_to_60 = sides.iter().flatten().map(|row| row[1]).chain([5.0, 60.0]);
+        let ratio = |percent: f64| size_at(&sides[1], percent) / size_at(&sides[0], percent);
+        let wide = from_5_to_60.filter(|of| (5.0..=60.0).contains(of)).map(ratio).fold(0.0, f64::max);
+        if wide > WIDEST_BAND {
+            said.push(format!(
+                "its sides are {} to 1 apart, and at most {WIDEST_BAND} is allowed",
+                significant(wide)
+            ));
+        }
+        let at_no_200 = self.limits.iter().rev().find(|row| row.0 <= FINES_MM).or(self.limits.first());
+        if let Some((_, _, fines)) = at_no_200.filter(|row| row.2 > MOST_FINES_PERCENT) {
+            said.push(format!("up to {fines} % may be finer than {FINES_MM} mm"));
+        }
+        if self.limits.last().is_some_and(|row| row.0 > GREATEST_SIZE_MM) {
+            said.push(format!("grains may be coarser than {GREATEST_SIZE_MM} mm"));
+        }
+        said
     }
 }
 

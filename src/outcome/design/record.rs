@@ -371,8 +371,19 @@ impl Design {
     /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
     pub fn says_fit(&self, product: &str) -> Option<bool> {
         let of = self.products.iter().find(|of| of.name == product)?;
-        let fit = of.fits();
+        let fit = self.fits(of);
         (!of.may_fit() && (!fit || self.may_fit())).then_some(fit)
+    }
+
+    /// Whether a product fits by walk and practice, with both its sides.
+    pub fn fits(&self, fit: &Fit) -> bool {
+        fit.fits() && self.not_kept(&fit.name).is_empty()
+    }
+
+    /// What the sides of a product do not keep beside D15F; empty where no specification says more.
+    pub fn not_kept(&self, product: &str) -> &str {
+        let mut all = self.specification.iter().flat_map(|of| &of.products);
+        all.find(|of| of.product == product).map_or("", |of| of.not_kept.as_str())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::products::{PRODUCTS, Product, size_at};
+use super::products::size_at;
 use super::sieves::SieveSeries;
 use crate::gradation::FINES_MM;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
@@ -11,11 +11,11 @@ use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SizeBand {
-    /// D5, D15, D60, D90 and D100 of both sides.
+    /// D5, D15 and D60 of both sides.
     pub sizes: Vec<BandSize>,
-    /// The fine side: size (mm) and percent finer, rising.
+    /// The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies above.
     pub fine_side: Vec<[f64; 2]>,
-    /// The coarse side.
+    /// The coarse side, likewise.
     pub coarse_side: Vec<[f64; 2]>,
 }
 
@@ -42,19 +42,19 @@ pub struct SieveLimit {
     /// Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where
     /// no whole percent lies within.
     pub min_percent_finer: f64,
-    /// Greatest percent finer, of the fine side, likewise.
-    pub max_percent_finer: f64,
+    /// Greatest percent finer, of the fine side, likewise; `None` above its D60.
+    pub max_percent_finer: Option<f64>,
 }
 
 /// Percents at which the sizes of a band are shown.
-const SIZES: [f64; 5] = [5.0, 15.0, 60.0, 90.0, 100.0];
+const SIZES: [f64; 3] = [5.0, 15.0, 60.0];
 
 impl SizeBand {
     /// From the control points of its sides: least and maximum D15 and D60 (mm).
     ///
-    /// Both sides are straight in percent over log size between their points, and go on so up to 100 %, but
-    /// to no more than 75 mm. The coarse side goes on straight down to 0 %. The fine side begins at its D5, a
-    /// fifth of that of the coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
+    /// Both sides are straight in percent over log size between their points, and end at their D60. The
+    /// coarse side goes on straight down to 0 %. The fine side begins at its D5, a fifth of that of the
+    /// coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
     /// is not below 75 mm, and where the coarse side has more than 5 % finer than 0.075 mm.
     pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
@@ -62,21 +62,30 @@ impl SizeBand {
         if d60.iter().any(|size| *size >= GREATEST_SIZE_MM) {
             return None;
         }
-        let top = |side: usize| [on(side, 100.0).min(GREATEST_SIZE_MM), 100.0];
         let coarse_d5 = on(1, MOST_FINES_PERCENT);
         let d5 = (coarse_d5 / WIDEST_BAND).max(FINES_MM);
         // The band would be inside out.
         if coarse_d5 < d5 {
             return None;
         }
-        let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0], top(0)];
-        let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0], top(1)];
+        let fine_side = vec![[d5, MOST_FINES_PERCENT], [d15[0], 15.0], [d60[0], 60.0]];
+        let coarse_side = vec![[on(1, 0.0), 0.0], [d15[1], 15.0], [d60[1], 60.0]];
         let size = |percent: f64| BandSize {
             percent,
             min_mm: size_at(&fine_side, percent),
             max_mm: size_at(&coarse_side, percent),
         };
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
+    }
+
+    /// Both sides, the fine one first, taken to go on straight up to 100 %, but to no more than 75 mm: for
+    /// their internal stability alone.
+    pub fn continued(&self) -> [Vec<[f64; 2]>; 2] {
+        [&self.fine_side, &self.coarse_side].map(|side| {
+            let [d15, d60] = [15.0, 60.0].map(|percent| size_at(side, percent));
+            let top = (d60 * libm::pow(d60 / d15, 40.0 / 45.0)).min(GREATEST_SIZE_MM);
+            side.iter().copied().chain([[top, 100.0]]).collect()
+        })
     }
 
     /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down
@@ -96,41 +105,28 @@ impl SizeBand {
         [&self.fine_side, &self.coarse_side].map(|side| size_at(side, 15.0))
     }
 
-    /// Least and greatest percent finer than an opening (mm).
-    pub fn percent_finer(&self, opening_mm: f64) -> [f64; 2] {
-        [percent_at(&self.coarse_side, opening_mm), percent_at(&self.fine_side, opening_mm)]
+    /// Least and greatest percent finer than an opening (mm); `None` above the D60 of the side.
+    pub fn percent_finer(&self, opening_mm: f64) -> [Option<f64>; 2] {
+        [&self.coarse_side, &self.fine_side].map(|side| {
+            let is_drawn = side.last().is_some_and(|top| opening_mm <= top[0]);
+            is_drawn.then(|| percent_at(side, opening_mm))
+        })
     }
 
-    /// The limits at the sieves of a series, from the finest sieve that all must pass down to the finest of
-    /// all.
+    /// The limits at the sieves of a series, from the coarsest sieve within the D60 of the coarse side down.
     pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
         let limit = |&opening_mm: &f64| {
-            let [min_percent_finer, max_percent_finer] = whole(self.percent_finer(opening_mm));
-            SieveLimit { sieve: series.name(opening_mm), opening_mm, min_percent_finer, max_percent_finer }
+            let [min, max] = self.percent_finer(opening_mm);
+            let [min_percent_finer, most] = whole([min?, max.unwrap_or(100.0)]);
+            let max_percent_finer = max.map(|_| most);
+            Some(SieveLimit {
+                sieve: series.name(opening_mm),
+                opening_mm,
+                min_percent_finer,
+                max_percent_finer,
+            })
         };
-        let all: Vec<SieveLimit> = series.openings().iter().map(limit).collect();
-        let open = all.iter().take_while(|limit| limit.min_percent_finer == 100.0).count();
-        all.into_iter().skip(open.saturating_sub(1)).collect()
-    }
-
-    /// The sieve at which the limits of a product leave the band by most, and by how many percentage points;
-    /// `None` where they stay within.
-    pub(super) fn left_by(&self, product: &Product) -> Option<(f64, f64)> {
-        let beyond = |&(opening, least, greatest): &(f64, f64, f64)| {
-            let [min, max] = self.percent_finer(opening);
-            (opening, (min - least).max(greatest - max))
-        };
-        let worst = product.limits.iter().map(beyond).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (worst.1 > 0.0).then_some(worst)
-    }
-
-    /// By how many percentage points a standard product leaves the limits at an opening (mm) as they are
-    /// printed there, rounded into the band; `None` of a product that is none, or has no limits there.
-    pub fn printed_left_by(&self, product: &str, opening_mm: f64) -> Option<f64> {
-        let product = PRODUCTS.iter().find(|of| of.name == product)?;
-        let (_, least, greatest) = product.limits.iter().find(|of| of.0 == opening_mm)?;
-        let [min, max] = whole(self.percent_finer(opening_mm));
-        Some((min - least).max(greatest - max))
+        series.openings().iter().filter_map(limit).collect()
     }
 }
 
@@ -181,12 +177,13 @@ mod tests {
         };
         assert_eq!((size(15.0), size(60.0)), ((0.14, 0.7), (0.7, 3.5)));
         // Both sides rise by a factor of 5 in 45 %.
-        let (d5, d90, d100) = (size(5.0), size(90.0), size(100.0));
+        let d5 = size(5.0);
         assert!(near(d5.0, d5.1 / 5.0) && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
         let fine = SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap();
         assert_eq!(fine.sizes[0].min_mm, 0.075);
-        assert!(near(d90.0, 0.7 * 5f64.powf(30.0 / 45.0)) && near(d90.1, 3.5 * 5f64.powf(30.0 / 45.0)));
-        assert!(near(d100.0, 0.7 * 5f64.powf(40.0 / 45.0)) && near(d100.1, 3.5 * 5f64.powf(40.0 / 45.0)));
+        let [fine, coarse] = band.continued().map(|side| side[side.len() - 1]);
+        assert!(near(fine[0], 0.7 * 5f64.powf(40.0 / 45.0)) && near(coarse[0], 3.5 * 5f64.powf(40.0 / 45.0)));
+        assert_eq!([fine[1], coarse[1]], [100.0; 2]);
     }
 
     #[test]
@@ -197,16 +194,15 @@ mod tests {
             (limit.min_percent_finer, limit.max_percent_finer)
         };
         // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
-        assert_eq!(of("No. 30"), (11.0, 55.0));
-        // ln(4.75/3.5)/ln 5 x 45 + 60 = 68.5; the fine side ends at 2.93 mm.
-        assert_eq!(of("No. 4"), (69.0, 100.0));
-        assert_eq!(of("No. 200"), (0.0, 5.0));
+        assert_eq!(of("No. 30"), (11.0, Some(55.0)));
+        assert_eq!(of("No. 200"), (0.0, Some(5.0)));
+        // Above the D60 of a side, 0.7 and 3.5 mm, it has no limit: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
+        assert_eq!(of("No. 8"), (49.0, None));
         assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
-        // The coarse side ends at 14.6 mm.
-        assert_eq!(limits[0].sieve, "3/4 in");
-        assert_eq!((of("3/4 in"), of("1/2 in").0), ((100.0, 100.0), 96.0));
+        assert_eq!(limits[0].sieve, "No. 8");
         let iso = band().limits(SieveSeries::Iso);
-        assert_eq!((iso[0].sieve.as_str(), iso.last().unwrap().max_percent_finer), ("16 mm", 5.0));
+        assert_eq!(iso.last().unwrap().max_percent_finer, Some(5.0));
+        assert!(iso.iter().all(|limit| limit.opening_mm <= 3.5));
     }
 
     /// Both sides begin at 0 %, and no row allows more or less than they do.
@@ -222,7 +218,8 @@ mod tests {
                 for limit in band.limits(series) {
                     let [least, most] =
                         [&band.coarse_side, &fine].map(|side| percent_at(side, limit.opening_mm));
-                    assert!(limit.max_percent_finer <= most + 1e-6 && limit.min_percent_finer > least - 1e-6);
+                    assert!(limit.max_percent_finer.is_none_or(|of| of <= most + 1e-6));
+                    assert!(limit.min_percent_finer > least - 1e-6);
                 }
             }
         }
@@ -232,13 +229,12 @@ mod tests {
     fn a_side_that_stands_upright_and_one_beyond_the_greatest_size() {
         // D15 and D60 of the fine side are one size.
         let band = SizeBand::of([0.7, 0.7], [0.7, 3.5]).unwrap();
-        assert_eq!(band.percent_finer(0.7)[1], 100.0);
-        assert!(band.percent_finer(0.69)[1] < 15.0);
+        assert_eq!(band.percent_finer(0.7)[1], Some(60.0));
+        assert!(band.percent_finer(0.69)[1].unwrap() < 15.0);
         assert!(SizeBand::of([4.0, 20.0], [20.0, 100.0]).is_none());
         // It is cut off at the greatest size.
         let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
-        assert_eq!(coarse.sizes[4].max_mm, 75.0);
-        assert_eq!(coarse.limits(SieveSeries::Iso)[0].sieve, "75 mm");
+        assert_eq!(coarse.continued()[1].last(), Some(&[75.0, 100.0]));
     }
 
     #[test]
@@ -260,9 +256,11 @@ mod tests {
             let band = of(least, most).unwrap();
             for series in [SieveSeries::Us, SieveSeries::Iso] {
                 for limit in band.limits(series) {
-                    assert!(limit.min_percent_finer <= limit.max_percent_finer, "{most}: {limit:?}");
+                    let most_finer = limit.max_percent_finer.unwrap_or(100.0);
+                    assert!(limit.min_percent_finer <= most_finer, "{most}: {limit:?}");
                     let [min, max] = band.percent_finer(limit.opening_mm);
-                    assert!(limit.min_percent_finer > min - 1e-6 && limit.max_percent_finer < max + 1e-6);
+                    assert!(limit.min_percent_finer > min.unwrap() - 1e-6);
+                    assert!(max.is_none_or(|max| most_finer < max + 1e-6));
                 }
             }
             assert!(band.sizes.iter().all(|size| size.min_mm <= size.max_mm), "{:?}", band.sizes);

@@ -50,6 +50,9 @@ pub struct Specification {
     /// Whether the true least is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
+    /// Whether the band lies at the finer end of what is allowed, and not at the coarser.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub finer: bool,
     /// Maximum D15F (mm) that is allowed; `None` where it is not known.
     pub d15f_max_mm: Option<f64>,
     /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
@@ -171,21 +174,19 @@ pub struct ProductMargin {
     pub drains_by: Option<f64>,
     /// The maximum D15F over D15 of its coarse side: at least 1 where it holds.
     pub holds_by: Option<f64>,
-    /// The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
-    /// within it.
-    pub worst_sieve_mm: Option<f64>,
-    /// By how much they leave it there (percentage points finer); 0 where they stay within.
-    pub leaves_band_by: Option<f64>,
+    /// What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
+    /// empty where they keep all.
+    #[serde(default)]
+    pub not_kept: String,
     /// Where its limits were read.
     pub source: String,
 }
 
 impl ProductMargin {
-    /// Whether D15 of both its sides lies between the least and the greatest; `None` where a limit that is
-    /// not known decides.
+    /// Whether both its sides keep every requirement; `None` where a limit of D15F that is not known decides.
     pub fn fits(&self) -> Option<bool> {
         let kept = [self.drains_by, self.holds_by].map(|margin| margin.map(|margin| margin >= 1.0));
-        if kept.contains(&Some(false)) {
+        if kept.contains(&Some(false)) || !self.not_kept.is_empty() {
             Some(false)
         } else {
             kept.into_iter().collect::<Option<Vec<_>>>().map(|_| true)
@@ -256,19 +257,13 @@ impl SpecificationStep {
     }
 }
 
-/// Every standard product beside the minimum D15F (mm) and whether that is one at most, the greatest, and a
-/// band.
-pub fn margins(
-    (d15f_min, at_most): (Option<f64>, bool),
-    d15f_max: Option<f64>,
-    band: Option<&SizeBand>,
-) -> Vec<ProductMargin> {
+/// Every standard product beside the minimum D15F (mm) and whether that is one at most, and the greatest.
+pub fn margins((d15f_min, at_most): (Option<f64>, bool), d15f_max: Option<f64>) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();
     }
     let one = |product: &Product| {
         let [fine, coarse] = product.d15_mm();
-        let left = band.map(|band| band.left_by(product));
         ProductMargin {
             product: product.name.into(),
             d15_fine_mm: fine,
@@ -276,8 +271,7 @@ pub fn margins(
             // The true margin may be any greater.
             drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || !at_most),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
-            worst_sieve_mm: left.flatten().map(|(opening, _)| opening),
-            leaves_band_by: left.map(|left| left.map_or(0.0, |(_, points)| points)),
+            not_kept: product.not_kept().join("; "),
             source: product.source.into(),
         }
     };
@@ -307,25 +301,22 @@ mod tests {
 
     #[test]
     fn products_have_their_margins_also_where_none_fits() {
-        let band = SizeBand::of([0.14, 0.7], [0.7, 3.5]).unwrap();
-        let sand = &margins((Some(0.1), false), Some(0.7), Some(&band))[0];
+        let sand = &margins((Some(0.1), false), Some(0.7))[0];
         // D15 0.178 to 0.424 mm (see `products`).
         assert!(
             near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),
             "{sand:?}"
         );
         assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
-        // At 1.18 mm it has 50 to 85 %, and the band 29.6 % to 74.6 %; at 0.6 mm 25 to 60 %, and 55.7 %.
-        assert!(sand.worst_sieve_mm.is_some() && sand.leaves_band_by.unwrap() > 0.0, "{sand:?}");
-        let none = margins((Some(0.5), false), Some(0.6), None);
-        assert!(none.iter().all(|of| of.fits() == Some(false) && of.leaves_band_by.is_none()));
+        let none = margins((Some(0.5), false), Some(0.6));
+        assert!(none.iter().all(|of| of.fits() == Some(false)));
         // What drains may or may not hold where the maximum D15F is not known.
-        let open = margins((Some(0.2), false), None, None);
-        assert_eq!((open[0].fits(), open[1].fits()), (Some(false), None));
-        assert!(margins((None, false), None, None).is_empty());
+        let open = margins((Some(0.2), false), None);
+        assert_eq!((open[0].fits(), open[2].fits()), (Some(false), None));
+        assert!(margins((None, false), None).is_empty());
         // Whether it drains is not known where the least is one at most.
-        let till = &margins((Some(0.375), true), Some(0.7), None)[0];
+        let till = &margins((Some(0.375), true), Some(0.7))[0];
         assert_eq!((till.drains_by, till.fits()), (None, None));
-        assert_eq!(margins((Some(0.375), true), Some(0.3), None)[0].fits(), Some(false));
+        assert_eq!(margins((Some(0.375), true), Some(0.3))[0].fits(), Some(false));
     }
 }

@@ -35,7 +35,7 @@ pub use inputs::{
     NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest, commit};
-pub use practice::{DispersiveLack, IfDispersive, LimitOfDesign, Practice, TestedClass};
+pub use practice::{DispersiveLack, IfDispersive, LimitOfDesign, Practice, PracticeClass, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
@@ -61,7 +61,11 @@ pub use super::rule_note::{RuleNote, RuleText};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Outcome {
-    /// The class that the replicates together support.
+    /// Whether the filter holds, in the line with which every face begins; empty in folders of earlier
+    /// versions.
+    #[serde(default)]
+    pub headline: String,
+    /// The class that the replicates together support: that of the walk alone.
     pub verdict: Verdict,
     /// How far it can be relied on; folders of earlier versions do not say, and are outside.
     #[serde(default)]

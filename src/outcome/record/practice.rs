@@ -6,11 +6,31 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Practice {
+    /// All of it, as the line of practice and the headline have it; folders of earlier versions do not say.
+    #[serde(default)]
+    pub class: PracticeClass,
     /// The limit of design.
     pub design: LimitOfDesign,
     /// What tests of Foster and Fell showed for such a pair; folders of earlier versions do not say.
     #[serde(default)]
     pub foster_fell: TestedClass,
+}
+
+/// Whether a filter meets practice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub enum PracticeClass {
+    /// The limit of design is kept, and the filter holds its own finer part. Whether it drains, and holds a
+    /// base that may be dispersive, is said beside it.
+    #[serde(rename = "meets")]
+    Meets,
+    /// A limit is not kept.
+    #[serde(rename = "does not meet")]
+    DoesNotMeet,
+    /// A limit or a size that is needed is not known, or the filter may lose its finer part.
+    #[default]
+    #[serde(rename = "not known")]
+    NotKnown,
 }
 
 /// What practice allows if a base is dispersive, of which nobody has said whether it is.

@@ -85,10 +85,9 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
         "D15 of the coarse side (mm)",
         "D15 of the fine side / minimum D15F (-)",
         "Maximum D15F / D15 of the coarse side (-)",
-        "D15 fits",
+        "Fits",
         "Result",
-        "Leaves the band by most at sieve (mm)",
-        "Leaves the band by (percentage points)",
+        "What else its sides do not keep",
         "Source of its limits",
     ];
     let mut sheet = Sheet::new("Products", &headings);
@@ -101,8 +100,7 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
             product.holds_by.into(),
             fits(product).into(),
             result(product).into(),
-            product.worst_sieve_mm.into(),
-            product.leaves_band_by.into(),
+            (&product.not_kept).into(),
             (&product.source).into(),
         ]);
     }

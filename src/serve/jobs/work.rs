@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
 use crate::outcome::record::{FindingRecord, Outcome};
+use crate::report::colour_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
 use crate::run::error::AnyError;
@@ -165,6 +166,7 @@ pub fn of_run(outcome: &Outcome) -> Value {
         "walk": outcome.walk_in_words(),
         "next": outcome.next_in_words(),
         "verdict": outcome.verdict.words(),
+        "colour": colour_of(outcome),
         "confidence": outcome.confidence.words(),
         "reasons": outcome.reasons,
         "findings": outcome.ordered().iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),

@@ -22,7 +22,7 @@ use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
 use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
-use crate::verdict::practice::standing;
+use crate::verdict::practice::{counts_as, standing};
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -118,6 +118,7 @@ impl ComparePlan {
             case.headline = outcome.headline();
             case.practice = outcome.practice_in_words();
             case.standing = Some(standing(&outcome.rules).recorded());
+            case.by_practice = counts_as(&outcome.rules);
             case.walk = outcome.walk_in_words();
             case.next = outcome.next_in_words();
             case.beside = outcome.beside_the_verdict();

@@ -26,6 +26,8 @@ pub struct SpecifyOptions {
     pub base: PathBuf,
     /// Whether the base is dispersive.
     pub dispersive: bool,
+    /// Whether the band is to lie at the finer end of what is allowed.
+    pub finer: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
     /// What its page says of itself, besides the day.
@@ -48,9 +50,9 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let bases = curves_in_file(&options.base, None).map_err(RunError::refused)?;
     no_filter_within(&options.base, &bases)?;
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
-    let (dispersive, sieves) = (options.dispersive, options.sieves);
+    let (dispersive, finer, sieves) = (options.dispersive, options.finer, options.sieves);
     let said = dispersive.then_some(true);
-    let specified = SpecificationOptions { dispersive: said, sieves, ..SpecificationOptions::default() };
+    let specified = SpecificationOptions { dispersive: said, finer, sieves, walked_mm: None };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let cover = options.cover.clone().dated(today());
     let inputs = input_files([options.base.as_path()])?;
@@ -58,7 +60,7 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let kind = FolderKind::Specification;
     let folder = claim(&options.out, kind, options.overwrite)?;
     let (inches, cover) = (options.inches, &options.cover);
-    let work = format!("{dispersive} {sieves} {inches} {cover:?} {bases:?}");
+    let work = format!("{dispersive} {finer} {sieves} {inches} {cover:?} {bases:?}");
     kept::study((&folder, kind, options.overwrite), work, callbacks, |_, _: Option<()>| {
         write_tables(&folder, &specification)?;
         Ok(specification)

@@ -151,6 +151,7 @@ fn specification(
     let given = row.stated.regraded_from.as_ref().map_or(&row.stated.gradation, |(given, _)| given);
     let specified = SpecificationOptions {
         dispersive: row.stated.scene.base.dispersive,
+        finer: false,
         sieves: options.sieves,
         walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
     };

@@ -9,6 +9,7 @@ mod tests;
 
 use crate::gradation::{FEW_FINES, FINES_MM};
 use crate::outcome::design::SieveSeries;
+use crate::outcome::design::products::LEAST_CU;
 use crate::outcome::design::specification::{SizeBand, Specification, margins};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::{SheetCover, commit};
@@ -18,7 +19,7 @@ use crate::outcome::rules::{
 };
 use crate::verdict::words::capital;
 use curve::ReadCurve;
-use steps::{Control, D15_OVER_D10, Found, LEAST_CU};
+use steps::{Control, D15_OVER_D10, Found};
 
 /// What to do where a base is found to be dispersive.
 pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
@@ -33,6 +34,8 @@ pub struct SpecificationOptions {
     pub dispersive: Option<bool>,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
+    /// Whether the band is to lie at the finer end of what is allowed, and not at the coarser.
+    pub finer: bool,
     /// Maximum D15F (mm) that the walk holds, where a base was walked.
     pub walked_mm: Option<f64>,
 }
@@ -59,7 +62,7 @@ impl Specification {
         let d15f_max = by_practice.map(|limit| options.walked_mm.map_or(limit, |walked| limit.min(walked)));
         let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
         let d15f_min = coarsest.and_then(|curve| curve.of.d15f_min_mm);
-        let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max));
+        let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max, options.finer));
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
@@ -73,6 +76,7 @@ impl Specification {
             by_practice,
             d15f_max,
             control,
+            finer: options.finer,
         };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -89,31 +93,36 @@ impl Specification {
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
+            finer: options.finer,
             if_dispersive,
             limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
-            products: margins((d15f_min, at_most), d15f_max, band.as_ref()),
+            products: margins((d15f_min, at_most), d15f_max),
             no_band,
             band,
         }
     }
 }
 
-/// The control points of a band between a least and a maximum D15F (mm); `None` where the least is above.
-fn control(min: f64, max: f64) -> Option<Control> {
-    let d60_max = MOST_CU * max / D15_OVER_D10;
-    let of = Control { d15: [min.max(max / WIDEST_BAND), max], d60: [d60_max / WIDEST_BAND, d60_max] };
-    (min <= max).then_some(of)
+/// The control points of a band between a least and a maximum D15F (mm), at the finer or at the coarser end
+/// where that is wider than a band may be; `None` where the least is above.
+fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
+    let d15 = match finer {
+        true => [min, max.min(WIDEST_BAND * min)],
+        false => [min.max(max / WIDEST_BAND), max],
+    };
+    let d60_max = MOST_CU * d15[1] / D15_OVER_D10;
+    (min <= max).then_some(Control { d15, d60: [d60_max / WIDEST_BAND, d60_max] })
 }
 
 /// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
 /// maximum: raised where the band would be too wide.
 pub(super) fn least_of_band(min: f64, max: f64) -> f64 {
-    control(min, max).map_or(min, |of| of.d15[0])
+    control(min, max, false).map_or(min, |of| of.d15[0])
 }
 
 /// Why no filter between a least and a maximum D15F (mm) has a band; `None` where one has.
 pub(super) fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<String> {
-    let band = control(min, max).and_then(|of| SizeBand::of(of.d15, of.d60));
+    let band = control(min, max, false).and_then(|of| SizeBand::of(of.d15, of.d60));
     no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 
@@ -142,10 +151,17 @@ impl Specification {
         Some(format!("D15F from {lower} to {upper} mm{open}, Cu from {LEAST_CU} to {MOST_CU}"))
     }
 
-    /// Why the band begins above the minimum D15F that drains the base, in a sentence without its end; `None`
-    /// where it does not.
+    /// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains
+    /// it, in a sentence without its end; `None` where it does neither.
     pub fn raised_in_words(&self) -> Option<String> {
-        let [least, _] = self.band.as_ref()?.d15_mm();
+        let [least, greatest] = self.band.as_ref()?.d15_mm();
+        if let Some(retains) = self.d15f_max_mm.filter(|of| greatest < of * (1.0 - 1e-9)) {
+            let [retains, greatest] = [retains, greatest].map(rounded_down);
+            return Some(format!(
+                "The maximum D15F that retains the base is {retains} mm; this maximum is lowered to \
+                 {greatest} mm, so that the band is no wider than {WIDEST_BAND} to 1"
+            ));
+        }
         let drains = self.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
         let at_most = if self.d15f_min_at_most { "not known, and at most " } else { "" };
         let [drains, least] = [drains, least].map(rounded_up);
@@ -160,8 +176,9 @@ impl Specification {
     pub fn still_to_set(&self) -> Option<String> {
         let least = steps::least_d10(self.band.as_ref()?);
         Some(format!(
-            "Not a complete specification: the maximum D90F is still to be set from the table of FEMA (2011) \
-             or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of {} mm.",
+            "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be \
+             set from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), \
+             for a minimum D10F of {} mm.",
             // Where a table is entered: a finer D10F allows no coarser D90F.
             rounded_down(least)
         ))

@@ -25,8 +25,9 @@ impl Side {
     /// Both sides; an index is `None` where a side is of one size. What is drawn below D5 of the fine side is
     /// a limit of fines, and no part of a gradation.
     pub fn both(band: &SizeBand) -> [Self; 2] {
-        [("fine", &band.fine_side), ("coarse", &band.coarse_side)].map(|(name, points)| {
-            let soil = Gradation::of_rows(points).ok();
+        let [fine, coarse] = band.continued();
+        [("fine", fine), ("coarse", coarse)].map(|(name, points)| {
+            let soil = Gradation::of_rows(&points).ok();
             let kezdi = soil.as_ref().and_then(Gradation::kezdi);
             Self { name, kezdi, kenney_lau: soil.as_ref().and_then(Gradation::kenney_lau) }
         })

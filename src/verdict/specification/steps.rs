@@ -4,6 +4,7 @@ use super::curve::ReadCurve;
 use super::formula;
 use super::sides::{LEAST_SHAPE, MOST_KEZDI, Side};
 use crate::gradation::{FINES_MM, GAP_PERCENT, Gap};
+use crate::outcome::design::products::LEAST_CU;
 use crate::outcome::design::specification::{BandSize, ENTERED_BY, SizeBand, SpecificationStep, StepValue};
 use crate::outcome::numbers::significant;
 use crate::outcome::record::AppliedRule;
@@ -12,9 +13,6 @@ use crate::verdict::words::capital;
 
 /// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
 pub(super) const D15_OVER_D10: f64 = 1.2;
-
-/// Least Cu of a filter that is specified.
-pub(super) const LEAST_CU: f64 = 2.0;
 
 /// The control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
 pub(super) struct Control {
@@ -35,6 +33,8 @@ pub(super) struct Found<'a> {
     pub by_practice: Option<f64>,
     pub d15f_max: Option<f64>,
     pub control: Option<Control>,
+    /// Whether the band lies at the finer end of what is allowed.
+    pub finer: bool,
 }
 
 impl Found<'_> {
@@ -200,11 +200,12 @@ impl Found<'_> {
     fn width(&self) -> SpecificationStep {
         let least = self.coarsest.and_then(|curve| curve.of.d15f_min_mm);
         let raised = self.control.as_ref().zip(least).is_some_and(|(of, least)| of.d15[0] > least);
+        let lowered = self.control.as_ref().zip(self.d15f_max).is_some_and(|(of, most)| of.d15[1] < most);
         let narrow = self.control.as_ref().map(|of| of.d15[0]);
+        let moved = if self.finer { "maximum is lowered" } else { "minimum is raised" };
         SpecificationStep {
             formula: format!(
-                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the minimum is raised where the ratio is \
-                 larger"
+                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the {moved} where the ratio is larger"
             ),
             values: vec![
                 named(
@@ -215,7 +216,11 @@ impl Found<'_> {
                 named("minimum D15F of the band", narrow, "mm"),
                 named("maximum D15F of the band", self.control.as_ref().map(|of| of.d15[1]), "mm"),
             ],
-            note: if raised { "The minimum D15F is raised.".into() } else { String::new() },
+            note: match (raised, lowered) {
+                (true, _) => "The minimum D15F is raised.".into(),
+                (_, true) => "The maximum D15F is lowered.".into(),
+                _ => String::new(),
+            },
             source: source_of("filter-band"),
             ..step("Keep the band narrow at 15 % finer")
         }
@@ -286,10 +291,11 @@ impl Found<'_> {
         SpecificationStep {
             values: sizes.iter().flat_map(both).collect(),
             note:
-                "The control points are joined by straight lines on the form. Above 60 % finer both sides go \
-                   on straight. Below its D5 the fine side runs level to the No. 200 sieve."
+                "The control points are joined by straight lines on the form. Above 60 % finer neither side is \
+                   drawn, as no text was read for it. Below its D5 the fine side runs level to the No. 200 \
+                   sieve."
                     .into(),
-            source: "a drawing of this program; no text was read for the sides above 60 % finer".into(),
+            source: "a drawing of this program".into(),
             ..step("Draw both sides of the band")
         }
     }
@@ -308,7 +314,10 @@ impl Found<'_> {
             _ if side.is_known() => format!("The {} side keeps both.", side.name),
             _ => format!("The {} side is nearly of one size.", side.name),
         };
-        let below = band.map(|_| "The fine side is judged from its D5 up.".to_owned());
+        let below = band.map(|_| {
+            "The fine side is judged from its D5 up, and both as if they went on straight above 60 % finer."
+                .to_owned()
+        });
         SpecificationStep {
             formula: format!(
                 "D'15/d'85 <= {MOST_KEZDI} by Kézdi, H/F >= {LEAST_SHAPE} by Kenney and Lau, as of a filter"

@@ -36,7 +36,7 @@ fn a_core_with_60_percent_of_fines_by_hand() {
     assert!(near(value(&core, "maximum D60F"), 3.5) && near(value(&core, "minimum D60F"), 0.7));
     assert!(near(value(&core, "minimum D10F"), 0.14 / 1.2));
     let sizes = &core.band.as_ref().unwrap().sizes;
-    assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0, 90.0, 100.0]);
+    assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0]);
     assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=12).collect::<Vec<_>>());
     assert!(core.no_band.is_none() && core.nearest_product().is_none());
     assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
@@ -190,7 +190,6 @@ fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_wh
     let uniform = of(&[(0.4, 0.0), (0.5, 100.0)]);
     let why = uniform.no_band.as_ref().unwrap();
     assert!(uniform.band.is_none() && why.starts_with("No filter both drains and retains"), "{why}");
-    assert!(uniform.products.iter().all(|product| product.leaves_band_by.is_none()));
     assert!(uniform.beside_limits().is_none());
     // A gravel whose filter would be of stones.
     let gravel = of(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
@@ -231,8 +230,8 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
     for points in bases {
         let band = of(points).band.unwrap();
         let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
-        let sides =
-            [("fine".to_owned(), side(&band.fine_side)), ("coarse".to_owned(), side(&band.coarse_side))];
+        let [fine, coarse] = band.continued();
+        let sides = [("fine".to_owned(), side(&fine)), ("coarse".to_owned(), side(&coarse))];
         // A hair finer, so that no rounding breaks the limit itself.
         let sides = sides.map(|(name, curve)| {
             let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
@@ -293,12 +292,33 @@ fn a_base_that_is_too_fine_is_not_called_broad() {
     ));
 }
 
+/// The minimum D15F of 0.1 mm stays, and the maximum is lowered from 0.7 to 0.5 mm.
+#[test]
+fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
+    let core = soil(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let specified = |finer| {
+        let options = SpecificationOptions { finer, ..Default::default() };
+        Specification::of("core", &[("core".into(), core.clone())], options)
+    };
+    let [coarser, finer] = [false, true].map(specified);
+    let d15 = |of: &Specification| of.band.as_ref().unwrap().d15_mm();
+    let near = |found: [f64; 2], wanted: [f64; 2]| {
+        found.iter().zip(wanted).all(|(found, wanted)| (found / wanted - 1.0).abs() < 1e-9)
+    };
+    assert!(near(d15(&coarser), [0.14, 0.7]) && near(d15(&finer), [0.1, 0.5]));
+    assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
+    assert!(finer.raised_in_words().unwrap().contains("lowered to 0.500 mm"));
+    assert!(coarser.raised_in_words().unwrap().contains("raised to 0.140 mm"));
+    // What is allowed is the same: products do not depend on where the band lies.
+    assert_eq!(finer.products, coarser.products);
+}
+
 /// The maximum D90F has no number here, and that is said for the minimum D10F of the step.
 #[test]
 fn what_is_still_to_be_set_is_said_with_its_size() {
     let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     let said = core.still_to_set().unwrap();
-    assert!(said.starts_with("Not a complete specification: the maximum D90F is still to be set"), "{said}");
+    assert!(said.starts_with("Not a complete specification: there is no limit above D60F, "), "{said}");
     assert!(said.ends_with("for a minimum D10F of 0.116 mm."), "{said}");
     let none = of(&[(1.0, 0.0), (2.0, 10.0), (4.75, 40.0), (9.5, 60.0), (19.0, 80.0), (37.5, 100.0)]);
     assert_eq!((none.band.is_none(), none.still_to_set()), (true, None), "{none:?}");
@@ -389,8 +409,8 @@ fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
             let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
             let of = Specification::of("sand", &[("sand".into(), sand.clone())], options);
             unstable += of.findings.iter().filter(|of| of.finding.id == "unstable_side").count();
-            for side in of.band.iter().flat_map(|band| [&band.fine_side, &band.coarse_side]) {
-                let side = Gradation::of_rows(side).unwrap();
+            for side in of.band.iter().flat_map(SizeBand::continued) {
+                let side = Gradation::of_rows(&side).unwrap();
                 let side = side.scaled(1.0 - 1e-9).unwrap();
                 let rules = PairRules::of(&sand, &side).rules;
                 assert!(washout(&rules).is_none(), "{walked} {:?}", washout(&rules).map(|of| of.in_words()));

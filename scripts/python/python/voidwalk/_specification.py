@@ -86,7 +86,7 @@ class Specification:
 
     @property
     def band(self) -> Optional[SizeBand]:
-        """Both sides of the band, and their D5, D15, D60, D90 and D100 (mm); ``None`` where there is no band."""
+        """Both sides of the band up to their D60, and their D5, D15 and D60 (mm); ``None`` where there is no band."""
         return self.outcome["band"]
 
     @property
@@ -96,7 +96,8 @@ class Specification:
 
     @property
     def limits(self) -> List[SieveLimit]:
-        """Least and greatest percent finer at each sieve, the coarsest first; empty without a band."""
+        """Least and greatest percent finer at each sieve, the coarsest first; ``None`` above the D60 of the fine
+        side, and empty without a band."""
         return self.outcome["limits"]
 
     @property
@@ -111,8 +112,8 @@ class Specification:
 
     @property
     def fits(self) -> Dict[str, Optional[bool]]:
-        """Whether D15 of both sides of each product lies between least and maximum D15F, by its name; ``None``
-        where a limit that is not known decides."""
+        """Whether both sides of each product keep every requirement, by its name; ``None`` where a limit of D15F
+        that is not known decides."""
         return {of["product"]: fits for of, fits in zip(self.products, self._fits)}
 
     def to_pandas(self, table: Literal["limits", "steps", "products"] = "limits") -> "pandas.DataFrame":
@@ -147,9 +148,10 @@ class Specification:
         facts = {"By the rules of practice alone": self.answer}
         if self.note is not None:
             facts["Beside the limits"] = self.note
+        shown = [(of["min_percent_finer"], of["max_percent_finer"]) for of in self.limits]
         rows = [
-            (of["sieve"], f"{of['opening_mm']:g}", f"{of['min_percent_finer']:g}", f"{of['max_percent_finer']:g}")
-            for of in self.limits
+            (of["sieve"], f"{of['opening_mm']:g}", f"{least:g}", "" if most is None else f"{most:g}")
+            for of, (least, most) in zip(self.limits, shown)
         ]
         heading = ("Sieve", "Opening (mm)", "Least finer (%)", "Greatest finer (%)")
         return box(f"Specification of a filter for {self.outcome['base']}", facts, heading, rows)
@@ -166,6 +168,7 @@ def specification(
     out: Union[None, str, "os.PathLike[str]"] = None,
     *,
     dispersive: bool = False,
+    finer: bool = False,
     sieves: Literal["us", "iso"] = "us",
     overwrite: bool = False,
     progress: Follower = None,
@@ -183,6 +186,8 @@ def specification(
         Folder for the results: tables, page and workbook. Without it everything stays in memory.
     dispersive : bool
         The base is dispersive: stricter limits if it has many fines.
+    finer : bool
+        The band lies at the finer end of what is allowed: its maximum D15F is lowered, not its minimum raised.
     sieves : {"us", "iso"}
         Sieves at which the limits are stated: ASTM E11, or mm.
     overwrite : bool
@@ -212,6 +217,12 @@ def specification(
     with workplace() as place, Following(progress) as callback:
         place_of_results = Path(place.out(out))
         said = _voidwalk.specification(
-            place.table("base", base), bool(dispersive), sieves, place_of_results, bool(overwrite), callback
+            place.table("base", base),
+            bool(dispersive),
+            bool(finer),
+            sieves,
+            place_of_results,
+            bool(overwrite),
+            callback,
         )
         return read_specification(place_of_results, place.named(said), None if out is None else place_of_results)

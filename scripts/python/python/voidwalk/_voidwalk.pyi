@@ -278,7 +278,13 @@ def design(
     progress: _Callback,
 ) -> str: ...
 def specification(
-    base: _Path, dispersive: bool, sieves: str, out: _Path, overwrite: bool, progress: _Callback
+    base: _Path,
+    dispersive: bool,
+    finer: bool,
+    sieves: str,
+    out: _Path,
+    overwrite: bool,
+    progress: _Callback,
 ) -> str: ...
 def specification_says(record: str) -> Tuple[str, Optional[str], Optional[str], List[Optional[bool]]]: ...
 def percolation(

@@ -154,19 +154,15 @@ class LimitOfDesign(_LimitOfDesign, total=False):
     limit_at_most: bool
 
 
-class Practice(TypedDict):
-    """What filter practice says of a pair, for programs.
-
-    Keys
-    ----
-    design
-        The limit of design.
-    foster_fell
-        What tests of Foster and Fell showed for such a pair; folders of earlier versions do not say.
-    """
-
-    design: LimitOfDesign
-    foster_fell: Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"]
+#: What filter practice says of a pair, for programs.
+Practice = TypedDict(
+    "Practice",
+    {
+        "class": Literal["meets", "does not meet", "not known"],
+        "design": LimitOfDesign,
+        "foster_fell": Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"],
+    },
+)
 
 
 class _IfDispersive(TypedDict):
@@ -1161,6 +1157,7 @@ class OfThickness(_OfThickness, total=False):
 class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
+    headline: str
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
     confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
     findings: List[Finding]
@@ -1192,8 +1189,11 @@ class Outcome(_Outcome, total=False):
         The form of this file.
     voidwalk
         Version of the program that wrote it.
+    headline
+        Whether the filter holds, in the line with which every face begins; empty in folders of earlier
+        versions.
     verdict
-        The class that the replicates together support.
+        The class that the replicates together support: that of the walk alone.
     confidence
         How far it can be relied on; folders of earlier versions do not say, and are outside.
     findings
@@ -1899,11 +1899,11 @@ class SizeBand(TypedDict):
     Keys
     ----
     sizes
-        D5, D15, D60, D90 and D100 of both sides.
+        D5, D15 and D60 of both sides.
     fine_side
-        The fine side: size (mm) and percent finer, rising.
+        The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies above.
     coarse_side
-        The coarse side.
+        The coarse side, likewise.
     """
 
     sizes: List[BandSize]
@@ -1924,13 +1924,13 @@ class SieveLimit(TypedDict):
         Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where no
         whole percent lies within.
     max_percent_finer
-        Greatest percent finer, of the fine side, likewise.
+        Greatest percent finer, of the fine side, likewise; `None` above its D60.
     """
 
     sieve: str
     opening_mm: float
     min_percent_finer: float
-    max_percent_finer: float
+    max_percent_finer: Optional[float]
 
 
 class ProductMargin(TypedDict):
@@ -1949,11 +1949,9 @@ class ProductMargin(TypedDict):
         known whether it drains.
     holds_by
         The maximum D15F over D15 of its coarse side: at least 1 where it holds.
-    worst_sieve_mm
-        The sieve (mm) at which its limits leave the band by most; `None` without a band, and where they stay
-        within it.
-    leaves_band_by
-        By how much they leave it there (percentage points finer); 0 where they stay within.
+    not_kept
+        What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
+        empty where they keep all.
     source
         Where its limits were read.
     """
@@ -1963,8 +1961,7 @@ class ProductMargin(TypedDict):
     d15_coarse_mm: float
     drains_by: Optional[float]
     holds_by: Optional[float]
-    worst_sieve_mm: Optional[float]
-    leaves_band_by: Optional[float]
+    not_kept: str
     source: str
 
 
@@ -2015,6 +2012,8 @@ class Specification(_Specification, total=False):
         Minimum D15F (mm) that drains the base; `None` where it is not known.
     d15f_min_at_most
         Whether the true least is not known, and is at most that.
+    finer
+        Whether the band lies at the finer end of what is allowed, and not at the coarser.
     d15f_max_mm
         Maximum D15F (mm) that is allowed; `None` where it is not known.
     if_dispersive
@@ -2036,6 +2035,7 @@ class Specification(_Specification, total=False):
     inputs: List[InputFile]
     findings: List[DesignFinding]
     d15f_min_at_most: bool
+    finer: bool
     if_dispersive: Optional[IfDispersive]
     no_band: Optional[str]
 
@@ -2219,6 +2219,8 @@ class ComparedCase(_ComparedCase, total=False):
         What filter practice says of the pair, in a line; records of earlier versions do not say.
     standing
         Where the filter stands by practice; records of earlier versions do not say.
+    by_practice
+        The class as which practice counts; records of earlier versions do not say.
     headline
         Whether the filter holds, in a line; records of earlier versions do not say.
     walk
@@ -2255,6 +2257,7 @@ class ComparedCase(_ComparedCase, total=False):
 
     practice: str
     standing: Optional[Literal["fails", "no_margin", "unstable", "unknown", "met", "no_rules"]]
+    by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
     headline: str
     walk: str
     next: str
@@ -2495,8 +2498,8 @@ class _FilterSizes(TypedDict):
 
 
 class FilterSizes(_FilterSizes, total=False):
-    """Sizes of a filter (mm), of its coarsest curve where it is an envelope; `None` where they lie in a finest tail
-    of unknown size.
+    """Sizes of a filter (mm), of the curve that keeps the limit of design worst where it is an envelope; `None`
+    where they lie in a finest tail of unknown size.
 
     Keys
     ----
@@ -2536,8 +2539,8 @@ class _BaseSizes(TypedDict):
 
 
 class BaseSizes(_BaseSizes, total=False):
-    """A base as practice describes it (mm), its finest curve where it is an envelope; `None` where a size lies in a
-    finest tail of unknown size.
+    """A base as practice describes it (mm), of the curve that keeps the limit of design worst where it is an
+    envelope; `None` where a size lies in a finest tail of unknown size.
 
     Keys
     ----
@@ -2600,6 +2603,7 @@ class _PairRules(TypedDict):
     base: BaseSizes
     rules: List[AppliedRule]
     practice: str
+    practice_class: Literal["meets", "does not meet", "not known"]
     warnings: List[str]
 
 
@@ -2620,6 +2624,8 @@ class PairRules(_PairRules, total=False):
         Every rule.
     practice
         What they say together, in a line, as it stands on every page: whether practice is met, and why.
+    practice_class
+        The same for programs.
     if_dispersive
         The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     warnings
