@@ -13,6 +13,9 @@ pub const WIDE_STEP: f64 = 4.0;
 /// By how much, relatively, numbers of one curve may differ between two ways of writing it.
 pub(crate) const TIE: f64 = 1e-9;
 
+/// Mass (%) that stays spread over a step whose mass stands at one of its sieves.
+const TRACE_PERCENT: f64 = 1e-6;
+
 /// Two neighbouring sieves that stand further apart than [`USUAL_STEP`], with mass between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
@@ -55,14 +58,16 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// This curve with the mass of each of these steps of its own at the coarser sieve, or at the finer one.
+    /// This curve with the mass of each of these steps of its own at the coarser sieve, or at the finer one;
+    /// but for a trace, so that a size which a sieve tells stays that sieve.
     pub(crate) fn with_mass_at(&self, ends: &[(Step, End)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
         for &(step, end) in ends.iter().rev() {
             let i = step.segment;
+            let trace = TRACE_PERCENT.min((self.percent[i + 1] - self.percent[i]) / 3.0);
             let (size, at) = match end {
-                End::Coarse => (step.to_mm * (1.0 - 1e-12), self.percent[i]),
-                End::Fine => (step.from_mm * (1.0 + 1e-12), self.percent[i + 1]),
+                End::Coarse => (step.to_mm * (1.0 - 1e-12), self.percent[i] + trace),
+                End::Fine => (step.from_mm * (1.0 + 1e-12), self.percent[i + 1] - trace),
             };
             size_mm.insert(i + 1, size);
             percent.insert(i + 1, at);
@@ -112,9 +117,10 @@ mod tests {
         for (end, d15, finer) in [(End::Fine, 0.3, 60.0), (End::Coarse, 38.0, 12.0)] {
             let curve = sparse.with_mass_at(&[(steps[0], end)]);
             assert!((curve.d(15.0).unwrap() / d15 - 1.0).abs() < 1e-11);
-            assert_eq!(curve.percent_finer_by_mass(5.0), finer);
+            assert!((curve.percent_finer_by_mass(5.0) - finer).abs() < 1e-5);
             assert_eq!(curve.percent_finer_by_mass(0.3), 12.0);
             assert_eq!(curve.d(80.0), sparse.d(80.0));
+            assert_eq!((curve.d(12.0), curve.d(60.0)), (Some(0.3), Some(38.0)));
         }
     }
 

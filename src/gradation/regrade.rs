@@ -1,8 +1,8 @@
 //! Regrading: the part of a base soil that filter practice looks at.
 
 use super::Gradation;
-use super::group::{FINES_MM, GRAVEL_MM};
 use super::between::TIE;
+use super::group::{FINES_MM, GRAVEL_MM};
 use super::shape::{FLAT_PERCENT, GAP_PERCENT, Gap};
 
 /// Percent of fines below which a base has few.
@@ -73,16 +73,22 @@ impl Gradation {
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
     /// ```
     pub fn regraded(&self) -> Regraded {
-        self.regraded_on(self.regrading(self.gap(FINES_MM)))
+        self.regraded_as(self)
+    }
+
+    /// The same where another curve tells on which size.
+    pub(crate) fn regraded_as(&self, other: &Self) -> Regraded {
+        self.regraded_on(other.regrading(other.gap(FINES_MM)))
     }
 
     /// This soil as practice regrades it where its curve is flat enough to be a gap, and is not read as one
-    /// by [`Gradation::regraded`], or the other way round; `None` of a curve that is steep, or level.
-    pub(crate) fn regraded_otherwise(&self) -> Option<Regraded> {
-        let flat = self.flattest(FINES_MM)?;
+    /// by [`Gradation::regraded_as`] of this other curve, or the other way round; `None` where that is steep,
+    /// or level.
+    pub(crate) fn regraded_otherwise(&self, other: &Self) -> Option<Regraded> {
+        let flat = other.flattest(FINES_MM)?;
         let is_open = (100.0 * TIE..FLAT_PERCENT - 100.0 * TIE).contains(&flat.within);
         let is_gap = flat.within < GAP_PERCENT;
-        is_open.then(|| self.regraded_on(self.regrading(Some(flat).filter(|_| !is_gap))))
+        is_open.then(|| self.regraded_on(other.regrading(Some(flat).filter(|_| !is_gap))))
     }
 
     fn regraded_on(&self, (at, cause): (Option<f64>, RegradeCause)) -> Regraded {

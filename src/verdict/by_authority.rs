@@ -299,8 +299,7 @@ mod tests {
     fn every_stricter_limit_is_named_beside_a_design() {
         let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)]).unwrap();
         let fine = Gradation::from_lines(&[(0.01, 0.0), (0.06, 90.0), (0.2, 100.0)]).unwrap();
-        let till =
-            Gradation::from_lines(&[(0.01, 0.0), (0.075, 37.0), (0.6, 80.0), (4.0, 100.0)]).unwrap();
+        let till = Gradation::from_lines(&[(0.01, 0.0), (0.075, 37.0), (0.6, 80.0), (4.0, 100.0)]).unwrap();
         let mut named = 0;
         for base in [base, fine, till] {
             let least = PairRules::of(&base, &Gradation::linear_from_dx(15.0, 0.15, 1.5).unwrap()).rules;
@@ -337,8 +336,7 @@ mod tests {
     #[test]
     fn what_has_no_result_is_named_and_none_is_broken_only_where_all_are_met() {
         use crate::verdict::PairOptions;
-        let soil =
-            |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_lines(points).unwrap())];
+        let soil = |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_lines(points).unwrap())];
         let filter = soil(&[(0.5, 0.0), (2.0, 100.0)]);
         let options = PairOptions { joint_mm: Some(2.0), ..PairOptions::default() };
         let base = soil(&[(0.08, 0.0), (0.3, 100.0)]);

@@ -285,8 +285,8 @@ pub fn headline(
         (Standing::Met, _) => format!("holds by practice; the walk is stricter: {walked} in the model"),
     };
     // Of a filter that is too coarse as it is the line of practice says so.
-    let unstable =
-        matches!(standing, Standing::NoMargin | Standing::Unknown(_) | Standing::Open(_)) && breaks(rules, RuleRole::Stability);
+    let unstable = matches!(standing, Standing::NoMargin | Standing::Unknown(_) | Standing::Open(_))
+        && breaks(rules, RuleRole::Stability);
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);

@@ -240,8 +240,7 @@ mod tests {
     /// with it, by the rules alone too.
     #[test]
     fn a_limit_that_a_dispersive_base_would_have_stands_in_the_line() {
-        let soil =
-            |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
+        let soil = |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
         let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
         let said = |d15f: f64, dispersive| {
             let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
@@ -340,9 +339,8 @@ mod tests {
     /// A sand is finer at 85 % than a clay with gravel, and allows a coarser filter.
     #[test]
     fn the_curve_with_the_lower_limit_counts_though_its_d85_is_larger() {
-        let soil = |name: &str, points: &[(f64, f64)]| {
-            (name.to_owned(), Gradation::from_lines(points).unwrap())
-        };
+        let soil =
+            |name: &str, points: &[(f64, f64)]| (name.to_owned(), Gradation::from_lines(points).unwrap());
         let clay = soil("clay", &[(0.002, 54.0), (0.09, 62.8), (0.71, 72.1), (1.7, 91.0), (6.3, 100.0)]);
         let sand = soil("sand", &[(0.075, 0.0), (0.18, 12.0), (0.355, 54.0), (0.425, 73.9), (0.5, 100.0)]);
         let filter = [soil("filter", &[(0.075, 0.0), (0.85, 0.9), (16.0, 100.0)])];

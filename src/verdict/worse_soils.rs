@@ -126,7 +126,7 @@ fn testing_more_of_the_fines_never_takes_a_failure_back() {
             soil.regraded_at_mm.or(soil.hidden_below_mm)
         };
         // A flat part that finer sieves show may be a gap.
-        let flat = |base: &Gradation| base.regraded_otherwise().and_then(|other| other.at_mm);
+        let flat = |base: &Gradation| base.regraded_otherwise(base).and_then(|other| other.at_mm);
         let is_same = [part(&open), flat(&open)] == [part(&whole), flat(&whole)];
         let (before, after) = (part(&open), part(&whole));
         let [open, whole] = [&open, &whole].map(|base| rules(&filter, base, dispersive, None));

@@ -13,9 +13,8 @@ use crate::outcome::rule_note::RuleText;
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     let base = OpenBase::of(inputs.base, inputs.scale_free);
     let filter = OpenFilter::of(inputs.filter, inputs.filter_is_measured);
-    let applied = |rule: &FilterRule| {
-        Some(record(rule, inputs.scale_free, judged_over(rule, inputs, &base, &filter)?))
-    };
+    let applied =
+        |rule: &FilterRule| Some(record(rule, inputs.scale_free, judged_over(rule, inputs, &base, &filter)?));
     RULES.iter().filter_map(applied).collect()
 }
 

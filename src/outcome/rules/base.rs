@@ -1,6 +1,6 @@
 //! The base as practice describes it: regraded where it is broad, and its category by fines.
 
-use crate::gradation::{FEW_FINES, TIE, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded};
+use crate::gradation::{FEW_FINES, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded, TIE};
 
 /// A base soil as practice describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,10 +42,11 @@ impl BaseSoil {
         Self::regraded(base.regraded())
     }
 
-    /// The same of a base whose curve is flat enough that it may be gap-graded or not, as practice reads it
-    /// otherwise than [`Self::of`]; `None` of others.
-    pub(super) fn otherwise(base: &Gradation) -> Option<Self> {
-        base.regraded_otherwise().map(Self::regraded)
+    /// The same regraded as another curve of this base is, and where the curve is flat as it may be read
+    /// otherwise.
+    pub(super) fn both(base: &Gradation, as_of: &Gradation) -> (Self, Option<Self>) {
+        let otherwise = base.regraded_otherwise(as_of).map(Self::regraded);
+        (Self::regraded(base.regraded_as(as_of)), otherwise)
     }
 
     fn regraded(regraded: Regraded) -> Self {

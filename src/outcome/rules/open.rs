@@ -2,9 +2,9 @@
 //! may be spread, at its finer or at its coarser sieve.
 //!
 //! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it a rule whose answer hangs on the step
-//! has no result, and rules of internal stability have none beyond [`USUAL_STEP`].
+//! has no result. Rules of internal stability read a straight line up to [`WIDE_STEP`]: the sieves of ASTM
+//! D448 stones stand that far apart where next to nothing passes.
 //!
-//! [`USUAL_STEP`]: crate::gradation::USUAL_STEP
 //! [`WIDE_STEP`]: crate::gradation::WIDE_STEP
 
 use std::cmp::Ordering;
@@ -55,23 +55,25 @@ pub struct OpenBase {
 }
 
 impl OpenBase {
-    /// Of a base; without curves where its table leaves nothing open.
+    /// Of a base; without curves where its table leaves nothing open. Only wide steps hide a gap.
     pub fn of(base: &Gradation, scale_free: bool) -> Self {
-        let steps = if scale_free { Vec::new() } else { base.open_steps() };
-        let has_gap = |curve: &Gradation| (!scale_free).then(|| BaseSoil::otherwise(curve)).flatten();
-        let curves: Vec<Gradation> = spread(base, &steps);
-        let others: Vec<Option<BaseSoil>> = curves.iter().map(has_gap).collect();
-        let soil = |curve: &Gradation| BaseSoil::of(curve, scale_free);
-        let mut choices: Vec<Choice> = chosen(&steps).iter().map(|step| Choice::OfBase(*step)).collect();
-        let is_flat = others.iter().any(Option::is_some);
+        if scale_free {
+            return Self { choices: Vec::new(), curves: Vec::new() };
+        }
+        let steps = base.open_steps();
+        let curves =
+            spread(base, &steps, |_| true).into_iter().zip(spread(base, &steps, |step| step.is_wide()));
+        let read = |(curve, regraded_as): (Gradation, Gradation)| {
+            let (soil, otherwise) = BaseSoil::both(&curve, &regraded_as);
+            (curve, soil, otherwise)
+        };
+        let curves: Vec<(Gradation, BaseSoil, Option<BaseSoil>)> = curves.map(read).collect();
+        let mut choices: Vec<Choice> = chosen(&steps).into_iter().map(Choice::OfBase).collect();
         let mut all: Vec<(Gradation, BaseSoil)> =
-            curves.iter().map(|curve| (curve.clone(), soil(curve))).collect();
-        if is_flat {
+            curves.iter().map(|(curve, soil, _)| (curve.clone(), soil.clone())).collect();
+        if curves.iter().any(|(_, _, otherwise)| otherwise.is_some()) {
             choices.push(Choice::Gap);
-            let other = |(curve, other): (&Gradation, Option<BaseSoil>)| {
-                (curve.clone(), other.unwrap_or_else(|| soil(curve)))
-            };
-            all.extend(curves.iter().zip(others).map(other));
+            all.extend(curves.into_iter().map(|(curve, soil, otherwise)| (curve, otherwise.unwrap_or(soil))));
         }
         if choices.is_empty() {
             all.clear();
@@ -84,14 +86,18 @@ impl OpenBase {
 pub struct OpenFilter {
     steps: Vec<Step>,
     curves: Vec<Gradation>,
+    /// The same with straight lines over steps that are not wide.
+    stable: Vec<Gradation>,
 }
 
 impl OpenFilter {
     /// Of a filter; without curves where its table leaves nothing open.
     pub fn of(filter: &Gradation, is_measured: bool) -> Self {
         let steps = if is_measured { filter.open_steps() } else { Vec::new() };
-        let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps) };
-        Self { steps: chosen(&steps), curves }
+        let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_| true) };
+        let stable =
+            if curves.is_empty() { Vec::new() } else { spread(filter, &steps, |step| step.is_wide()) };
+        Self { steps: chosen(&steps), curves, stable }
     }
 }
 
@@ -105,15 +111,17 @@ fn chosen(steps: &[Step]) -> Vec<Step> {
 }
 
 /// A curve with the mass of each step at either end: bit `i` of a place is set where step `i` has it at its
-/// coarser sieve. Steps that are not looked at one by one go with the last of those that are.
-fn spread(curve: &Gradation, steps: &[Step]) -> Vec<Gradation> {
+/// coarser sieve. Steps that are not looked at one by one go with the last of those that are; of those that
+/// are not read by their ends the curve is the straight line.
+fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(&Step) -> bool) -> Vec<Gradation> {
     let chosen = chosen(steps);
     let end = |place: usize, step: &Step| {
         let at = chosen.iter().position(|of| of == step).unwrap_or(chosen.len().saturating_sub(1));
         if place >> at & 1 == 1 { End::Coarse } else { End::Fine }
     };
     let at = |place: usize| {
-        let ends: Vec<(Step, End)> = steps.iter().map(|step| (*step, end(place, step))).collect();
+        let ends: Vec<(Step, End)> =
+            steps.iter().filter(|step| by_ends(step)).map(|step| (*step, end(place, step))).collect();
         curve.with_mass_at(&ends)
     };
     (0..1usize << chosen.len()).map(at).collect()
@@ -165,19 +173,25 @@ fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &Ope
 
 /// Rules of the filter alone.
 fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Over {
-    if filter.curves.is_empty() {
+    let curves = match rule.role {
+        RuleRole::Stability => &filter.stable,
+        _ => &filter.curves,
+    };
+    if curves.is_empty() {
         return None;
     }
-    let results = filter.curves.iter().filter_map(|filter| judged(rule, &RuleInputs { filter, ..inputs.same() }));
+    let results = curves.iter().filter_map(|filter| judged(rule, &RuleInputs { filter, ..inputs.same() }));
     Some((filter.steps.iter().map(|step| Choice::OfFilter(*step)).collect(), results.collect()))
 }
 
 /// A rule of all filters at once: the finest of each beside the coarsest of each.
 fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
-    let open: Vec<OpenFilter> = inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
-    let step = open.iter().flat_map(|filter| &filter.steps).max_by(|a, b| {
-        (a.to_mm / a.from_mm).total_cmp(&(b.to_mm / b.from_mm))
-    });
+    let open: Vec<OpenFilter> =
+        inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
+    let step = open
+        .iter()
+        .flat_map(|filter| &filter.steps)
+        .max_by(|a, b| (a.to_mm / a.from_mm).total_cmp(&(b.to_mm / b.from_mm)));
     let step = Choice::OfFilter(*step?);
     let ends = |(given, open): (&&'_ Gradation, &OpenFilter)| match &open.curves[..] {
         [finest, .., coarsest] => vec![finest.clone(), coarsest.clone()],
@@ -201,12 +215,10 @@ fn combined(
 ) -> Judged {
     let places = 0..results.len();
     let class = |judged: &Judged| margin(rule, judged).0.min(MET);
-    let by_margin = |a: &&Judged, b: &&Judged| {
-        margin(rule, a).partial_cmp(&margin(rule, b)).unwrap_or(Ordering::Equal)
-    };
+    let by_margin =
+        |a: &&Judged, b: &&Judged| margin(rule, a).partial_cmp(&margin(rule, b)).unwrap_or(Ordering::Equal);
     let Some(worst) = results.iter().chain([&plain]).min_by(by_margin).cloned() else { return plain };
-    let is_wide = |i: &usize| choices[*i].is_wide() || rule.role == RuleRole::Stability;
-    let wide: Vec<usize> = (0..choices.len()).filter(is_wide).collect();
+    let wide: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_wide()).collect();
     let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
     // Of what is not far apart the worst counts.
     let answer = |place: usize| {
@@ -296,7 +308,8 @@ fn note(
         }
         Choice::OfFilter(step) => return Some(RuleNote::FilterBetween(step.from_mm, step.to_mm)),
         Choice::Gap => {
-            let limits = results.iter().filter_map(|of| of.limit).filter(|limit| Some(*limit) != judged.limit);
+            let limits =
+                results.iter().filter_map(|of| of.limit).filter(|limit| Some(*limit) != judged.limit);
             return limits.reduce(f64::max).map(RuleNote::FlatBase);
         }
         Choice::OfBase(step) => step,

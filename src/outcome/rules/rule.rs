@@ -179,11 +179,7 @@ impl<'a> RuleInputs<'a> {
 
     /// The same inputs, to be changed.
     pub(super) fn same(&self) -> RuleInputs<'_> {
-        RuleInputs {
-            filter_curves: self.filter_curves.clone(),
-            base_soil: self.base_soil.clone(),
-            ..*self
-        }
+        RuleInputs { filter_curves: self.filter_curves.clone(), base_soil: self.base_soil.clone(), ..*self }
     }
 
     /// D15 of the filter for a rule that it may not exceed: where the curve is flat, its coarse end.

@@ -239,8 +239,7 @@ fn a_limit_of_which_only_the_most_is_known_makes_nothing_green() {
 /// A number of the walk stands in bold where the walk decides, and in plain weight below a limit of practice.
 #[test]
 fn a_boundary_that_does_not_decide_is_not_in_bold() {
-    let silt =
-        Gradation::from_lines(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]).unwrap();
+    let silt = Gradation::from_lines(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]).unwrap();
     let d85 = silt.d(85.0).unwrap();
     let with = |ratio: f64| {
         let mut of = design(Boundary::of(&[Ok(ratio), Ok(ratio)], Some(d85)), Confidence::Outside);
