@@ -33,6 +33,38 @@ pub fn is_hidden(character: char) -> bool {
     character.is_control() || turns_direction(character) || without_width()
 }
 
+/// The character itself, or U+FFFD for one that is hidden, other than tab and line feed, or that XML 1.0
+/// forbids.
+pub fn visible(character: char) -> char {
+    match character {
+        '\t' | '\n' => character,
+        '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
+        c if is_hidden(c) => '\u{fffd}',
+        c => c,
+    }
+}
+
+/// A text on one line of a terminal: control characters become `?`, others that are hidden U+FFFD.
+pub fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
+}
+
+/// A word that can be pasted into a shell (POSIX, fish), in quotes where it needs them.
+pub fn shell_word(word: &str) -> String {
+    let needs_none = |c: char| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c);
+    match !word.is_empty() && word.chars().all(needs_none) {
+        true => word.to_owned(),
+        false => quoted(word),
+    }
+}
+
+/// A word in quotes into which no shell looks (POSIX, fish).
+pub fn quoted(word: &str) -> String {
+    // fish takes a backslash within quotes for more than itself.
+    let inert = |c: char| if c == '\'' || c == '\\' { format!("'\\{c}'") } else { c.to_string() };
+    format!("'{}'", word.chars().map(inert).collect::<String>())
+}
+
 /// Whether a character means the same in a file name, an address and a table.
 pub fn is_plain(character: char) -> bool {
     character.is_ascii_alphanumeric() || "=.,-_".contains(character)
@@ -63,6 +95,20 @@ mod tests {
     fn long_names_are_cut() {
         assert_eq!(shorten("abcdef", 6), "abcdef");
         assert_eq!(shorten("abc defghi", 5), "abc…");
+    }
+
+    #[test]
+    fn a_word_in_quotes_is_one_word() {
+        assert_eq!(shell_word("a/b-1.csv"), "a/b-1.csv");
+        assert_eq!(shell_word("a'b $(c)"), "'a'\\''b $(c)'");
+        assert_eq!((&*shell_word(""), &*shell_word("a\\")), ("''", "'a'\\\\''"));
+    }
+
+    #[test]
+    fn nothing_that_is_hidden_is_left() {
+        let all: String = ('\u{0}'..=char::MAX).collect();
+        assert!(!plain(&all).chars().any(is_hidden));
+        assert!(all.chars().map(visible).all(|c| !is_hidden(c) || "\t\n".contains(c)));
     }
 
     /// Bidi_Control of Unicode: all twelve.

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::args::RulesArgs;
 use super::compare::{show, walked};
-use super::print::{plain, shown, to_stdout};
+use super::print::{plain, shown, to_copy, to_stdout};
 use super::run::command_line;
 use super::values::{of_soils, with_options};
 use crate::campaign::CampaignOptions;
-use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::outcome::comparison::Comparison;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
@@ -145,15 +144,14 @@ pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -
 
 /// The command that walks the samples that govern, or that nothing was walked.
 fn to_walk(rows: &[BatchRow], filter: &Path, is_walked: bool) -> String {
-    let quoted = |path: &Path| plain(&quoted_if_needed(path));
-    let paths: Vec<String> = paths(rows, filter).iter().map(|path| quoted(path)).collect();
+    let paths: Vec<String> = paths(rows, filter).iter().map(to_copy).collect();
     let walk = match paths.len() {
         0 if is_walked => return "  Nothing was walked, as no sample has a limit.\n".into(),
         0 => return String::new(),
         // One sample is nothing to compare.
-        1 => format!("voidwalk judge {} {}", paths[0], quoted(filter)),
+        1 => format!("voidwalk judge {} {}", paths[0], to_copy(filter)),
         _ if is_walked => return String::new(),
-        _ => format!("voidwalk compare --filter {} {}", quoted(filter), paths.join(" ")),
+        _ => format!("voidwalk compare --filter {} {}", to_copy(filter), paths.join(" ")),
     };
     let which = if paths.len() == 1 { "the one that governs" } else { "those that govern" };
     format!("  Nothing was walked. To walk {which}: {walk}\n")

@@ -5,11 +5,10 @@ use std::path::Path;
 
 use super::args::CampaignArgs;
 use super::case_progress::CaseProgress;
-use super::print::{grains_per_void, percent, plain, shown, to_stdout};
+use super::print::{grains_per_void, percent, plain, shown, to_copy, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
 use super::start::START;
-use crate::campaign::cluster::scripts::quoted_if_needed;
 use crate::campaign::{
     self, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions, WrittenJobs,
 };
@@ -162,6 +161,6 @@ fn jobs_in_words(jobs: &WrittenJobs) -> String {
         jobs.walk.minutes()
     ));
     lines.push("Submit them (options of sbatch may follow, as --partition=NAME):".into());
-    lines.push(format!("  sh {}", quoted_if_needed(&jobs.submit)));
+    lines.push(format!("  sh {}", to_copy(&jobs.submit)));
     lines.iter().map(|line| plain(line) + "\n").collect()
 }

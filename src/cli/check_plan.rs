@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::args::SettingArgs;
-use super::print::{count, counted, json, plain, to_stdout};
+use super::print::{count, counted, json, plain, to_copy, to_stdout};
 use crate::campaign::{self, CampaignOptions, CampaignPlan, PlanCheck};
 use crate::case::in_words;
 use crate::run::cost::duration;
@@ -91,7 +91,7 @@ fn words(check: &PlanCheck) -> String {
     );
     let wrong = check.cases.iter().filter(|case| !case.problem.is_empty()).count();
     if wrong == 0 {
-        line("next", format!("voidwalk campaign {}", check.plan));
+        line("next", format!("voidwalk campaign {}", to_copy(&check.plan)));
     }
     text
 }

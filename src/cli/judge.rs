@@ -3,7 +3,7 @@
 use super::args::{JudgeArgs, TableArgs};
 use super::batch::SEVERAL_FILTERS;
 use super::judge_each::judge_each;
-use super::print::{plain, shown, to_stdout};
+use super::print::{plain, shown, to_copy, to_stdout};
 use super::progress::followed;
 use super::run::show;
 use super::values::{of_soils, with_options};
@@ -60,7 +60,7 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
             run.outcome.if_dispersive,
         );
         of_authority.iter().for_each(|said| to_stdout(&format!("{} {ON_ALL_RULES}\n", plain(said))));
-        let scene = shown(&run.folder.join("scene.toml"));
+        let scene = to_copy(run.folder.join("scene.toml"));
         let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {
             true => {
                 let factors: Vec<String> = Record::default().sensitivity.iter().map(f64::to_string).collect();

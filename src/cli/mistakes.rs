@@ -8,6 +8,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use strsim::damerau_levenshtein;
 
+use super::print::to_copy;
 use crate::scene::Scene;
 use crate::schema::KeyInfo;
 
@@ -45,7 +46,7 @@ fn instead_of_command(name: &str, command: &Command) -> Option<String> {
         return Some(JUDGE.into());
     }
     if name.ends_with(".toml") {
-        return Some(format!("to walk a scene: voidwalk run {name}"));
+        return Some(format!("to walk a scene: voidwalk run {}", to_copy(name)));
     }
     let known = command.get_subcommands().map(Command::get_name);
     let (distance, nearest) = known.map(|known| (damerau_levenshtein(known, name), known)).min()?;
@@ -98,7 +99,8 @@ fn as_setting(flag: &str, words: &[String]) -> Option<String> {
         None => words.get(at + 1).map(String::as_str).filter(|next| !next.starts_with("--")),
     });
     let value = value.unwrap_or("VALUE");
-    let set: Vec<String> = meant.iter().map(|key| format!("--set {key}={value}")).collect();
+    let set: Vec<String> =
+        meant.iter().map(|key| format!("--set {}", to_copy(format!("{key}={value}")))).collect();
     Some(format!("a setting of the scene: {}", set.join(" or ")))
 }
 
@@ -107,6 +109,7 @@ fn two_tables(words: &[String]) -> Option<String> {
     let tables: Vec<&String> = words.iter().skip(2).filter(|word| is_table(word)).collect();
     match tables[..] {
         [first, second] => {
+            let [first, second] = [first, second].map(to_copy);
             Some(format!("two sieve tables are judged by: voidwalk judge {first} {second} (the base first)"))
         }
         [_] if words.get(1).is_some_and(|command| command == "judge") => Some(JUDGE.into()),
@@ -138,7 +141,7 @@ fn unquoted(words: &[String]) -> Option<String> {
             let file = name.split('#').next().unwrap_or_default();
             if Path::new(file).is_file() && !Path::new(begin).exists() {
                 let word = key.map_or(name.clone(), |key| format!("{key}={name}"));
-                return Some(format!("a name with a space is one word in quotes: \"{word}\""));
+                return Some(format!("a name with a space is one word in quotes: {}", to_copy(word)));
             }
         }
     }
@@ -167,7 +170,7 @@ fn nearest_beside(path: &Path) -> Option<String> {
     let names = files.filter_map(|file| file.file_name().into_string().ok());
     let like = names.map(|other| (damerau_levenshtein(&other, name), other)).min()?;
     (like.0 <= 2 && like.0 * 3 < name.chars().count())
-        .then(|| format!("did you mean `{}`?", path.with_file_name(&like.1).display()))
+        .then(|| format!("did you mean `{}`?", to_copy(path.with_file_name(&like.1))))
 }
 
 #[cfg(test)]
@@ -210,7 +213,7 @@ mod tests {
                 && of("frobnicate").contains("voidwalk help")
         );
         assert!(
-            two_tables(&words("voidwalk run a.csv b.xlsx#One")).unwrap().contains("judge a.csv b.xlsx#One")
+            two_tables(&words("voidwalk run a.csv b.xlsx#One")).unwrap().contains("judge a.csv 'b.xlsx#One'")
         );
         assert_eq!(two_tables(&words("voidwalk run a.csv")), None);
     }

@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use crate::outcome::BaseSize;
 pub use crate::outcome::digits::{count, percent};
-use crate::report::figures::visible;
 use crate::run::RunError;
 use crate::store::format::Format;
+pub use crate::text::plain;
+use crate::text::shell_word;
 
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
@@ -42,9 +43,9 @@ pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// A name made safe for a terminal: characters that control it or turn the direction of writing are replaced.
-pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
+/// A word of a command that is shown to be copied.
+pub fn to_copy(word: impl AsRef<Path>) -> String {
+    plain(&shell_word(&word.as_ref().display().to_string()))
 }
 
 /// A path made safe for a terminal.

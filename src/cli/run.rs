@@ -15,6 +15,7 @@ use crate::run::FolderKind;
 use crate::run::folder::claim;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
+use crate::text::shell_word;
 use crate::verdict::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.
@@ -76,7 +77,7 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
 /// The command line in words, whatever bytes it is made of.
 pub fn command_line() -> String {
     let words = START.get().map_or(&[][..], |start| &start.words);
-    words.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+    words.iter().map(|word| shell_word(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
 }
 
 /// Prints what came of a run.

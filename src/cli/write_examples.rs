@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::print::{plain, shown, to_stdout};
+use super::print::{to_copy, to_stdout};
 use crate::run::{EXAMPLE_FILES, RunError, write_examples};
 
 /// What to try with the files, from within their folder: a command line, and what it does.
@@ -27,7 +27,7 @@ pub fn examples(folder: &Path) -> Result<(), RunError> {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{:<18}{}", file.name, file.what);
     }
-    let _ = writeln!(text, "\nTo try:\n\n  cd {}", plain(&shown(folder)));
+    let _ = writeln!(text, "\nTo try:\n\n  cd {}", to_copy(folder));
     for [line, what] in TO_TRY {
         let _ = writeln!(text, "  {line:<68}  {what}");
     }

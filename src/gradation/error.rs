@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::store::in_mb;
+use crate::text::{is_hidden, quoted};
 
 /// Where in an input something stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -98,7 +99,7 @@ pub enum TableError {
         why: String,
     },
     /// Several soils, and none of them named.
-    #[error("{file} holds several soils: {soils}; name one of them, as in \"{file}#{first}\"")]
+    #[error("{file} holds several soils: {soils}; name one of them, as in {}", quoted(&format!("{file}#{first}")))]
     SeveralSoils {
         /// File as the user named it.
         file: String,
@@ -224,7 +225,7 @@ impl NumberError {
     }
 }
 
-/// `text` short enough, and free of control characters, for a message on one line.
+/// `text` short enough, and free of hidden characters, for a message on one line.
 pub(crate) fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut out: String = text.chars().take(LONGEST).flat_map(shown).collect();
@@ -234,7 +235,7 @@ pub(crate) fn shortened(text: &str) -> String {
     out
 }
 
-/// A control character as its escape, anything else as it is.
+/// A hidden character as its escape, anything else as it is.
 fn shown(c: char) -> Box<dyn Iterator<Item = char>> {
-    if c.is_control() { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) }
+    if is_hidden(c) { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) }
 }

@@ -19,6 +19,7 @@ use serde::{Deserializer, Serialize, forward_to_deserialize_any};
 
 use super::numbers::{percent, percent_interval, significant, whole};
 use super::record::{Statistic, Verdict};
+use crate::text::visible;
 
 /// Why writing to memory does not fail.
 const WRITTEN: &str = "memory takes rows of numbers and names";
@@ -31,7 +32,13 @@ pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(names).expect(WRITTEN);
     rows.iter().for_each(|row| writer.serialize(row).expect(WRITTEN));
-    writer.into_inner().expect(WRITTEN)
+    written(writer)
+}
+
+/// A table whose names hold no hidden characters.
+fn written(writer: csv::Writer<Vec<u8>>) -> Vec<u8> {
+    let text = String::from_utf8(writer.into_inner().expect(WRITTEN)).expect(WRITTEN);
+    text.chars().map(visible).collect::<String>().into_bytes()
 }
 
 /// Reads the names of a type's fields, and nothing else.
@@ -219,7 +226,7 @@ impl<'a, T> Columns<'a, T> {
         for row in rows {
             writer.write_record(self.0.iter().flat_map(|of| (of.cells)(row)).map(inert)).expect(WRITTEN);
         }
-        writer.into_inner().expect(WRITTEN)
+        written(writer)
     }
 }
 
@@ -382,6 +389,16 @@ mod tests {
     fn a_cell_is_no_formula() {
         let inert = |cell: &str| inert(cell.to_owned());
         assert_eq!(["=1+1", "-3", "@x", "loose"].map(inert), ["'=1+1", "-3", "'@x", "loose"]);
+    }
+
+    #[test]
+    fn no_name_in_a_table_is_hidden() {
+        let of = Columns::default().column("name", |row: &String| row.clone());
+        let table = of.csv(&["a\u{1b}]0;b\u{7}\u{202e}\u{200b}\u{feff}c".to_owned()]);
+        assert_eq!(
+            String::from_utf8(table).unwrap(),
+            "name\na\u{fffd}]0;b\u{fffd}\u{fffd}\u{fffd}\u{fffd}c\n"
+        );
     }
 
     #[test]

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::connectivity::by_connectivity;
 use super::error::ReportError;
-use super::figures::{shorten, visible};
+use super::figures::shorten;
 use super::files::json_of;
 use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
@@ -26,6 +26,7 @@ use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, Stopping, Verdict};
 use crate::outcome::undecided::UndecidedBy;
+use crate::text::visible;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::{OF_AMOUNTS, OF_THICKNESS};
 use crate::verdict::words::capital;

@@ -24,8 +24,9 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::figures::{Figure, Size, visible};
+use super::figures::{Figure, Size};
 use crate::outcome::record::ModelLimit;
+use crate::text::visible;
 
 const STYLE: &str = include_str!("page.css");
 /// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the

@@ -8,7 +8,7 @@ use super::unfinished::{self, Unfinished};
 use crate::case::{GRAINS, INPUT_FILES, RECORD};
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError};
-use crate::text::is_hidden;
+use crate::text::plain;
 
 /// The files of the checkpoint of a compression that is not finished.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
@@ -443,7 +443,7 @@ fn no_locks(error: StoreError) -> RunError {
 
 /// A path in one line.
 pub(crate) fn shown(path: &Path) -> String {
-    path.display().to_string().chars().map(|c| if is_hidden(c) { '?' } else { c }).collect()
+    plain(&path.display().to_string())
 }
 
 #[cfg(test)]

@@ -23,6 +23,7 @@ use crate::outcome::Recorded;
 use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
+use crate::text::{plain, shell_word};
 
 /// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
 ///
@@ -350,7 +351,7 @@ impl CaseRun<'_> {
         match (error.exit(), flushed) {
             (Exit::Stopped, Ok(())) => RunError::Stopped(format!(
                 "progress saved; continue with `voidwalk resume {}`",
-                shown(self.folder.path())
+                plain(&shell_word(&self.folder.path().display().to_string()))
             )),
             (Exit::Stopped, Err(error)) => error.into(),
             (Exit::Refused, _) => {

@@ -23,6 +23,7 @@ use super::live::Live;
 use crate::run::error::Exit;
 use crate::run::{PrepareOptions, RunError};
 use crate::store::remove_folder;
+use crate::text::shell_word;
 use earlier::{LAST, earlier};
 use job::{Job, JobState, has_scene, how_to_continue};
 use work::WorkContext;
@@ -188,7 +189,7 @@ impl JobQueue {
                 "not done, and what is done of it is saved: {}; `voidwalk serve --out {}` lists it, and \
                  Continue on its page goes on",
                 stopped.join(", "),
-                self.context.root.display()
+                shell_word(&self.context.root.display().to_string())
             ))),
         }
     }

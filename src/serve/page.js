@@ -184,7 +184,8 @@ function showSheets() {
     $(".which", box).hidden = all.length === 0;
     const several = $(".several", box);
     const sheet = several && state.sheets.find((one) => state[role].startsWith(`${one.id}#`));
-    if (several) show(several, sheet ? `This sheet has ${sheet.soils.length} soils: is it this one?` : "");
+    const listed = sheet && sheet.in_all > sheet.soils.length ? ` (the first ${sheet.soils.length} can be chosen)` : "";
+    if (several) show(several, sheet ? `This sheet has ${sheet.in_all} soils${listed}: is it this one?` : "");
     box.classList.toggle("taken", role === "more" ? state.more.length > 0 : Boolean(state[role]));
   }
   $("#more").replaceChildren(...state.more.map((key) => el("li", {}, soilOf(key).label, el("button", {

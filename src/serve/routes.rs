@@ -192,7 +192,7 @@ impl Routes {
             "api/sheet" => {
                 let name = request.parameter("name").unwrap_or_default();
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
-                Ok(Answer::json(200, &json!(sheet)))
+                Ok(Answer::json(200, &json!(*sheet)))
             }
             "api/judge" | "api/compare" | "api/design" | "api/batch" => {
                 let request: Value =
@@ -281,7 +281,7 @@ impl Routes {
             "folder": folder.display().to_string(),
             "largest_mb": BODY >> 20,
             "has_template": cfg!(feature = "xlsx"),
-            "sheets": if has_all { Value::Null } else { json!(sheets) },
+            "sheets": if has_all { Value::Null } else { sheets.iter().map(|sheet| json!(**sheet)).collect() },
             "jobs": self.jobs.snapshot(|words| self.sheets.as_named(words)),
         })
     }

@@ -9,6 +9,9 @@ use crate::study::refuse_twice;
 use crate::verdict::batch::columns;
 use crate::verdict::{BatchTable, PairOptions};
 
+/// Most rows that a page shows.
+const MOST_SHOWN: usize = 1000;
+
 /// The table of all samples of the sheet in which a base is, against filters.
 pub struct SampleTable(BatchTable);
 
@@ -38,9 +41,12 @@ impl SampleTable {
 
     /// As the page shows it: headings, which of them stand over numbers, cells, and sentences on each filter.
     pub fn json(&self) -> Value {
-        let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display()));
-        let mut value = table(columns(SizeUnit::Mm), &self.0.rows);
-        value["unstable"] = json!(self.0.rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
+        let rows = &self.0.rows[..self.0.rows.len().min(MOST_SHOWN)];
+        let cut = (rows.len() < self.0.rows.len())
+            .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", self.0.rows.len()));
+        let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display())).chain(cut);
+        let mut value = table(columns(SizeUnit::Mm), rows);
+        value["unstable"] = json!(rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
         let of_filters = self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows));
         value["filters"] = json!(of_filters.collect::<Vec<_>>());
         value["notes"] = json!(notes.collect::<Vec<_>>());

@@ -1,12 +1,11 @@
 //! Sheets that were dropped or pasted: each in a folder of its own, under a name that is harmless.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde::Serialize;
-use serde_json::Value;
 
-use crate::gradation::soils_in_file;
+use crate::gradation::{SoilSummary, soils_in_file};
 use crate::store::{make_folder, write_whole};
 use crate::text::is_hidden;
 
@@ -16,6 +15,9 @@ const FOLDER: &str = "sheets";
 /// Most sheets of a server, and all their bytes.
 const MOST: (usize, u64) = (200, 256 << 20);
 
+/// Most soils of a sheet that are kept and can be chosen.
+const MOST_SOILS: usize = 1000;
+
 /// No sheet has this number.
 const LAST: usize = 100_000;
 
@@ -23,14 +25,28 @@ const LAST: usize = 100_000;
 const NAME: [(usize, usize); 2] = [(60, 180), (8, 32)];
 
 /// A sheet.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Sheet {
     /// Its number.
     pub id: usize,
     /// Its name, harmless.
     pub name: String,
-    /// The soils in it, as `voidwalk soil` understands them.
-    pub soils: Value,
+    /// The soils that can be chosen, the first of the file, as `voidwalk soil` understands them.
+    pub soils: Vec<SoilSummary>,
+    /// Soils in the file.
+    pub in_all: usize,
+}
+
+impl Sheet {
+    /// Reads a sheet.
+    fn of(id: usize, path: &Path) -> Result<Arc<Self>, String> {
+        let mut soils = soils_in_file(path, None).map_err(|error| error.to_string())?;
+        let in_all = soils.len();
+        soils.truncate(MOST_SOILS);
+        soils.shrink_to_fit();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Arc::new(Self { id, name, soils, in_all }))
+    }
 }
 
 /// The sheets of a server.
@@ -41,7 +57,7 @@ pub struct Sheets {
 
 #[derive(Default)]
 struct Kept {
-    sheets: Vec<Sheet>,
+    sheets: Vec<Arc<Sheet>>,
     /// Sheets that are being read.
     read: usize,
     /// Bytes of all of them.
@@ -71,7 +87,7 @@ impl Sheets {
     ///
     /// # Errors
     /// What `voidwalk soil` says of it; there is no more room.
-    pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Sheet, String> {
+    pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
             let mut kept = self.locked();
@@ -93,21 +109,16 @@ impl Sheets {
     }
 
     /// Writes a sheet into a folder of its own, and reads it.
-    fn read(&self, name: &str, bytes: &[u8]) -> Result<Sheet, String> {
+    fn read(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         make_folder(&self.folder).map_err(|error| error.to_string())?;
         let (id, folder) = self.new_folder()?;
-        let name = harmless(name);
-        let path = folder.join(&name);
+        let path = folder.join(harmless(name));
         let written = write_whole(&path, bytes).map_err(|error| error.to_string());
-        let soils = written.and_then(|()| soils_in_file(&path, None).map_err(|error| error.to_string()));
-        match soils.and_then(|soils| serde_json::to_value(soils).map_err(|error| error.to_string())) {
-            Ok(soils) => Ok(Sheet { id, name, soils }),
-            Err(problem) => {
-                // Nothing is left of what is no sheet; where that fails it stays, and harms nobody.
-                let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
-                Err(self.as_named(&problem))
-            }
-        }
+        written.and_then(|()| Sheet::of(id, &path)).map_err(|problem| {
+            // Nothing is left of what is no sheet; where that fails it stays, and harms nobody.
+            let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
+            self.as_named(&problem)
+        })
     }
 
     fn locked(&self) -> MutexGuard<'_, Kept> {
@@ -128,7 +139,7 @@ impl Sheets {
     }
 
     /// All sheets.
-    pub fn all(&self) -> Vec<Sheet> {
+    pub fn all(&self) -> Vec<Arc<Sheet>> {
         self.locked().sheets.clone()
     }
 
@@ -143,11 +154,14 @@ impl Sheets {
         let sheet = sheet.ok_or_else(|| "there is no such sheet; add it again".to_owned())?;
         let path = self.folder.join(sheet.id.to_string()).join(&sheet.name);
         let Some(soil) = soil.filter(|soil| !soil.is_empty()) else { return Ok(path) };
-        let is_there = sheet.soils.as_array().is_some_and(|all| all.iter().any(|one| one["name"] == soil));
-        match is_there {
-            true => Ok(format!("{}#{soil}", path.display()).into()),
-            false => Err(format!("{} holds no soil of this name", sheet.name)),
+        if sheet.soils.iter().any(|one| one.name == soil) {
+            return Ok(format!("{}#{soil}", path.display()).into());
         }
+        let among = match sheet.in_all > sheet.soils.len() {
+            true => format!(" among the first {MOST_SOILS} of its {} soils", sheet.in_all),
+            false => String::new(),
+        };
+        Err(format!("{} holds no soil of this name{among}", sheet.name))
     }
 
     /// A message as the command line would give it: a sheet has its name there, and no folder.
@@ -166,7 +180,7 @@ impl Sheets {
 
 /// A sheet that an earlier server kept, with its bytes; `None` where there is none of this number that is a
 /// file of its own and still holds soils.
-fn earlier(folder: &Path, id: usize) -> Option<(Sheet, u64)> {
+fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
     let folder = folder.join(id.to_string());
     folder.symlink_metadata().ok().filter(|meta| meta.is_dir())?;
     let mut files = std::fs::read_dir(&folder).ok()?.flatten().filter_map(|entry| {
@@ -177,8 +191,7 @@ fn earlier(folder: &Path, id: usize) -> Option<(Sheet, u64)> {
         Some((name, meta.len()))
     });
     let (name, bytes) = files.next().filter(|(_, bytes)| *bytes <= MOST.1)?;
-    let soils = soils_in_file(&folder.join(&name), None).ok()?;
-    Some((Sheet { id, name, soils: serde_json::to_value(soils).ok()? }, bytes))
+    Some((Sheet::of(id, &folder.join(name)).ok()?, bytes))
 }
 
 /// Whether no terminal, page or file system takes a letter for more.
@@ -244,6 +257,22 @@ mod tests {
     }
 
     #[test]
+    fn of_a_sheet_of_very_many_soils_the_first_are_kept() {
+        let root = tempfile::tempdir().unwrap();
+        let soils = MOST_SOILS + 5;
+        let names: Vec<String> = (0..soils).map(|i| format!("s{i}")).collect();
+        let row = |size: &str, percent: &str| format!("{size}{}\n", format!(",{percent}").repeat(soils));
+        let table = format!("size_mm,{}\n{}{}", names.join(","), row("1", "0"), row("2", "100"));
+        let sheets = Sheets::new(root.path());
+        let sheet = sheets.add("many.csv", table.as_bytes()).unwrap();
+        assert_eq!((sheet.soils.len(), sheet.in_all), (MOST_SOILS, soils));
+        assert!(Arc::ptr_eq(&sheet, &sheets.all()[0]), "no copy is made");
+        assert!(sheets.path("1#s999").is_ok());
+        assert!(sheets.path("1#s1000").unwrap_err().contains("among the first 1000 of its 1005 soils"));
+        assert_eq!(Sheets::new(root.path()).all()[0].in_all, soils);
+    }
+
+    #[test]
     fn the_next_server_has_the_sheets_and_no_link() {
         let root = tempfile::tempdir().unwrap();
         let sheets = Sheets::new(root.path());
@@ -252,8 +281,8 @@ mod tests {
             sheets.add(name, b"size_mm,percent\n1,0\n2,100\n").unwrap();
         }
         let of =
-            |root: &Path| Sheets::new(root).all().into_iter().map(|s| (s.id, s.name)).collect::<Vec<_>>();
-        let before: Vec<_> = sheets.all().into_iter().map(|sheet| (sheet.id, sheet.name)).collect();
+            |root: &Path| Sheets::new(root).all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
+        let before: Vec<_> = sheets.all().iter().map(|s| (s.id, s.name.clone())).collect();
         assert_eq!((of(root.path()), before.len()), (before.clone(), 3));
         let folder = root.path().join(FOLDER);
         let outside = root.path().join("outside.csv");

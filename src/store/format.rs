@@ -12,6 +12,8 @@ use serde::ser::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::text::is_hidden;
+
 /// The form of a file of JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
@@ -117,8 +119,18 @@ impl Format {
     /// A record that is no map, or that JSON cannot hold.
     pub fn json(self, content: &impl Serialize) -> Result<String, serde_json::Error> {
         let headed = Headed { format: self.to_string(), voidwalk: env!("CARGO_PKG_VERSION"), content };
-        Ok(serde_json::to_string_pretty(&headed)? + "\n")
+        Ok(visible_json(serde_json::to_string_pretty(&headed)?) + "\n")
     }
+}
+
+/// JSON text of the same content whose hidden characters are escapes: no terminal acts on them.
+fn visible_json(text: String) -> String {
+    let acts = |c: char| c != '\n' && is_hidden(c);
+    if !text.contains(acts) {
+        return text;
+    }
+    let escape = |c: char| c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect();
+    text.chars().map(|c| if acts(c) { escape(c) } else { c.to_string() }).collect()
 }
 
 impl fmt::Display for Format {
@@ -176,6 +188,14 @@ mod tests {
         assert_eq!(from_json::<Record>(text.as_bytes()).unwrap(), record);
         let bare = serde_json::to_vec(&record).unwrap();
         assert_eq!(from_json::<Record>(&bare).unwrap(), record);
+    }
+
+    #[test]
+    fn hidden_characters_of_a_record_are_escapes_and_read_back() {
+        let name = "a\u{9b}\u{202e}\u{200b}\u{e0041}\n\"ü";
+        let text = OUTCOME.json(&serde_json::json!({ "name": name })).unwrap();
+        assert!(!text.contains(|c| c != '\n' && is_hidden(c)), "{text}");
+        assert_eq!(from_json::<Value>(text.as_bytes()).unwrap()["name"], name);
     }
 
     #[test]

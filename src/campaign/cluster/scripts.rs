@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use super::tasks;
 use crate::run::at_once::MEMORY_MARGIN;
 use crate::run::cost::duration;
+use crate::text::quoted;
 
 /// Folder of the scripts and logs, inside the campaign's.
 pub const FOLDER: &str = "slurm";
@@ -181,20 +182,6 @@ fn fill(template: &str, values: &[(&str, String)]) -> String {
     text + rest
 }
 
-/// A word that no shell looks into.
-fn quoted(word: &str) -> String {
-    format!("'{}'", word.replace('\'', "'\\''"))
-}
-
-/// A path that can be pasted into a shell.
-pub fn quoted_if_needed(path: &Path) -> String {
-    let path = path.display().to_string();
-    match path.chars().all(|c| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c)) {
-        true => path,
-        false => quoted(&path),
-    }
-}
-
 fn path(path: &Path) -> Result<String, ScriptError> {
     let absolute: PathBuf = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
@@ -221,6 +208,5 @@ mod tests {
     fn what_is_filled_in_is_no_template() {
         let values = [("A", "@B@".to_string()), ("B", "b".to_string())];
         assert_eq!(fill("x@A@y@B@ TERM@120 @C@", &values), "x@B@yb TERM@120 @C@");
-        assert_eq!(quoted("a'b $(c)"), "'a'\\''b $(c)'");
     }
 }

@@ -14,6 +14,7 @@ use super::{ags, blocks, csv, joined, names, points, text, workbook};
 use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
+use crate::text::plain;
 
 impl Soil {
     /// Every soil in a file, called `file` in messages.
@@ -42,7 +43,7 @@ impl Soil {
         }
         if soils.len() > 1 {
             let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
-            let (soils, first) = (listed(&all), shortened(&all[0]));
+            let (soils, first) = (listed(&all), plain(&all[0]));
             return Err(TableError::SeveralSoils { file: file.to_owned(), soils, first }.into());
         }
         match soils.pop() {
@@ -68,16 +69,16 @@ pub(crate) fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
 
 fn listed(names: &[String]) -> String {
     const MOST: usize = 12;
-    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(name)).collect();
+    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
     if names.len() > MOST {
         shown.push(format!("and {} more", names.len() - MOST));
     }
     shown.join(", ")
 }
 
-/// A name without what two writings of it may differ in.
+/// A name as it is shown, without what two writings of it may differ in.
 fn folded(name: &str) -> String {
-    name.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase()
+    plain(name).split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase()
 }
 
 /// A soil's names, its full one first, and what was read.
@@ -186,7 +187,7 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
     let mut times: HashMap<String, usize> = HashMap::new();
     for table in &tables {
         for column in &table.block.layout.soils {
-            *times.entry(own_name(table, column)).or_default() += 1;
+            *times.entry(folded(&own_name(table, column))).or_default() += 1;
         }
     }
     let mut soils = Vec::new();
@@ -200,7 +201,7 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
                 if single && grid.sheet.is_none() && column.role != Role::Other {
                     // `% passing` is no name.
                     name.clear();
-                } else if name.is_empty() || times[&name] > 1 {
+                } else if name.is_empty() || times[&folded(&name)] > 1 {
                     let place = grid.place_of(table.block.line(), column.column);
                     let letters = letters(place.column as u32);
                     name = match (grid.across.is_some(), several) {

@@ -36,7 +36,7 @@ pub use chart::{Chart, Role, SeriesLook};
 pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
 pub use figure::{Figure, Naming, Size};
 pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};
-pub use svg::{escape, visible};
+pub use svg::escape;
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::text::turns_direction;
+use crate::text::visible;
 
 /// Generic families only: a figure looks alike as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
@@ -25,7 +25,7 @@ impl Anchor {
     }
 }
 
-/// Characters as XML can hold them: markup escaped, control and direction-changing characters replaced.
+/// Characters as XML can hold them: markup escaped, hidden ones replaced.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
@@ -39,17 +39,6 @@ pub fn escape(text: &str) -> String {
         }
     }
     out
-}
-
-/// The character itself, or U+FFFD for one that is no text: a control character other than tab and line feed,
-/// one that turns the direction of writing, or one that XML 1.0 forbids.
-pub fn visible(character: char) -> char {
-    match character {
-        '\t' | '\n' => character,
-        c if c.is_control() || turns_direction(c) => '\u{fffd}',
-        '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
-        c => c,
-    }
 }
 
 /// Width of a text in pixels, on the generous side: the reader's font is not known here.

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::work::Work;
 use crate::serve::live::Live;
+use crate::text::shell_word;
 
 /// How far a job is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,7 +129,7 @@ pub fn has_scene(folder: &Path) -> bool {
 /// How a job goes on that was stopped.
 pub fn how_to_continue(folder: &Path) -> String {
     let resume = match has_scene(folder) {
-        true => format!(", or `voidwalk resume {}`,", folder.display()),
+        true => format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string())),
         false => String::new(),
     };
     format!("what is done is saved; Continue{resume} goes on from it")
