@@ -41,17 +41,22 @@ fn script(shell: Shell) -> String {
 }
 
 /// In bash the soils of a file stand behind `FILE#`, and nothing behind `base.cu=`, where its value is still
-/// to come.
+/// to come. What bash inserts within quotes is not quoted: names are offered there that no quotes give a
+/// meaning to.
 const BASH_MORE: &str = r##"
 _voidwalk_and_values() {
-    local word="${COMP_WORDS[COMP_CWORD]}" quote="" name
-    case $word in \"*|\'*) quote=${word:0:1} word=${word:1} ;; *) word=${word//\\/} ;; esac
+    local word="${COMP_WORDS[COMP_CWORD]}" quoted="" name
+    case $word in *[\"\']*) quoted=yes word=${word#[\"\']} ;; *) word=${word//\\/} ;; esac
     COMPREPLY=()
     if [[ $word == *"#"* && -f ${word%%"#"*} ]]; then
         while IFS= read -r name; do
             [[ $name == "$word"* ]] || continue
-            if [[ -n $quote ]]; then COMPREPLY+=("$name"); else COMPREPLY+=("$(printf %q "$name")"); fi
-        done < <("$1" soil "${word%%"#"*}" --names 2>/dev/null)
+            case $quoted$name in
+                yes*[\"\'\$\`\\!]*) ;;
+                yes*) COMPREPLY+=("$name") ;;
+                *) COMPREPLY+=("$(printf %q "$name")") ;;
+            esac
+        done < <("$1" soil --names -- "${word%%"#"*}" 2>/dev/null)
         return
     fi
     _voidwalk "$@"
@@ -69,7 +74,7 @@ _voidwalk_and_soils() {
     local word=${(Q)words[CURRENT]}
     if [[ $word == *'#'* && -f ${word%%'#'*} ]]; then
         local -a soils
-        soils=(${(f)"$($words[1] soil ${word%%'#'*} --names 2>/dev/null)"})
+        soils=(${(f)"$($words[1] soil --names -- ${word%%'#'*} 2>/dev/null)"})
         compadd -a soils
     else
         _voidwalk "$@"
@@ -84,7 +89,7 @@ function __voidwalk_soils
     set -l word (string unescape -- (commandline -ct))
     set -l file (string split -m1 '#' -- $word)[1]
     if string match -q '*#*' -- $word; and test -f "$file"
-        voidwalk soil $file --names 2>/dev/null
+        voidwalk soil --names -- $file 2>/dev/null
     end
 end
 complete -c voidwalk -a '(__voidwalk_soils)'

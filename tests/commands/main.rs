@@ -7,6 +7,8 @@ mod campaign;
 mod check_and_run;
 mod checkpoints;
 mod compare;
+#[cfg(target_os = "linux")]
+mod completion;
 mod contract;
 mod design;
 mod designs;
