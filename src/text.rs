@@ -44,9 +44,9 @@ pub fn visible(character: char) -> char {
     }
 }
 
-/// A text on one line of a terminal: control characters become `?`, others that are hidden U+FFFD.
+/// A text on one line, with U+FFFD for each hidden character.
 pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { visible(c) }).collect()
 }
 
 /// A word that can be pasted into a shell (POSIX, fish), in quotes where it needs them.

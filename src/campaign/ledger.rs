@@ -9,7 +9,7 @@ use super::plan::{CampaignPlan, PlannedCase};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::run::error::RunError;
 use crate::run::results::json;
-use crate::store::format;
+use crate::store::format::{self, visible_json};
 use crate::store::{read_whole, write_whole};
 
 /// Cases of the ledger in a campaign's folder that this plan does not have: they are about to leave it.
@@ -41,13 +41,13 @@ pub(super) fn collect(
         cases: plan.cases.len() as u64,
         missing: plan.cases.iter().filter(is_missing).map(|case| case.name.clone()).collect(),
     };
-    let mut ledger = Vec::new();
+    let mut ledger = String::new();
     for line in &lines {
-        serde_json::to_writer(&mut ledger, line)
+        let line = serde_json::to_string(line)
             .map_err(|e| RunError::Format { file: "ledger.jsonl", source: e.into() })?;
-        ledger.push(b'\n');
+        ledger.extend([visible_json(line), "\n".into()]);
     }
-    write_whole(&out.join("ledger.jsonl"), &ledger)?;
+    write_whole(&out.join("ledger.jsonl"), ledger.as_bytes())?;
     write_whole(&out.join("campaign.json"), &json(format::CAMPAIGN, &about)?)?;
     write_whole(&out.join("cases.csv"), &LedgerLine::columns(&about.factors).csv(&lines))?;
     Ok(lines)

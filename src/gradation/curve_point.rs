@@ -1,4 +1,5 @@
-//! A point of a curve, with names: a gradation and a constriction curve list size and percent in other orders.
+//! A point of a curve, with names: a gradation and a constriction curve list size and percent in other
+//! orders.
 
 use serde::Serialize;
 

@@ -99,7 +99,8 @@ pub enum TableError {
         why: String,
     },
     /// Several soils, and none of them named.
-    #[error("{file} holds several soils: {soils}; name one of them, as in {}", quoted(&format!("{file}#{first}")))]
+    #[error("{file} holds several soils: {soils}; name one of them, as in {}",
+            quoted(&format!("{file}#{first}")))]
     SeveralSoils {
         /// File as the user named it.
         file: String,

@@ -60,6 +60,7 @@ pub mod table;
 pub mod undecided;
 pub mod verdict;
 
+pub use crate::gradation::CurvePoint;
 pub use base_size::BaseSize;
 pub(crate) use base_size::three;
 pub use inches::{page_with_inches, with_inches};

@@ -2,7 +2,7 @@
 
 use super::figures::{Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION};
 use super::figures::{positive_range, shorten};
-use crate::gradation::CurvePoint;
+use crate::outcome::CurvePoint;
 
 /// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG
 /// file; with coarse sizes on the left where that is asked for, as in the United States.

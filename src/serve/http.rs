@@ -8,6 +8,10 @@ use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::{Duration, Instant};
 
+use serde_json::Value;
+
+use crate::text::visible;
+
 /// The largest head of a request (bytes).
 const HEAD: usize = 16 << 10;
 
@@ -122,14 +126,25 @@ impl Answer {
         Ok(Self { body: Body::File(file, length), ..Self::new(200, kind, "") })
     }
 
-    /// A value as JSON.
-    pub fn json(status: u16, value: &serde_json::Value) -> Self {
+    /// A value as JSON for the page, without hidden characters.
+    pub fn json(status: u16, mut value: Value) -> Self {
+        show(&mut value);
         Self::new(status, "application/json; charset=utf-8", value.to_string())
     }
 
     /// What is wrong, in words.
     pub fn problem(status: u16, words: &str) -> Self {
-        Self::json(status, &serde_json::json!({ "problem": words }))
+        Self::json(status, serde_json::json!({ "problem": words }))
+    }
+}
+
+/// Replaces hidden characters in every text of a value.
+fn show(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = text.chars().map(visible).collect(),
+        Value::Array(values) => values.iter_mut().for_each(show),
+        Value::Object(fields) => fields.values_mut().for_each(show),
+        _ => {}
     }
 }
 

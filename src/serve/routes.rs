@@ -159,11 +159,11 @@ impl Routes {
             "page.js" => Ok(page("text/javascript; charset=utf-8", SCRIPT)),
             "icon.svg" => Ok(page("image/svg+xml", ICON)),
             "page.css" => Ok(page("text/css; charset=utf-8", STYLE)),
-            "api/state" => Ok(Answer::json(200, &self.state(request))),
-            "api/form" => Ok(Answer::json(200, &form())),
+            "api/state" => Ok(Answer::json(200, self.state(request))),
+            "api/form" => Ok(Answer::json(200, form())),
             "api/rules" => self.rules(request),
             "api/curves.svg" => self.curves(request),
-            "api/samples" => Ok(Answer::json(200, &self.samples(request)?.json())),
+            "api/samples" => Ok(Answer::json(200, self.samples(request)?.json())),
             "samples.csv" => {
                 let answer = Answer::new(200, "text/csv; charset=utf-8", self.samples(request)?.csv());
                 Ok(Answer { download: Some("voidwalk-samples.csv".into()), ..answer })
@@ -187,12 +187,12 @@ impl Routes {
             let id = request.parameter("id").and_then(|id| id.parse().ok());
             id.ok_or((400, "which job?".to_owned()))
         };
-        let accepted = |id: usize| Answer::json(200, &json!({ "id": id }));
+        let accepted = |id: usize| Answer::json(200, json!({ "id": id }));
         match path {
             "api/sheet" => {
                 let name = request.parameter("name").unwrap_or_default();
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
-                Ok(Answer::json(200, &json!(*sheet)))
+                Ok(Answer::json(200, json!(*sheet)))
             }
             "api/judge" | "api/compare" | "api/design" | "api/batch" => {
                 let request: Value =
@@ -212,7 +212,7 @@ impl Routes {
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
                 let mut value = serde_json::to_value(&check).map_err(wrong)?;
                 value["refusal"] = json!(refusal);
-                Ok(Answer::json(200, &value))
+                Ok(Answer::json(200, value))
             }
             "api/stop" => id().and_then(|id| self.jobs.stop(id).map(|()| accepted(id)).map_err(conflict)),
             "api/continue" => {
@@ -338,7 +338,7 @@ impl Routes {
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
-        Ok(Answer::json(200, &rules_of_pair(pair).map_err(wrong)?))
+        Ok(Answer::json(200, rules_of_pair(pair).map_err(wrong)?))
     }
 
     /// The rules of practice on every sample of a sheet.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::gradation::{SoilSummary, soils_in_file};
 use crate::store::{make_folder, write_whole};
-use crate::text::is_hidden;
+use crate::text::{is_hidden, plain, visible};
 
 /// Folder of the sheets.
 const FOLDER: &str = "sheets";
@@ -154,7 +154,7 @@ impl Sheets {
         let sheet = sheet.ok_or_else(|| "there is no such sheet; add it again".to_owned())?;
         let path = self.folder.join(sheet.id.to_string()).join(&sheet.name);
         let Some(soil) = soil.filter(|soil| !soil.is_empty()) else { return Ok(path) };
-        if sheet.soils.iter().any(|one| one.name == soil) {
+        if sheet.soils.iter().any(|one| plain(&one.name) == plain(soil)) {
             return Ok(format!("{}#{soil}", path.display()).into());
         }
         let among = match sheet.in_all > sheet.soils.len() {
@@ -174,7 +174,7 @@ impl Sheets {
             let end = at + folder.len() + digits + usize::from(rest[digits..].starts_with('/'));
             text.replace_range(at..end, "");
         }
-        text.chars().map(|c| if is_hidden(c) && c != '\n' { '?' } else { c }).collect()
+        text.chars().map(visible).collect()
     }
 }
 
@@ -254,6 +254,11 @@ mod tests {
             let found = sheets.path(wrong);
             assert_eq!(found.is_ok(), wrong == "1#", "{wrong}: {found:?}");
         }
+        let hidden = "size_mm,a\u{1b}\u{202e}b,c\n1,0,0\n2,100,100\n";
+        sheets.add("hidden.csv", hidden.as_bytes()).unwrap();
+        // As the page shows it.
+        let path = sheets.path("2#a\u{fffd}\u{fffd}b").unwrap();
+        assert_eq!(crate::gradation::curves_in_file(&path, None).unwrap().len(), 1);
     }
 
     #[test]

@@ -124,7 +124,7 @@ impl Format {
 }
 
 /// JSON text of the same content whose hidden characters are escapes: no terminal acts on them.
-fn visible_json(text: String) -> String {
+pub fn visible_json(text: String) -> String {
     let acts = |c: char| c != '\n' && is_hidden(c);
     if !text.contains(acts) {
         return text;

@@ -173,3 +173,70 @@ fn no_link_leads_out_of_a_folder() {
         untouched();
     }
 }
+
+/// Escapes, characters without a width, of other line ends, and that turn the direction of writing.
+const HIDDEN: &str = "\u{1b}]0;x\u{7}\u{9b}2J\u{202e}\u{2066}\u{200b}\u{200d}\u{2028}\u{feff}\u{ad}\u{e0041}";
+
+/// A text that no hidden character of a name has reached.
+fn shows_all(place: &str, bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let found: Vec<char> = text.chars().filter(|c| HIDDEN.contains(*c) && !c.is_ascii_graphic()).collect();
+    assert!(found.is_empty(), "{place}: {found:?}");
+}
+
+#[test]
+fn hidden_characters_of_a_name_reach_no_face_and_the_name_is_found_as_it_is_shown() {
+    let base =
+        format!("size_mm,\"A{HIDDEN}\",\"b{HIDDEN}a\",\"a{HIDDEN}\",\"a\u{fffd}]0;x\u{fffd}\u{fffd}2J\"\n");
+    let base = base + "0.1,0,0,0,0\n0.2,50,40,45,42\n0.4,100,100,100,100\n";
+    let filter = format!("size_mm,\"f{HIDDEN}\",coarse\n0.5,0,0\n1,50,40\n2,100,100\n");
+    let (_root, at) = room(&[("b.csv", &base), ("f.csv", &filter)]);
+    let run = |args: &[&str]| {
+        let output = voidwalk(&at, args);
+        for (name, bytes) in [("stdout", &output.stdout), ("stderr", &output.stderr)] {
+            shows_all(&format!("{args:?}: {name}"), bytes);
+        }
+        assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        output
+    };
+    let names = String::from_utf8(run(&["soil", "b.csv", "--names"]).stdout).unwrap();
+    assert_eq!(names.lines().count(), 4);
+    for name in names.lines() {
+        run(&["soil", name]);
+    }
+    // Exact in JSON.
+    let json: serde_json::Value = serde_json::from_slice(&run(&["soil", "b.csv", "--json"]).stdout).unwrap();
+    assert_eq!(json["soils"][1]["name"], format!("b{HIDDEN}a"));
+    let (one, filter) = (names.lines().nth(1).unwrap(), format!("f.csv#f{HIDDEN}"));
+    run(&["soil", "b.csv", "--figure", "soils.svg"]);
+    run(&["rules", one, &filter]);
+    run(&["rules", "b.csv", &filter, "--each", "--csv", "rules.csv"]);
+    let small = "network.nx=3 network.ny=3 network.nz=3 replicates=1 runs=1 base.n_base=200";
+    let small: Vec<&str> = small.split(' ').flat_map(|set| ["--set", set]).collect();
+    run(&[&["judge", one, &filter, "--quick", "--out", "j"][..], &small].concat());
+    run(&[&["judge", "b.csv", &filter, "--each", "--quick", "--out", "je"][..], &small].concat());
+    run(&[&["compare", "--base", one, "f.csv#coarse", &filter, "--quick", "--out", "c"][..], &small].concat());
+    run(&["design", one, "--steps", "--out", "d"]);
+    run(&["report", "j"]);
+    let refused = voidwalk(&at, &["rules", "f.csv#nothing", "b.csv"]);
+    shows_all("refusal", &refused.stderr);
+    let (mut folders, mut files) = (vec![at], 0);
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+            match ending {
+                // Copies of what was given are exact.
+                _ if path.is_dir() && path.ends_with("inputs") => {}
+                _ if path.is_dir() => folders.push(path),
+                "html" | "svg" | "json" | "jsonl" | "csv"
+                    if !path.ends_with("b.csv") && !path.ends_with("f.csv") =>
+                {
+                    shows_all(&path.display().to_string(), &fs::read(&path).unwrap());
+                    files += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(files > 30, "{files}");
+}

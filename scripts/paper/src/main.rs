@@ -28,7 +28,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use voidwalk::report::figures::visible;
+use voidwalk::text::plain;
 
 /// Write the page of the paper's reproduction: report.html, figures and statements.csv
 #[derive(Parser)]
@@ -60,9 +60,4 @@ fn main() -> ExitCode {
 fn ended(code: u8, message: &str) -> ExitCode {
     let _ = writeln!(std::io::stderr(), "{}", plain(message));
     ExitCode::from(code)
-}
-
-/// A text made safe for a terminal: names and values in it may hold anything.
-fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { visible(c) }).collect()
 }
