@@ -433,7 +433,7 @@ mod tests {
         // Within the floor nothing is to be done.
         let of = |d15f, set| Outcome { verdict: Verdict::None, ..walked_base(CLAY, d15f, &[set]) };
         let fine = of(0.18, "base.dispersive=false");
-        assert_eq!(fine.next_in_words(), "nothing: practice is met");
+        assert_eq!(fine.next_in_words(), "nothing by these rules");
         assert!(fine.practice_in_words().starts_with("met, ") && fine.headline().starts_with("holds by "));
         let fine = of(0.08, "base.dispersive=false");
         assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.200 mm");

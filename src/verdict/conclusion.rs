@@ -290,7 +290,12 @@ pub fn headline(
     // A walk that agrees has said what the doubt is.
     let is_said = standing == Standing::Met && verdict == Verdict::None;
     let dry = !is_said && breaks(rules, RuleRole::Drainage);
-    let more = [(unstable, "; the filter may lose its finer part"), (dry, "; the filter may not drain")];
+    let wide = !is_said && standing == Standing::Met && breaks(rules, RuleRole::Placing);
+    let more = [
+        (unstable, "; the filter may lose its finer part"),
+        (dry, "; the filter may not drain"),
+        (wide, "; the filter may segregate"),
+    ];
     more.into_iter().filter(|(holds, _)| *holds).fold(said, |said, (_, more)| said + more)
 }
 

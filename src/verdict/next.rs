@@ -45,7 +45,7 @@ impl Outcome {
     /// Where nothing is known that is to be done.
     fn if_nothing(&self) -> &'static str {
         match standing(&self.rules) {
-            Standing::Met => "nothing: practice is met",
+            Standing::Met => "nothing by these rules",
             _ => "judge the pair by the rules of practice",
         }
     }

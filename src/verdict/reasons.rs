@@ -18,16 +18,18 @@ impl Outcome {
     /// How far the class can be relied on, in words; outside the checked range with the range, or with what
     /// else was not checked.
     pub fn confidence_in_words(&self) -> String {
-        self.labelled(usize::MAX)
+        self.labelled(&self.doubts(), usize::MAX)
     }
 
-    /// The same with the foremost of these reasons, and how many more there are.
+    /// The same of the model alone, with the foremost of these reasons, and how many more there are: what
+    /// practice says of the filter stands elsewhere.
     pub(super) fn confidence_in_brief(&self) -> String {
-        self.labelled(REASONS)
+        let mut of_model = self.doubts();
+        of_model.retain(|doubt| doubt.hides_probability());
+        self.labelled(&of_model, REASONS)
     }
 
-    fn labelled(&self, most: usize) -> String {
-        let doubts = self.doubts();
+    fn labelled(&self, doubts: &[Confidence], most: usize) -> String {
         if doubts.is_empty() {
             return self.confidence.words().into();
         }
