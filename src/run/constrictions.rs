@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::folder::{FolderKind, claim, clear, shown};
+use super::machine::on_threads;
 use super::unfinished::{self, Unfinished};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph};
 use crate::network::permeability_mm2;
@@ -44,6 +45,14 @@ impl Default for ConstrictionsOptions {
 /// # Errors
 /// Grains that are refused, or do not fit their cell; a folder that cannot be claimed or written.
 pub fn measure_constrictions(
+    packing: &Path,
+    options: &ConstrictionsOptions,
+    callbacks: &Callbacks,
+) -> Result<Summary, RunError> {
+    on_threads(None, || measure_here(packing, options, callbacks))
+}
+
+fn measure_here(
     packing: &Path,
     options: &ConstrictionsOptions,
     callbacks: &Callbacks,
