@@ -63,7 +63,7 @@ fn measure_here(
     let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
     let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
         .map_err(|error| refused(error.to_string()))?;
-    found.fit_their_cell().map_err(|error| refused(error.to_string()))?;
+    found.check().map_err(|error| refused(error.to_string()))?;
     // Grains without a cell, and voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
     // Those near the outside of grains without a cell are no part of the curve.
