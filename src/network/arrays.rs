@@ -63,7 +63,7 @@ impl Network {
         };
         let coords = others(COORDS)?;
         let ends = [&inlets, &outlets];
-        let by_void = ends.into_iter().filter(|(_, array)| !matches!(array.numbers, Numbers::Whole(_)));
+        let by_void = ends.into_iter().filter(|(_, array)| matches!(array.numbers, Numbers::Truth(_)));
         let by_void = by_void.chain(&coords);
         let most = by_void.max_by_key(|(_, array)| array.rows).map(|(name, array)| (*name, array.rows));
         let voids = number_of_voids(conns_name, &conns, ends, most).map_err(whole)?;
