@@ -475,7 +475,8 @@ mod tests {
             ),
             ("[[case]]\nname = \"x\"\n[[case]]\nname = \"X\"\n", "share the folder X"),
             (
-                "[[factor]]\nname = \"f\"\n[factor.levels]\na = { base = { cu = 2 } }\nA = { base = { cu = 3 } }\n",
+                "[[factor]]\nname = \"f\"\n[factor.levels]\na = { base = { cu = 2 } }\n\
+                 A = { base = { cu = 3 } }\n",
                 "share the folder f=A",
             ),
             ("[[case]]\nname = \"x\"\n[[leave_out]]\nfilter = \"x\"\n", "there is no factor `filter`"),

@@ -2,15 +2,16 @@
 //!
 //! | array | what |
 //! |---|---|
-//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers from 0; a negative one is the outside, before the filter as the first of the two and behind it as the second |
+//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers from 0 |
 //! | `throat.diameter` (`throat.inscribed_diameter`, `diameter`) | its diameter |
 //! | `throat.hydraulic_conductance` (`throat.conductance`, `conductance`) | may be missing |
 //! | `pore.inlets` (`inlets`, `pore.left`, `pore.xmin`) | voids that base particles come into |
 //! | `pore.outlets` (`outlets`, `pore.right`, `pore.xmax`) | voids that they leave the filter from |
 //! | `pore.coords` | looked at for the number of voids only |
 //!
-//! Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are missing are the
-//! fourth powers of the diameters.
+//! A negative number in `throat.conns` is the outside: before the filter as the first of the two, behind it
+//! as the second. Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are
+//! missing are the fourth powers of the diameters.
 
 use super::{ExitRule, Network, NetworkColumns, NetworkError};
 use crate::packing::LengthUnit;
@@ -112,8 +113,8 @@ fn number_of_voids(
     };
     if first == 1 && counts_from_1 {
         return Err(format!(
-            "{name}: its voids are numbered from 1 to {last}, and {known}; number voids from 0, in the inlets \
-             and outlets too"
+            "{name}: its voids are numbered from 1 to {last}, and {known}; number voids from 0, in the \
+             inlets and outlets too"
         ));
     }
     if last >= allowed as i64 {

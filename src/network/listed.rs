@@ -1,7 +1,7 @@
 //! Constrictions that a file lists twice.
 
-/// Two rows that are one constriction, where at least half of all rows are listed twice: as lists of neighbours
-/// do, there and back, or the same row again. One such constriction would be two, of which one stays open when
+/// Two rows that are one constriction, where at least half of all rows are listed twice: there and back, as
+/// in lists of neighbours, or the same row again. One constriction would be two, of which one stays open when
 /// the other is blocked. Some voids may well be joined by several constrictions of one size.
 pub(super) fn listed_twice(rows: impl Iterator<Item = ([i64; 2], [f64; 2])>) -> Option<[usize; 2]> {
     let key = |(row, ([a, b], sizes)): (usize, ([i64; 2], [f64; 2]))| {

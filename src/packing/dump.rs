@@ -2,10 +2,10 @@
 //!
 //! The last frame with atoms of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
 //! `diameter`, and `id` where there is one, which then decides the order. Boundaries `pp pp pp` are a
-//! periodic cell, moved to the origin; boundaries without any `p` are free, and so are others where a user says
-//! so. `ITEM: UNITS` (LAMMPS writes it
-//! after `dump_modify ID units yes`, LIGGGHTS does not) says what lengths are: `si`, `cgs`, `micro` and
-//! `nano` have a length of their own, `lj` has none, and the others are of atoms.
+//! periodic cell, moved to the origin; boundaries without any `p` are free, and so are others where a user
+//! says so. `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) says what
+//! lengths are: `si`, `cgs`, `micro` and `nano` have a length of their own, `lj` has none, and the others are
+//! of atoms.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
 use super::found::{FileCell, FileGrains};

@@ -3,8 +3,8 @@
 //! Yade writes a first line `#format x_y_z_r` (further columns may follow, as `matId`), perhaps a comment,
 //! and a row a sphere. MercuryDPM writes frames: a line of the number of particles, the time and the bounds
 //! `xmin ymin zmin xmax ymax zmax`, then as many rows of 14 numbers or more: position, velocity, radius,
-//! rotation, angular velocity and one more. The last frame with grains is taken. Neither says its unit of length, nor
-//! whether its boundaries are periodic.
+//! rotation, angular velocity and one more. The last frame with grains is taken. Neither says its unit of
+//! length, nor whether its boundaries are periodic.
 
 use super::fields::{ImportError, Kind, number, refused};
 use super::found::{FileCell, FileGrains, grain, in_columns};
