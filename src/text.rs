@@ -1,7 +1,18 @@
 //! Names as they may be shown: without characters that are not seen or that change how others are seen, which
-//! no page and no terminal gets, and not too long.
+//! no page and no terminal gets, and not too long. Moments as they are written.
 
 use std::ops::RangeInclusive;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// Seconds after 1970 of the last moment that has a year of four digits.
+const LAST_MOMENT: u64 = 253_402_300_799;
+
+/// A moment as `2026-11-25T23:59:59Z`. A clock that is wrong, as on a board without a battery, may say any:
+/// the first moment of 1970 is written for those before it, the last of 9999 for those after it.
+pub fn moment(at: SystemTime) -> String {
+    let last = UNIX_EPOCH + Duration::from_secs(LAST_MOMENT);
+    humantime::format_rfc3339_seconds(at.clamp(UNIX_EPOCH, last)).to_string()
+}
 
 /// Those that turn the direction of writing.
 const TURNING: [RangeInclusive<char>; 4] =
@@ -90,6 +101,14 @@ pub fn shorten(text: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_moment_that_a_clock_may_say_is_written() {
+        let day = Duration::from_secs(86_400);
+        assert_eq!(moment(UNIX_EPOCH + day), "1970-01-02T00:00:00Z");
+        assert_eq!(moment(UNIX_EPOCH - day), "1970-01-01T00:00:00Z");
+        assert_eq!(moment(UNIX_EPOCH + day * 4_000_000), "9999-12-31T23:59:59Z");
+    }
 
     #[test]
     fn long_names_are_cut() {

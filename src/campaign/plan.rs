@@ -34,8 +34,8 @@ use toml::de::DeTable;
 
 use crate::scene::{Origin, Scene, SceneError};
 use crate::schema::hints;
-use crate::store::{read_regular, why_not_read};
-use crate::text::{is_hidden, is_plain};
+use crate::store::{folder_name, read_regular, why_not_read};
+use crate::text::is_hidden;
 
 /// More cases than this are a mistake.
 const MOST_CASES: usize = 100_000;
@@ -264,9 +264,13 @@ impl CampaignPlan {
             return Err(SceneError::Clash { file: self.file.clone(), problem });
         }
         let folder = folder_name(&name);
-        if let Some(other) = self.cases.iter().find(|case| case.folder_name() == folder) {
-            let problem =
-                format!("cases `{}` and `{name}` would share the folder {folder}: rename one", other.name);
+        // Large and small letters are the same to the disks of some systems.
+        let lower = folder.to_lowercase();
+        if let Some(other) = self.cases.iter().find(|case| case.folder_name().to_lowercase() == lower) {
+            let problem = format!(
+                "cases `{}` and `{name}` would share the folder {folder} on some systems: rename one",
+                other.name
+            );
             return Err(SceneError::Clash { file: self.file.clone(), problem });
         }
         let origin = Origin::Plan(self.file.clone(), name.clone());
@@ -299,16 +303,6 @@ impl PlannedCase {
     pub fn folder_name(&self) -> String {
         folder_name(&self.name)
     }
-}
-
-/// A name as that of a folder: one that is not plain ends with its hash.
-pub(crate) fn folder_name(name: &str) -> String {
-    let safe = |c: char| if is_plain(c) { c } else { '_' };
-    let plain: String = name.chars().take(120).map(safe).collect();
-    if plain == name {
-        return plain;
-    }
-    format!("{plain}-{:016x}", xxhash_rust::xxh3::xxh3_64(name.as_bytes()))
 }
 
 /// A name that can stand in a file name, a table and a page.
@@ -478,6 +472,12 @@ mod tests {
                 "[[case]]\nname = \"x\"\nset = { filter = { \
                  curve = \"a.csv\", density = \"loose\", cu = 2 } }\n",
                 "both say what the filter's constrictions are",
+            ),
+            ("[[case]]\nname = \"x\"\n[[case]]\nname = \"X\"\n", "share the folder X"),
+            (
+                "[[factor]]\nname = \"f\"\n[factor.levels]\na = { base = { cu = 2 } }\n\
+                 A = { base = { cu = 3 } }\n",
+                "share the folder f=A",
             ),
             ("[[case]]\nname = \"x\"\n[[leave_out]]\nfilter = \"x\"\n", "there is no factor `filter`"),
         ] {

@@ -10,6 +10,7 @@ use super::plan::{CampaignPlan, PlannedCase};
 use super::run::{CampaignOptions, have_common_seeds, rooms};
 use crate::case::{Case, PackingPlan};
 use crate::run::at_once::CasesAtOnce;
+use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::machine::threads;
 use crate::run::planned::runs_to_walk;
@@ -94,7 +95,7 @@ pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Plan
         };
         let mut case = if made.is_some() { draft.case(made)? } else { guessed };
         case.place(&limits, workers, &options.out)?;
-        have_networks(&case)?;
+        have_networks(&case, &Callbacks::default())?;
         Ok((case, draft.packing))
     };
     let of = |planned: &PlannedCase| {

@@ -172,7 +172,7 @@ pub fn unsound(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Vec<Fai
         };
         match case.place(&limits, workers, &options.out) {
             Err(problem) => Some(failed(true, problem.into())),
-            Ok(_) => Some(failed(false, have_networks(&case).err()?)),
+            Ok(_) => Some(failed(false, have_networks(&case, &Callbacks::default()).err()?)),
         }
     };
     let all: Vec<(bool, FailedCase)> = pool.install(|| wanted.into_par_iter().filter_map(wrong).collect());

@@ -26,6 +26,7 @@ use crate::run::callbacks::{Callbacks, Event};
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
+use crate::run::machine::on_each;
 use crate::run::other_walks::OtherWalks;
 use crate::run::planned;
 use crate::run::replicates::{self, ReplicateContext};
@@ -202,10 +203,7 @@ impl CaseRunner<'_> {
         };
         let cases: Vec<&Case> = open.iter().map(|prepared| &prepared.case).collect();
         let at_once = CasesAtOnce::here(&cases, self.threads as u64).cases;
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..at_once).map(|_| scope.spawn(work)).collect();
-            workers.into_iter().try_for_each(|worker| worker.join().unwrap_or(Ok(())))
-        })
+        on_each(at_once as usize, work)
     }
 
     /// Claims one case and walks it into its folder; says whether it was this process that finished it.
@@ -238,7 +236,7 @@ impl CaseRunner<'_> {
     /// Walks one case into its folder, on the threads that it is called on.
     fn walk(&self, prepared: &PreparedCase, folder: &Folder) -> Result<bool, RunError> {
         let (name, case) = (&prepared.planned.name, &prepared.case);
-        replicates::have_networks(case)?;
+        replicates::have_networks(case, &self.callbacks.run)?;
         let resumes = Checkpoints::is_in(folder.path())?;
         (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
         let (begun, started) = (Instant::now(), SystemTime::now());

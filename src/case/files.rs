@@ -211,9 +211,9 @@ impl Files {
     }
 
     /// Says more of the file that was read last.
-    pub fn note(&mut self, note: Option<String>) {
+    pub fn note(&mut self, note: String) {
         if let Some(input) = self.0.last_mut() {
-            input.notes.extend(note);
+            input.notes.push(note);
         }
     }
 

@@ -46,7 +46,7 @@ impl GraphPacking {
         let (constrictions, graph) =
             VoidGraph::measure(&packing, merge_overlap).map_err(|e| refused(e.to_string()))?;
         if file.is_some() {
-            files.note(constrictions.doubt());
+            constrictions.doubts().into_iter().for_each(|doubt| files.note(doubt));
         }
         let gradation = of_grains(&packing)?;
         Ok(Some(Self { graph, curve: constrictions.curve()?, gradation }))

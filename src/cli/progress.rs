@@ -13,8 +13,8 @@ use super::report::page;
 use crate::case::PackingPlan;
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
-use crate::run::{Callbacks, Event, RunError};
-use crate::store::platform::signals::stop_on_request;
+use crate::run::{Callbacks, Event, Exit, RunError};
+use crate::store::platform::signals::{end_at_once, stop_on_request};
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -22,6 +22,7 @@ const BETWEEN_LINES: Duration = Duration::from_secs(5);
 /// Does some work that is followed on stderr, stopped by signals, and whose results get their pages.
 pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunError>) -> Result<T, RunError> {
     let stop = stop_on_signals()?;
+    end_at_once();
     let display = Display::new(quiet);
     let done = work(&Callbacks {
         on_event: &|event| display.tell(event),
@@ -47,7 +48,7 @@ pub fn unfollowed() -> Callbacks<'static> {
 /// # Errors
 /// What the system says.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    stop_on_request().map_err(RunError::failed)
+    stop_on_request(Exit::Stopped.code()).map_err(RunError::failed)
 }
 
 /// A bar of this length on a terminal; none elsewhere.

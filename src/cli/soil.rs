@@ -54,7 +54,7 @@ fn template(path: &Path) -> Result<(), RunError> {
         let problem = "a workbook to fill in ends in .xlsx";
         return Err(RunError::Refused(format!("--template {}: {problem}", shown(path))));
     }
-    write_new(path, &soil_template())?;
+    write_new(path, &soil_template().map_err(RunError::failed)?)?;
     to_stdout(&format!("{}\n", shown(path)));
     Ok(())
 }

@@ -80,7 +80,7 @@ impl VoidGraph {
         let passages = Passages::new(&t, &t.positions(), &voids, Facets::All);
         let constrictions = Constrictions::between(&t, &voids, &passages, merge_overlap, Facets::All);
         // First, or what is wrong with the cell would be said of the graph.
-        constrictions.fit_their_cell()?;
+        constrictions.check()?;
         Ok((constrictions, Self::between(&t, &voids, &passages, merge_overlap)?))
     }
 

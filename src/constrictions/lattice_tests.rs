@@ -1,6 +1,6 @@
 //! Lattices, exact and disturbed: every row of known sizes and counts.
 
-use super::{Constrictions, Facets, Triangulation};
+use super::{Constrictions, ConstrictionsError, Facets, Triangulation, TriangulationError};
 use crate::packing::{Cell, Packing};
 use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
@@ -215,6 +215,47 @@ fn a_free_block_has_the_void_ratio_of_its_middle() {
     assert!((found.void_ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-9, "{}", found.void_ratio);
     assert_eq!(found.grains(), 2 * 3 * 4);
     assert_eq!(found.voids(), 3 * 4 * 5);
+}
+
+#[test]
+fn grains_that_cannot_be_a_packing_are_refused() {
+    let measured = |change: &dyn Fn(&mut Packing)| {
+        let mut block = lattices().swap_remove(0).periodic(1.0, 1e-6, 0);
+        block.cell = Cell::Free;
+        change(&mut block);
+        Constrictions::measure(&block, 0.1)
+    };
+    let checked = |change: &dyn Fn(&mut Packing)| measured(change).unwrap().check();
+    let doubts = |factor: f64| {
+        let swollen = |p: &mut Packing| p.diameter.iter_mut().for_each(|d| *d *= factor);
+        let found = measured(&swollen).unwrap();
+        (found.check().is_ok(), found.doubts().len())
+    };
+    // A simple cubic lattice has 0.91; grains of 1.25 times the size 0.98 of the volume, of 1.26 all of it.
+    assert_eq!([1.0, 0.9, 1.2, 1.26].map(doubts), [(true, 0), (true, 1), (true, 1), (false, 1)]);
+    let again = |by: f64| {
+        move |p: &mut Packing| {
+            p.x.push(p.x[20] + by);
+            p.y.push(p.y[20]);
+            p.z.push(p.z[20]);
+            p.diameter.push(p.diameter[20]);
+        }
+    };
+    for by in [0.0, 1e-9, 1e-5] {
+        let error = checked(&again(by)).unwrap_err();
+        assert!(matches!(error, ConstrictionsError::Twice { pairs: 1, .. }), "{error}");
+    }
+    // One layer, tilted, and moved out of its plane by less than a millionth of a diameter.
+    for (tilt, off) in [(0.0, 0.0), (0.0, 1e-8), (0.7, 1e-8)] {
+        let flat = measured(&|p: &mut Packing| {
+            for i in 0..p.x.len() {
+                p.z[i] = tilt * p.x[i] - 0.3 * tilt * p.y[i] + off * (i % 7) as f64;
+            }
+        });
+        let flat =
+            matches!(flat, Err(ConstrictionsError::Triangulation(TriangulationError::Coplanar { .. })));
+        assert!(flat, "{tilt} {off}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::curve::{Curve, CurveError, CurveUnit};
 use super::discs::{ConstrictionDisc, disc};
 use super::frame::{Frame, Region, void_ratio_within};
 use super::triangulation::{GrainPoint, Positions, Shift, Triangulation, TriangulationError};
+use super::twice::duplicates;
 use super::voids::{Insphere, Voids};
 use crate::packing::Packing;
 use rayon::prelude::*;
@@ -13,9 +14,6 @@ use std::collections::HashMap;
 /// Two discs between the same voids are one when centre and radius agree to this part of the radius
 /// (four grains on one circle, up to a jitter of 1e-6 of a grain).
 const SAME_DISC: f64 = 1e-4;
-
-/// Void ratio above which grains hardly rest on each other.
-const LOOSEST: f64 = 1.5;
 
 /// Overlap from which two tetrahedra share a void, unless it is given.
 pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
@@ -88,7 +86,7 @@ pub struct Constrictions {
     pub tetrahedra: usize,
     /// Grains that lie inside others, ascending; they take no part.
     pub hidden: Vec<u32>,
-    /// Pairs of a hidden grain and another with the same centre.
+    /// Pairs of grains with the same centre, to a thousandth of the smaller diameter.
     pub duplicates: Vec<[u32; 2]>,
     /// Volume of voids over volume of grains (overlaps counted twice).
     pub void_ratio: f64,
@@ -99,9 +97,9 @@ pub struct Constrictions {
     /// Which facets between voids were counted.
     pub counted: Facets,
     /// What statistics are taken over.
-    region: Region,
+    pub(super) region: Region,
     /// Grains in the region, hidden ones left out.
-    grains: usize,
+    pub(super) grains: usize,
 }
 
 /// Why a packing's constrictions cannot be measured.
@@ -137,6 +135,27 @@ pub enum ConstrictionsError {
         grains: usize,
         /// The first grain inside another.
         first: u32,
+    },
+    /// Grains that stand twice.
+    #[error(
+        "{pairs} pairs of grains have the same centre, the first of them grains {} and {} (counted from 0); \
+         leave out those that stand twice",
+        first[0], first[1]
+    )]
+    Twice {
+        /// Such pairs.
+        pairs: usize,
+        /// The first.
+        first: [u32; 2],
+    },
+    /// Grains that leave no voids.
+    #[error(
+        "the void ratio is {void_ratio:.4}: the grains have more volume than the space that they stand in. \
+         Diameters may be in another unit than centres, or radii be read as diameters"
+    )]
+    Full {
+        /// Volume of voids over volume of grains.
+        void_ratio: f64,
     },
     /// A merge overlap that is none.
     #[error("merge_overlap = {value} is not allowed; allowed: a finite number from 0")]
@@ -336,7 +355,7 @@ impl Constrictions {
             flat_tetrahedra: count(|insphere| matches!(insphere, Insphere::Flat)),
             tetrahedra: t.tetrahedra(),
             hidden: t.hidden().to_vec(),
-            duplicates: t.duplicates().to_vec(),
+            duplicates: duplicates(t, &positions),
             void_ratio,
             d0_mm: 2.0 * smallest * frame.unit_mm,
             merge_overlap: 0.0,
@@ -344,33 +363,6 @@ impl Constrictions {
             region,
             grains,
         }
-    }
-
-    /// Refuses grains of a periodic cell that lie inside others: their cell is not the one given.
-    ///
-    /// # Errors
-    /// [`ConstrictionsError::Hidden`].
-    pub fn fit_their_cell(&self) -> Result<(), ConstrictionsError> {
-        match (self.region, self.hidden.first()) {
-            (Region::Everything, Some(&first)) => Err(ConstrictionsError::Hidden {
-                hidden: self.hidden.len(),
-                grains: self.grains + self.hidden.len(),
-                first,
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    /// What is said of grains that lie too far apart in their cell to be a packing; `None` without a cell.
-    pub fn doubt(&self) -> Option<String> {
-        let is_loose = self.region == Region::Everything && self.void_ratio > LOOSEST;
-        is_loose.then(|| {
-            format!(
-                "the void ratio is {:.4}, and grains that rest on each other hardly leave more than \
-                 {LOOSEST}: the cell may be too large, or in another unit than the grains",
-                self.void_ratio
-            )
-        })
     }
 
     /// Number of grains that statistics are taken over.

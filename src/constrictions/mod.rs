@@ -13,11 +13,13 @@ mod graph;
 mod inscribed;
 mod library;
 mod measure;
+mod possible;
 mod shipped;
 mod summary;
 mod tangent;
 mod throat;
 mod triangulation;
+mod twice;
 mod voids;
 
 pub use curve::{Curve, CurveError, CurveUnit};

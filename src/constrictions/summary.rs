@@ -87,7 +87,7 @@ impl Constrictions {
             closed_facets: self.closed,
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
-            warnings: self.doubt().into_iter().collect(),
+            warnings: self.doubts(),
             k_over_d32_squared: None,
             kozeny_carman_over_d32_squared: None,
         })

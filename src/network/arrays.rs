@@ -2,15 +2,16 @@
 //!
 //! | array | what |
 //! |---|---|
-//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers |
+//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers from 0 |
 //! | `throat.diameter` (`throat.inscribed_diameter`, `diameter`) | its diameter |
 //! | `throat.hydraulic_conductance` (`throat.conductance`, `conductance`) | may be missing |
 //! | `pore.inlets` (`inlets`, `pore.left`, `pore.xmin`) | voids that base particles come into |
 //! | `pore.outlets` (`outlets`, `pore.right`, `pore.xmax`) | voids that they leave the filter from |
 //! | `pore.coords` | looked at for the number of voids only |
 //!
-//! Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are missing are the
-//! fourth powers of the diameters.
+//! A negative number in `throat.conns` is the outside: before the filter as the first of the two, behind it
+//! as the second. Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are
+//! missing are the fourth powers of the diameters.
 
 use super::{ExitRule, Network, NetworkColumns, NetworkError};
 use crate::packing::LengthUnit;
@@ -62,10 +63,11 @@ impl Network {
             false => None,
         };
         let coords = others(COORDS)?;
-        let by_void = [Some(&inlets), Some(&outlets), coords.as_ref()].into_iter().flatten();
-        let by_void = by_void.filter(|(_, array)| !matches!(array.numbers, Numbers::Whole(_)));
+        let ends = [&inlets, &outlets];
+        let by_void = ends.into_iter().filter(|(_, array)| matches!(array.numbers, Numbers::Truth(_)));
+        let by_void = by_void.chain(&coords);
         let most = by_void.max_by_key(|(_, array)| array.rows).map(|(name, array)| (*name, array.rows));
-        let voids = number_of_voids(conns_name, &conns, most).map_err(whole)?;
+        let voids = number_of_voids(conns_name, &conns, ends, most).map_err(whole)?;
         let [inlets, outlets] = [inlets, outlets].map(|array| numbered(array, voids));
         let diameter_mm: Vec<f64> = diameter.iter().map(|d| d * options.unit.mm()).collect();
         let columns = NetworkColumns {
@@ -87,27 +89,42 @@ impl Network {
 /// An array and its name.
 type Named = (&'static str, Array);
 
-/// How many voids there are: as many as the longest array with an entry a void has entries, or as the
-/// constrictions name. A number far beyond both is refused, as every void takes memory.
-fn number_of_voids(name: &str, conns: &[[i64; 2]], longest: Option<(&str, usize)>) -> Result<usize, String> {
-    let entries = longest.map_or(0, |(_, entries)| entries);
-    let allowed = MANY.max(2 * conns.len()).max(entries);
-    let beyond = |&void: &i64| void >= allowed as i64;
-    if let Some((row, void)) =
-        conns.iter().enumerate().find_map(|(row, ends)| Some((row, ends.iter().copied().find(beyond)?)))
-    {
-        let known = match longest {
-            Some((name, entries)) => format!("{entries} entries in {name}"),
-            None => "no array with an entry for each void, as pore.coords".to_owned(),
-        };
+/// How many voids there are: as many as the longest array with an entry a void has entries; without one as
+/// many as the constrictions name, but not far more than they are, as every void takes memory.
+fn number_of_voids(
+    name: &str,
+    conns: &[[i64; 2]],
+    ends: [&Named; 2],
+    longest: Option<(&str, usize)>,
+) -> Result<usize, String> {
+    let named = || conns.iter().flatten().copied().filter(|&void| void >= 0);
+    let (first, last) = (named().min().unwrap_or(0), named().max().unwrap_or(0));
+    let (allowed, known) = match longest {
+        Some((array, entries)) => (entries, format!("{array} has {entries} entries")),
+        None => {
+            let known = format!("there are {} constrictions and no pore.coords", conns.len());
+            (MANY.max(2 * conns.len()), known)
+        }
+    };
+    let is_first = |(_, array): &Named| matches!(&array.numbers, Numbers::Whole(all) if all.contains(&0));
+    let counts_from_1 = match longest {
+        Some((_, entries)) => last == entries as i64,
+        None => !ends.into_iter().any(is_first),
+    };
+    if first == 1 && counts_from_1 {
         return Err(format!(
-            "{name}: row {row} (counted from 0) names void {void}; with {} constrictions and {known}, at \
-             most {} is allowed",
-            conns.len(),
-            allowed - 1
+            "{name}: its voids are numbered from 1 to {last}, and {known}; number voids from 0, in the \
+             inlets and outlets too"
         ));
     }
-    Ok(conns.iter().flatten().map(|&void| usize::try_from(void + 1).unwrap_or(0)).fold(entries, usize::max))
+    if last >= allowed as i64 {
+        let row = conns.iter().position(|pair| pair.contains(&last)).unwrap_or(0);
+        return Err(format!(
+            "{name}: row {row} (counted from 0) names void {last}, and {known}; 0 to {} are allowed",
+            allowed.saturating_sub(1)
+        ));
+    }
+    Ok(if longest.is_some() { allowed } else { last as usize + 1 })
 }
 
 fn pairs((name, array): Named) -> Result<Vec<[i64; 2]>, String> {
@@ -212,10 +229,41 @@ mod tests {
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 65_536);
         all[0].1 = ring(65_536);
         let error = read(&all, ExitRule::Area).unwrap_err().to_string();
-        assert!(error.contains("row 2 (counted from 0) names void 65536; with 4 constrictions"), "{error}");
+        assert!(
+            error.contains("row 2 (counted from 0) names void 65536, and there are 4 constrictions"),
+            "{error}"
+        );
         let coords = Array { rows: 70_000, columns: Some(3), numbers: Numbers::Float(vec![0.0; 210_000]) };
         all.push(("pore.coords", coords));
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 70_000);
+    }
+
+    #[test]
+    fn voids_beyond_those_that_there_are_or_numbered_from_1_are_refused() {
+        let (conns, ends) = ([0, 1, 1, 2, 0, 3, 3, 2], [0, 2]);
+        let coords =
+            |rows: usize| Array { rows, columns: Some(3), numbers: Numbers::Whole(vec![0; 3 * rows]) };
+        let with = |add: i64, coords: Option<Array>| {
+            let mut all = arrays();
+            all[0].1 = whole(4, Some(2), &conns.map(|void| void + add));
+            all[2].1 = whole(1, None, &[ends[0] + add]);
+            all[3].1 = whole(1, None, &[ends[1] + add]);
+            all.extend(coords.map(|array| ("pore.coords", array)));
+            read(&all, ExitRule::Flux).map(|network| network.filter_voids()).map_err(|e| e.to_string())
+        };
+        assert_eq!(
+            [with(0, None), with(0, Some(coords(4))), with(1, Some(coords(9)))],
+            [Ok(4), Ok(4), Ok(9)]
+        );
+        for (add, coords, words) in [
+            (0, Some(coords(3)), "names void 3, and pore.coords has 3 entries"),
+            (3, Some(coords(4)), "names void 6, and pore.coords has 4 entries"),
+            (1, Some(coords(4)), "numbered from 1 to 4, and pore.coords has 4 entries"),
+            (1, None, "numbered from 1 to 4"),
+        ] {
+            let error = with(add, coords).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        }
     }
 
     #[test]
@@ -238,14 +286,14 @@ mod tests {
             (with(1, truth(&[true])), "throat.diameter: one number for each"),
             (with(1, Array::of_floats(vec![1e-3])), "conns has 4 rows, but diameter has 1"),
             (with(1, Array::of_floats(vec![1e-3, f64::NAN, 1e-3, 1e-3])), "diameter"),
-            (with(2, truth(&[true, false])), "pore.inlets: has 2 truth values, but there are 4 voids"),
+            (with(2, truth(&[true, false])), "names void 3, and pore.inlets has 2 entries"),
             (with(2, Array::of_floats(vec![0.0])), "pore.inlets: numbers of voids are needed"),
             (with(3, whole(1, None, &[9])), "pore.outlets: 9 is no void; there are 4, numbered from 0"),
             (with(3, whole(1, None, &[-1])), "pore.outlets: -1 is no void"),
             (
                 with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 4_000_000_000, 3, 2])),
-                "throat.conns: row 2 (counted from 0) names void 4000000000; with 4 constrictions and \
-                 4 entries in pore.inlets, at most 65535 is allowed",
+                "throat.conns: row 2 (counted from 0) names void 4000000000, and pore.inlets has 4 entries; \
+                 0 to 3 are allowed",
             ),
             (with(0, whole(4, Some(2), &[0, 1, 1, 2, 0, 3, i64::MAX, 2])), "throat.conns: row 3"),
             (with(3, whole(1, None, &[4_000_000_000])), "pore.outlets: 4000000000 is no void"),

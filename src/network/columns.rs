@@ -2,6 +2,7 @@
 
 use super::exit_rule::ExitRule;
 use super::file::in_order_of_voids;
+use super::listed::listed_twice;
 use super::undirected::{Link, LinkEnd, LinkedVoids, WIDE};
 use super::{END, NO_LAYER, Network, NetworkError};
 
@@ -119,6 +120,14 @@ impl NetworkColumns<'_> {
                     return Err(wrong(format!("void {void} is made an {name} twice")));
                 }
             }
+        }
+        let (d, g) = (self.diameter_mm, self.conductance);
+        let rows = (0..count).map(|c| (self.conns[c], [d[c], g.map_or(0.0, |g| g[c])]));
+        if let Some([row, again]) = listed_twice(rows) {
+            return Err(wrong(format!(
+                "constrictions {row} and {again} (counted from 0), and half of all or more, are one listed \
+                 twice, there and back; keep one row of each"
+            )));
         }
         let unit = |(constriction, &mm): (usize, &f64)| {
             let value = (mm / self.unit_mm) as f32;
@@ -313,6 +322,27 @@ mod tests {
     fn directed_constrictions_lead_from_the_first_void_to_the_second() {
         let down = NetworkColumns { conns: &CHAIN_DOWN, rule: ExitRule::Area, ..CHAIN };
         assert!(Network::from_columns(&down).is_ok());
+    }
+
+    #[test]
+    fn constrictions_that_are_listed_twice_are_refused() {
+        let refused = |conns: &[[i64; 2]], diameter_mm: &[f64], rule: ExitRule| {
+            let found = Network::from_columns(&NetworkColumns { conns, diameter_mm, rule, ..CHAIN });
+            found.is_err_and(|error| error.to_string().contains("listed twice"))
+        };
+        let (there, back) = (CHAIN_DOWN, CHAIN_DOWN.map(|[a, b]| [b, a]));
+        let (d, alike) = ([0.3, 0.2, 0.4], [0.3; 3]);
+        for rule in [ExitRule::Flux, ExitRule::Area] {
+            assert!(!refused(&there, &d, rule));
+            assert!(refused(&[there, back].concat(), &[d, d].concat(), rule));
+            assert!(refused(&[there, back].concat(), &[alike, alike].concat(), rule));
+            assert!(refused(&[there, there].concat(), &[d, d].concat(), rule));
+        }
+        // Two constrictions side by side.
+        assert!(!refused(&[there, there].concat(), &[alike, alike].concat(), ExitRule::Flux));
+        assert!(!refused(&[there, back].concat(), &[d, [0.5, 0.6, 0.7]].concat(), ExitRule::Flux));
+        let few = [&there[..], &there, &back[..1]].concat();
+        assert!(!refused(&few, &[0.3, 0.2, 0.4, 0.5, 0.6, 0.7, 0.3], ExitRule::Flux));
     }
 
     #[test]

@@ -71,8 +71,8 @@ const LEAST_PATIENCE: u64 = 100_000;
 /// How often a search that is stuck is begun again from elsewhere.
 const SHAKES: u32 = 60;
 
-/// Proposals of all searches together, some seconds; what is missing then is changed along chains.
-const MOST_PROPOSALS: u64 = 50_000_000;
+/// Proposals of all searches together, a second or less; what is missing then is changed along chains.
+const MOST_PROPOSALS: u64 = 10_000_000;
 
 /// Of so many proposals that lead farther away one is taken when a search begins elsewhere.
 const WORSE_IN: u64 = 4;

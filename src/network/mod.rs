@@ -20,6 +20,7 @@ mod file;
 mod first_passage;
 mod flow;
 mod graph;
+mod listed;
 mod passage;
 mod percolation;
 mod reach;

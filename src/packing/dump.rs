@@ -1,10 +1,11 @@
 //! Text dumps of LAMMPS and LIGGGHTS.
 //!
-//! The last frame of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
+//! The last frame with atoms of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
 //! `diameter`, and `id` where there is one, which then decides the order. Boundaries `pp pp pp` are a
-//! periodic cell, moved to the origin; boundaries without any `p` are free. `ITEM: UNITS` (LAMMPS writes it
-//! after `dump_modify ID units yes`, LIGGGHTS does not) says what lengths are: `si`, `cgs`, `micro` and
-//! `nano` have a length of their own, `lj` has none, and the others are of atoms.
+//! periodic cell, moved to the origin; boundaries without any `p` are free, and so are others where a user
+//! says so. `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) says what
+//! lengths are: `si`, `cgs`, `micro` and `nano` have a length of their own, `lj` has none, and the others are
+//! of atoms.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
 use super::found::{FileCell, FileGrains};
@@ -58,14 +59,21 @@ fn unit(
 /// The last frame; `given` is the unit that a user says.
 pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<FileGrains, ImportError> {
     let unit = unit(file, text, given)?;
-    // Only the last frame is parsed, so that a long run costs no more than its end.
-    let start = text.rfind("ITEM: TIMESTEP").unwrap_or(0);
-    let frames = text.matches("ITEM: TIMESTEP").count();
+    let frames = text.matches(FRAME).count();
+    // Only the last frame with atoms is parsed, so that a long run costs no more than its end.
+    let (mut start, mut end) = (text.rfind(FRAME).unwrap_or(0), text.len());
+    while is_empty(&text[start..end])
+        && let Some(before) = text[..start].rfind(FRAME)
+    {
+        (start, end) = (before, start);
+    }
+    let with_atoms = if end == text.len() { "" } else { " with atoms" };
+    let text = &text[..end];
     let mut notes = Vec::new();
     if frames > 1 {
         let step = text[start..].lines().nth(1).map_or("", str::trim);
         let step = shortened(step);
-        notes.push(format!("holds {frames} frames: the last one, timestep {step}, is taken"));
+        notes.push(format!("holds {frames} frames: the last one{with_atoms}, timestep {step}, is taken"));
     }
     let before = text[..start].matches('\n').count();
     let mut lines = text[start..].lines().enumerate().map(|(i, line)| (before + i + 1, line));
@@ -104,7 +112,7 @@ pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<
                 bounds.ok_or_else(|| refused(file, line, "section", item, "ITEM: BOX BOUNDS first"))?;
             let (cell, columns) = rows(file, (line, columns), atoms, bounds, lines)?;
             let unit = unit.map(|(_, unit)| unit);
-            return Ok(FileGrains { columns, unit, cell: FileCell::Known(cell), line, notes });
+            return Ok(FileGrains { columns, unit, cell, line, notes });
         } else {
             // TIMESTEP, TIME, UNITS: one line, known by now or not needed.
             lines.next();
@@ -113,19 +121,32 @@ pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<
     Err(ended(last, "ITEM: ATOMS"))
 }
 
-/// Whether the box is periodic, and its bounds.
-type Bounds = (bool, [[f64; 2]; 3]);
+/// How a frame begins.
+const FRAME: &str = "ITEM: TIMESTEP";
+
+/// Whether a frame says that it has no atoms.
+fn is_empty(frame: &str) -> bool {
+    let number = frame.split_once("ITEM: NUMBER OF ATOMS").and_then(|(_, rest)| rest.lines().nth(1));
+    number.is_some_and(|number| number.trim() == "0")
+}
+
+/// Whether the box is periodic (unknown of a box that is so along some axes only), and its bounds.
+type Bounds = (Option<bool>, [[f64; 2]; 3]);
 
 fn box_bounds(file: &str, (line, kinds): Line<'_>, lines: [Line<'_>; 3]) -> Result<Bounds, ImportError> {
     let words: Vec<&str> = kinds.split_whitespace().collect();
     if words.contains(&"xy") || words.contains(&"abc") {
         return Err(refused(file, line, "box bounds", kinds, "a box with right angles"));
     }
-    let periodic = words.iter().all(|&kind| kind == "pp");
-    if words.len() != 3 || !(periodic || words.iter().all(|kind| !kind.contains('p'))) {
-        let allowed = "pp pp pp (a periodic cell), or three boundaries without p (free)";
+    let [_, _, _] = words[..] else {
+        let allowed = "three boundaries, as pp pp pp (a periodic cell) or ff ff ff (free)";
         return Err(refused(file, line, "box bounds", kinds.trim(), allowed));
-    }
+    };
+    let periodic = match words.iter().filter(|&&kind| kind == "pp").count() {
+        3 => Some(true),
+        0 if words.iter().all(|kind| !kind.contains('p')) => Some(false),
+        _ => None,
+    };
     let mut bounds = [[0.0; 2]; 3];
     for (slot, (line, text)) in bounds.iter_mut().zip(lines) {
         let values: Vec<&str> = text.split_whitespace().collect();
@@ -147,7 +168,7 @@ fn rows<'a>(
     atoms: u64,
     (periodic, bounds): Bounds,
     lines: impl Iterator<Item = Line<'a>>,
-) -> Result<(Cell, [Vec<f64>; 4]), ImportError> {
+) -> Result<(FileCell, [Vec<f64>; 4]), ImportError> {
     let names: Vec<&str> = header.split_whitespace().collect();
     let place = |name: &str| names.iter().position(|&n| n == name);
     let missing = |what: &str| refused(file, header_line, "columns", header.trim(), what);
@@ -185,7 +206,7 @@ fn rows<'a>(
             let [low, high] = bounds[axis];
             let value = number(file, line, ["x", "y", "z"][axis], fields[at.place], Kind::Finite)?;
             let value = if at.scaled { low + value * (high - low) } else { value };
-            *slot = if periodic { value - low } else { value };
+            *slot = if periodic == Some(true) { value - low } else { value };
         }
         grain[3] = factor * number(file, line, "diameter", fields[size], Kind::Positive)?;
         let order = match id {
@@ -207,8 +228,9 @@ fn rows<'a>(
     }
     let column = |axis: usize| grains.iter().map(|(_, _, grain)| grain[axis]).collect();
     let cell = match periodic {
-        true => Cell::Periodic(bounds.map(|[low, high]| high - low)),
-        false => Cell::Free,
+        Some(true) => FileCell::Known(Cell::Periodic(bounds.map(|[low, high]| high - low))),
+        Some(false) => FileCell::Known(Cell::Free),
+        None => FileCell::Mixed,
     };
     Ok((cell, [0, 1, 2, 3].map(column)))
 }

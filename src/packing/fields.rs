@@ -63,6 +63,15 @@ pub enum ImportError {
         /// What else may be said, where the file gives bounds.
         bounds: &'static str,
     },
+    /// Boundaries that are periodic along some axes only.
+    #[error(
+        "{file}: its box is periodic along some axes only, and a cell is periodic along all or none; say \
+         --cell none to take its grains as free ones; in a scene network.cell"
+    )]
+    Mixed {
+        /// File as the user named it.
+        file: String,
+    },
     /// Grains that do not fit the periodic cell they are said to lie in.
     #[error("{file}: the grains do not fit their cell: {problem}")]
     Misfit {

@@ -27,6 +27,8 @@ pub(super) enum FileCell {
     Known(Cell),
     /// Between which bounds the grains are, but not whether those are periodic.
     Bounds([[f64; 2]; 3]),
+    /// Periodic along some axes only, which no packing here is.
+    Mixed,
     /// Nothing.
     Unsaid,
 }

@@ -248,6 +248,7 @@ fn complete(
             return Err(refused(file, line, "cell", "as it was given", allowed));
         }
         (_, Some(CellOption::None)) => Cell::Free,
+        (FileCell::Mixed, _) => return Err(ImportError::Mixed { file: file.into() }),
         (_, Some(CellOption::Lengths(lengths))) => Cell::Periodic(lengths),
         (FileCell::Bounds(bounds), Some(CellOption::Bounds)) => {
             for (column, [low, _]) in [&mut x, &mut y, &mut z].into_iter().zip(bounds) {

@@ -4,6 +4,8 @@ use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions};
 use proptest::prelude::*;
 
 const CSV: &str = "# cell_mm = 2, 3, 4\nx_mm,y_mm,z_mm,diameter_mm\n0.5,1,2,1\n1.5,2.5,3.25,0.75\n";
+/// In mm, with the cell that the file says.
+const MM: ReadOptions = ReadOptions { unit: Some(LengthUnit::Mm), cell: None };
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n-1 1\n0 3\n1 5\n\
                     ITEM: ATOMS id type x y z radius\n2 1 0.5 2.5 4.25 0.375\n1 1 -0.5 1 3 0.5\n";
 
@@ -154,7 +156,8 @@ fn bad_files_are_refused_with_their_place() {
             "f, line 3, diameter: \"-1\" is not allowed; allowed: a finite number above 0",
         ),
         (csv("0.5,1,2,1\n1.5,2.5,3.25,0.75\n", ""), "f ends after line 2; expected at least one grain"),
-        (dump("pp pp pp", "pp ff pp"), "f, line 5, box bounds: \"pp ff pp\""),
+        (dump("pp pp pp", "pp ff pp"), "f: its box is periodic along some axes only"),
+        (dump("pp pp pp", "pp pp"), "f, line 5, box bounds: \"pp pp\""),
         (dump("pp pp pp", "xy xz yz pp pp pp"), "a box with right angles"),
         (dump("-1 1", "1 -1"), "f, line 6, box bounds: \"1 -1\" is not allowed; allowed: a low bound below"),
         (dump("ATOMS\n2", "ATOMS\n999999999999999999999"), "f, line 4, number of atoms"),
@@ -281,7 +284,7 @@ fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
         ),
         ("1 0 0 0 0 1 1 1\n1 2 3\n", "f, line 2, particle: \"1 2 3\" is not allowed; allowed: at least 14"),
         ("2 0 0 0 0 1 1 1\n1 2 3\n", "f ends after line 2; expected 2 rows of particles, 1 found"),
-        ("0 0 0 0 0 1 1 1\n", "N from 1"),
+        ("0 0 0 0 0 1 1 1\n0 1 0 0 0 1 1 1\n", "expected a frame with at least one particle"),
         ("1 0 0 0 2 1 1 1\n", "a low bound below the high one"),
         (
             "x_mm,y_m,z_mm,radius_mm\n",
@@ -301,6 +304,38 @@ fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
         assert!(bad.parse::<CellOption>().unwrap_err().starts_with("write none for free"), "{bad}");
     }
     assert!("µm".parse() == Ok(LengthUnit::Um) && "inch".parse::<LengthUnit>().is_err());
+}
+
+#[test]
+fn the_last_frame_with_grains_is_taken() {
+    let options = ReadOptions { unit: Some(LengthUnit::M), cell: Some(CellOption::None) };
+    let (empty, full) = ("0 2 0 0 0 1 1 1\n", "1 1.5 0 0 0 1 1 1\n.5 .5 .5 0 0 0 .1 0 0 0 0 0 0 0\n");
+    let alone = parsed_as(full, &options).unwrap();
+    for text in [format!("{empty}{full}"), format!("{full}{empty}"), format!("{empty}{full}{empty}{empty}")] {
+        let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &options).unwrap();
+        assert_eq!(packing, alone);
+        assert!(notes[0].contains("time 1.5"), "{notes:?}");
+        assert_eq!(notes[0].contains("with grains"), text.ends_with(empty), "{notes:?}");
+    }
+    let empty = DUMP.replace("ATOMS\n2", "ATOMS\n0").replace("TIMESTEP\n0", "TIMESTEP\n9");
+    let empty = format!("{}\n", &empty[..empty.rfind("ITEM: ATOMS").unwrap() + 11]);
+    for text in [format!("{empty}{DUMP}"), format!("{DUMP}{empty}{empty}")] {
+        let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &MM).unwrap();
+        assert_eq!(Ok(packing), parsed(DUMP));
+        assert!(notes[0].contains("timestep 0"), "{notes:?}");
+    }
+    assert!(parsed(&empty).is_err());
+}
+
+#[test]
+fn a_box_that_is_periodic_along_some_axes_is_free_where_the_user_says_so() {
+    let (text, free) = (DUMP.replace("pp pp pp", "pp pp ff"), DUMP.replace("pp pp pp", "ff ff ff"));
+    let none = ReadOptions { cell: Some(CellOption::None), ..MM };
+    assert_eq!(parsed_as(&text, &none), parsed(&free));
+    for cell in [None, Some(CellOption::Bounds), Some(CellOption::Lengths([9.0; 3]))] {
+        let error = parsed_as(&text, &ReadOptions { cell, ..MM }).unwrap_err();
+        assert!(error.contains("along some axes only"), "{error}");
+    }
 }
 
 /// A wrong cell gives finer constrictions: a filter that seems to hold more.

@@ -3,8 +3,8 @@
 //! Yade writes a first line `#format x_y_z_r` (further columns may follow, as `matId`), perhaps a comment,
 //! and a row a sphere. MercuryDPM writes frames: a line of the number of particles, the time and the bounds
 //! `xmin ymin zmin xmax ymax zmax`, then as many rows of 14 numbers or more: position, velocity, radius,
-//! rotation, angular velocity and one more. The last frame is taken. Neither says its unit of length, nor
-//! whether its boundaries are periodic.
+//! rotation, angular velocity and one more. The last frame with grains is taken. Neither says its unit of
+//! length, nor whether its boundaries are periodic.
 
 use super::fields::{ImportError, Kind, number, refused};
 use super::found::{FileCell, FileGrains, grain, in_columns};
@@ -70,7 +70,7 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
         .enumerate()
         .map(|(i, line)| (i + 1, line.trim()))
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (mut frames, mut found) = (0, None);
+    let (mut frames, mut found, mut last, mut is_last) = (0, None, 0, true);
     while let Some((line, header)) = lines.next() {
         let words: Vec<&str> = header.split_whitespace().collect();
         if words.len() == HEADERS[1] {
@@ -82,8 +82,8 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
                 "three dimensions: N time xmin ymin zmin xmax ymax zmax",
             ));
         }
-        let count = words[0].parse::<usize>().ok().filter(|n| *n > 0 && words.len() == HEADERS[0]);
-        let allowed = "N time xmin ymin zmin xmax ymax zmax, with N from 1";
+        let count = words[0].parse::<usize>().ok().filter(|_| words.len() == HEADERS[0]);
+        let allowed = "N time xmin ymin zmin xmax ymax zmax";
         let count = count.ok_or_else(|| refused(file, line, "frame", header, allowed))?;
         let mut bounds = [[0.0; 2]; 3];
         for (axis, slot) in bounds.iter_mut().enumerate() {
@@ -98,9 +98,16 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
             let expected = format!("{count} rows of particles, {} found", rows.len());
             return Err(ended(file, line + rows.len(), expected));
         }
-        (frames, found) = (frames + 1, Some((line, words[1], bounds, rows)));
+        frames += 1;
+        // A simulation that fills a box begins with none, and one that empties it ends with none.
+        (last, is_last) = (line, count > 0);
+        if count > 0 {
+            found = Some((line, words[1], bounds, rows));
+        }
     }
-    let Some((line, time, bounds, rows)) = found else { return Err(ended(file, 0, "a frame")) };
+    let Some((line, time, bounds, rows)) = found else {
+        return Err(ended(file, last, "a frame with at least one particle"));
+    };
     let mut grains = Vec::with_capacity(rows.len());
     for (line, row) in rows {
         let fields: Vec<&str> = row.split_whitespace().collect();
@@ -115,7 +122,11 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
     }
     let notes = match frames {
         1 => Vec::new(),
-        n => vec![format!("{file} holds {n} frames: the last one, time {}, is taken", shortened(time))],
+        n => {
+            let with_grains = if is_last { "" } else { " with grains" };
+            let time = shortened(time);
+            vec![format!("holds {n} frames: the last one{with_grains}, time {time}, is taken")]
+        }
     };
     Ok(FileGrains { columns: in_columns(&grains), unit: None, cell: FileCell::Bounds(bounds), line, notes })
 }

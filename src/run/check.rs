@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::evidence::walks_margin;
-use super::machine::number_of_threads;
+use super::machine::on_threads;
 use super::margin::MOST_WALKS;
 use super::planned::runs_to_walk;
 use super::prepare::{Draft, PrepareOptions};
@@ -93,6 +94,10 @@ impl PackingCheck {
 /// # Errors
 /// Everything that is wrong with the scene, memory apart: see [`Check::refusal`].
 pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
+    on_threads(options.threads, || check_here(scene, options))
+}
+
+fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
     let (draft, mut case) = Draft::new(scene)?;
     let mut packing = None;
     if let Some(plan) = &draft.packing {
@@ -107,11 +112,11 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
         }
     }
     let here = Path::new(".");
-    let threads = number_of_threads(options.threads) as u64;
+    let threads = rayon::current_num_threads() as u64;
     let refusal = case.place(&options.limits(here), threads, here).err();
     let mut of_run = Vec::new();
     if refusal.is_none() {
-        have_networks(&case)?;
+        have_networks(&case, &Callbacks::default())?;
         of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
     }
     Ok(Check {

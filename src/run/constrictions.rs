@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::callbacks::Callbacks;
 use super::error::RunError;
 use super::folder::{FolderKind, claim, clear, shown};
+use super::machine::on_threads;
 use super::unfinished::{self, Unfinished};
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph};
 use crate::network::permeability_mm2;
@@ -48,13 +49,21 @@ pub fn measure_constrictions(
     options: &ConstrictionsOptions,
     callbacks: &Callbacks,
 ) -> Result<Summary, RunError> {
+    on_threads(None, || measure_here(packing, options, callbacks))
+}
+
+fn measure_here(
+    packing: &Path,
+    options: &ConstrictionsOptions,
+    callbacks: &Callbacks,
+) -> Result<Summary, RunError> {
     let file = shown(packing);
     let (packing, notes) = Packing::read_as(packing, &options.read)?;
     let refused = |error: String| RunError::Refused(format!("{file}: {error}"));
     let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
     let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
         .map_err(|error| refused(error.to_string()))?;
-    found.fit_their_cell().map_err(|error| refused(error.to_string()))?;
+    found.check().map_err(|error| refused(error.to_string()))?;
     // Grains without a cell, and voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
     // Those near the outside of grains without a cell are no part of the curve.

@@ -120,6 +120,12 @@ impl RunError {
         Self::Failed(problem.into())
     }
 
+    /// A thread that the system does not start.
+    pub(crate) fn no_thread(problem: impl std::fmt::Display) -> Self {
+        let limits = "allow more memory or processes (ulimit -v, ulimit -u), or fewer --threads";
+        Self::failed(format!("no thread can be started: {problem}; {limits}"))
+    }
+
     /// Whether it was refused, stopped, failed or not accepted.
     pub fn exit(&self) -> Exit {
         let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
@@ -223,9 +229,14 @@ failures!(
     NetworkError,
     TriangulationError,
     csv::Error,
-    serde_json::Error,
-    rayon::ThreadPoolBuildError
+    serde_json::Error
 );
+
+impl From<rayon::ThreadPoolBuildError> for RunError {
+    fn from(error: rayon::ThreadPoolBuildError) -> Self {
+        Self::no_thread(error)
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,7 @@
 //! What machine a case runs on, on how many threads, and how much memory it may use.
 
+use std::panic::resume_unwind;
+
 use super::allocation::Allocation;
 use super::error::RunError;
 use crate::store::platform;
@@ -60,6 +62,21 @@ pub(crate) fn on_threads<T: Send>(
     work: impl FnOnce() -> Result<T, RunError> + Send,
 ) -> Result<T, RunError> {
     threads(asked)?.install(work)
+}
+
+/// Does the same work on so many threads, this one included; where the system gives fewer, on those.
+///
+/// # Errors
+/// The first of the work.
+pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sync) -> Result<(), RunError> {
+    std::thread::scope(|scope| {
+        let start = |_| std::thread::Builder::new().spawn_scoped(scope, &work).ok();
+        let threads: Vec<_> = (1..count).map_while(start).collect();
+        let here = work();
+        let joined =
+            threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        joined.fold(here, Result::and)
+    })
 }
 
 /// A size in bytes as a user writes it: `4GB`, `500 MB`, `1.5GiB`.

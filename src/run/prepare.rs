@@ -110,7 +110,7 @@ fn in_order<F>(
     let (limits, threads) = (options.limits(wanted), rayon::current_num_threads() as u64);
     let (draft, mut case) = Draft::new(scene)?;
     case.place(&limits, threads, wanted)?;
-    have_networks(&case)?;
+    have_networks(&case, callbacks)?;
     let (claimed, folder) = claim()?;
     if let Some(packing) = &draft.packing {
         case = draft.case(Some(provide(packing, &options.packings, callbacks)?))?;

@@ -27,7 +27,7 @@ use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{
     Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl,
-    from_words,
+    WalkError, from_words,
 };
 
 /// How replicates are walked: who follows them, and what saves them.
@@ -200,6 +200,7 @@ pub(super) fn walk_replicate(
     n_base: u64,
     context: &ReplicateContext,
 ) -> Result<ReplicateResult, RunError> {
+    go_on(context.callbacks)?;
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
     let to_walk = context.network(case, seed)?;
@@ -257,6 +258,11 @@ pub(super) fn walk_replicate(
     })
 }
 
+/// Ends a replicate that has not begun, where the caller asked to stop.
+fn go_on(callbacks: &Callbacks) -> Result<(), RunError> {
+    if callbacks.is_stopped() { Err(WalkError::Stopped { increment: 0 }.into()) } else { Ok(()) }
+}
+
 /// Says what came of a run, if it is one of the case itself.
 fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &ReplicateContext) {
     let (replicate, run, eroded_mass_fraction) = (id.replicate, run.run, run.eroded_mass_fraction);
@@ -287,14 +293,15 @@ pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
 /// connectivity is searched for at random, and another replicate's search may fail.
 ///
 /// # Errors
-/// A replicate that has none.
-pub fn have_networks(case: &Case) -> Result<(), RunError> {
+/// A replicate that has none; a stop.
+pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
     if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
         return Ok(());
     }
-    let one = |replicate| match case.network(replicate_seed(case.scene.walk.seed, replicate)) {
-        Ok(_) => Ok(()),
-        Err(error) => Err(RunError::Refused(format!("replicate {replicate}: {error}"))),
+    let one = |replicate| {
+        go_on(callbacks)?;
+        let network = case.network(replicate_seed(case.scene.walk.seed, replicate));
+        network.map(drop).map_err(|error| RunError::Refused(format!("replicate {replicate}: {error}")))
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
     let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;

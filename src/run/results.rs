@@ -21,6 +21,7 @@ use crate::outcome::table::csv_of;
 use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
+use crate::text::moment;
 use crate::verdict::left_out::LeftOut;
 use crate::verdict::{Finding, beside, dispersion, finding, judge, practice};
 use crate::walk::Shortcut;
@@ -171,8 +172,8 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
         threads,
         host: machine.host,
         machine: machine.description,
-        started: humantime::format_rfc3339_seconds(started).to_string(),
-        finished: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        started: moment(started),
+        finished: moment(SystemTime::now()),
         command,
     }
 }

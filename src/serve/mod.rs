@@ -13,6 +13,7 @@ mod archive;
 mod batches;
 mod connections;
 mod designs;
+mod downloads;
 mod guard;
 mod http;
 mod job_file;
@@ -110,9 +111,12 @@ impl Server {
     pub fn run(self, stop: &AtomicBool) -> Result<(), RunError> {
         let (routes, listener) = (Arc::clone(&self.routes), self.listener);
         // It ends with the process: what it waits for may never come.
-        std::thread::spawn(move || accept(&listener, &routes));
+        let answering = std::thread::Builder::new().spawn(move || accept(&listener, &routes));
+        answering.map_err(RunError::no_thread)?;
         std::thread::scope(|scope| {
-            let worker = scope.spawn(|| self.routes.jobs.work_until(stop));
+            let worker =
+                std::thread::Builder::new().spawn_scoped(scope, || self.routes.jobs.work_until(stop));
+            let worker = worker.map_err(RunError::no_thread)?;
             while !stop.load(Ordering::Relaxed) && !worker.is_finished() {
                 std::thread::sleep(Duration::from_millis(100));
             }

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::archive::archive;
 use super::batches::{self, AskedBatch};
 use super::designs::AskedDesign;
+use super::downloads::example;
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
 use super::job_file::JobFile;
@@ -23,7 +24,7 @@ use crate::constrictions::shipped;
 use crate::gradation::{CurvePoint, Gradation, curves_in_file};
 use crate::report;
 use crate::run::error::Exit;
-use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError};
+use crate::run::{self, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
@@ -169,10 +170,7 @@ impl Routes {
                 Ok(Answer { download: Some("voidwalk-samples.csv".into()), ..answer })
             }
             #[cfg(feature = "xlsx")]
-            "voidwalk-soils.xlsx" => {
-                let answer = Answer::new(200, "application/octet-stream", report::soil_template());
-                Ok(Answer { download: Some(path.into()), ..answer })
-            }
+            "voidwalk-soils.xlsx" => super::downloads::template(path),
             _ => match path.split_once('/') {
                 Some(("files", file)) => self.file(file),
                 Some(("examples", name)) => example(name),
@@ -427,13 +425,6 @@ fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
 fn joint(text: Option<String>) -> Result<Option<f64>, Problem> {
     let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
     text.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()
-}
-
-/// A sheet to try the page with.
-fn example(name: &str) -> Result<Answer, Problem> {
-    let found = EXAMPLE_FILES.iter().find(|file| file.name == name);
-    let file = found.ok_or_else(|| (404, "there is no such example".to_owned()))?;
-    Ok(Answer::new(200, "text/plain; charset=utf-8", file.text))
 }
 
 /// Whether a job's folder is there itself, and no link to one elsewhere.

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 
 use crate::gradation::{SoilSummary, soils_in_file};
-use crate::store::{make_folder, write_whole};
+use crate::store::{is_device, make_folder, write_whole};
 use crate::text::{is_hidden, plain, visible};
 
 /// Folder of the sheets.
@@ -206,7 +206,12 @@ fn harmless(name: &str) -> String {
     let kept = kept.trim().trim_start_matches('.');
     let (stem, ending) = kept.rsplit_once('.').unwrap_or((kept, "csv"));
     let (stem, ending) = (cut(stem, NAME[0]), cut(ending, NAME[1]));
-    if stem.trim().is_empty() { format!("sheet.{ending}") } else { format!("{}.{ending}", stem.trim()) }
+    let ending = if ending.is_empty() { "csv" } else { ending };
+    match stem.trim() {
+        "" => format!("sheet.{ending}"),
+        device if is_device(device) => format!("sheet {device}.{ending}"),
+        stem => format!("{stem}.{ending}"),
+    }
 }
 
 /// The first letters of a text, at most so many and so many bytes.
@@ -231,6 +236,9 @@ mod tests {
             (".hidden", "hidden.csv"),
             ("", "sheet.csv"),
             ("a#b.csv", "ab.csv"),
+            ("a.", "a.csv"),
+            ("Con.csv", "sheet Con.csv"),
+            ("nul.x.csv", "sheet nul.x.csv"),
             ("Größe.ods", "Größe.ods"),
         ] {
             assert_eq!(harmless(name), expected, "{name}");

@@ -171,7 +171,11 @@ impl PartFile {
         self.sent()?;
         let (path, file) = (self.path.clone(), Arc::clone(&self.file));
         let send = move || ask(Call::Sync(&path), || sync(&file));
-        self.sending = Some(std::thread::Builder::new().spawn(send)?);
+        match std::thread::Builder::new().spawn(send.clone()) {
+            Ok(thread) => self.sending = Some(thread),
+            // The system has no thread to give: this one waits for the disk.
+            Err(_) => send()?,
+        }
         self.waiting = 0;
         Ok(())
     }

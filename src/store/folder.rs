@@ -55,6 +55,8 @@ impl Folder {
     }
 
     fn open_locked(path: &Path, shared: bool) -> Result<Self, StoreError> {
+        #[cfg(feature = "cli")]
+        platform::signals::save_first();
         // Without a trailing slash, which would follow a link.
         let path: &Path = &path.components().collect::<PathBuf>();
         let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };

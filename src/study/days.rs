@@ -6,10 +6,11 @@ use std::time::SystemTime;
 use crate::outcome::record::Manifest;
 use crate::store::format::from_json;
 use crate::store::read_whole;
+use crate::text::moment;
 
 /// Today, as `2026-11-25`.
 pub(super) fn today() -> Option<String> {
-    day(&humantime::format_rfc3339_seconds(SystemTime::now()).to_string())
+    day(&moment(SystemTime::now()))
 }
 
 /// Whether a date is a day as this program writes it.
@@ -20,7 +21,7 @@ pub(super) fn is_day(date: &str) -> bool {
 /// The day on which a file was written.
 pub(super) fn day_of(file: &Path) -> Option<String> {
     let written = file.metadata().and_then(|meta| meta.modified()).ok()?;
-    day(&humantime::format_rfc3339_seconds(written).to_string())
+    day(&moment(written))
 }
 
 /// The last day on which one of these cases was done; `None` where no folder says it.

@@ -7,7 +7,6 @@ use super::design::{DesignOptions, identity, is_a_base, run};
 use super::file_names::numbered;
 use super::inputs::{files_of, input_files};
 use super::kept;
-use crate::campaign::plan::folder_name;
 use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
@@ -19,6 +18,7 @@ use crate::run::machine::on_threads;
 use crate::run::results::json;
 use crate::scene::About;
 use crate::store::Folder;
+use crate::store::folder_name;
 use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks, SpecificationOptions};
 
 /// Folder of the designs, inside that of all.

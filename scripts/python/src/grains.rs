@@ -104,6 +104,7 @@ pub fn measure<'py>(
             let refused = |error: ConstrictionsError| of_constrictions(&error);
             let t = Triangulation::new(&grains).map_err(|error| refused(error.into()))?;
             let found = Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(refused)?;
+            found.check().map_err(refused)?;
             // Grains without a cell, and voids that run through it, have no graph; nor do only some facets.
             let graph = VoidGraph::of(&t, merge_overlap).ok().filter(|_| facets == Facets::All);
             let curve = found.curve().map_err(RunError::refused)?;

@@ -191,10 +191,13 @@ impl Triangulation {
 }
 
 fn free(points: &Points) -> Result<Mesh, TriangulationError> {
+    let flat = TriangulationError::Coplanar { grains: points.at.len() };
+    if points.is_flat() {
+        return Err(flat);
+    }
     let identity: Vec<u32> = (0..points.at.len() as u32).collect();
     let mut order = images::free_order(&points.at);
-    let mut builder = Builder::first(Positions::new(points), &identity, &mut order)
-        .ok_or(TriangulationError::Coplanar { grains: points.at.len() })?;
+    let mut builder = Builder::first(Positions::new(points), &identity, &mut order).ok_or(flat)?;
     for &p in &order[4..] {
         // A cavity in space meets no image of itself.
         let _ = builder.insert::<false>(p);

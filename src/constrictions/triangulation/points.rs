@@ -8,11 +8,15 @@
 //! an integer held exactly by an f64, every predicate has one exact answer, and that answer is the
 //! same for all images. A factor of two on all lengths changes the grid with them, hence no bit.
 
+use super::super::tangent::cross;
 use super::error::TriangulationError;
 use crate::packing::{Cell, Packing};
 
 /// Centre x, y, z and radius in grid units: integers, exact in f64.
 pub(in crate::constrictions) type GrainPoint = [f64; 4];
+
+/// Thickness of grains that lie in one plane, over the largest diameter.
+const FLAT: f64 = 1e-6;
 
 /// Bits of the largest length in grid units.
 const BITS: i32 = 50;
@@ -70,6 +74,24 @@ impl Points {
             point[3] = libm::rint(0.5 * diameter * scale);
         }
         Ok(Self { at, cell, unit_mm, origin_mm })
+    }
+
+    /// Whether the centres lie in one plane, or on one line.
+    pub(super) fn is_flat(&self) -> bool {
+        let from = self.at[0];
+        let offsets: Vec<[f64; 3]> =
+            self.at.iter().map(|p| std::array::from_fn(|axis| p[axis] - from[axis])).collect();
+        let square = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>();
+        let longest = |all: &mut dyn Iterator<Item = [f64; 3]>| {
+            all.max_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
+        };
+        let along = longest(&mut offsets.iter().copied());
+        let normal = longest(&mut offsets.iter().map(|offset| cross(&along, offset)));
+        let flat = FLAT * 2.0 * self.at.iter().map(|p| p[3]).fold(0.0, f64::max);
+        let height = |v: &[f64; 3]| (0..3).map(|axis| v[axis] * normal[axis]).sum::<f64>();
+        let heights = || offsets.iter().map(height);
+        let thickness = heights().fold(0.0, f64::max) - heights().fold(0.0, f64::min);
+        square(&normal).sqrt() <= flat * square(&along).sqrt() || thickness <= flat * square(&normal).sqrt()
     }
 }
 

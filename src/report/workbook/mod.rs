@@ -13,7 +13,7 @@ use super::error::ReportError;
 use super::folder::RunFolder;
 use crate::outcome::design::{Design, Specification};
 use crate::store::write_whole;
-use sheet::{Sheet, workbook};
+use sheet::{Sheet, is_before_1970, workbook};
 
 /// The workbook of a run.
 pub(super) const VERDICT: &str = "verdict.xlsx";
@@ -41,7 +41,7 @@ pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
 }
 
 /// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. Of a design, whose
-/// answer it rests on, it says how far that can be relied on.
+/// answer it rests on, it says how far that can be relied on. With a clock before 1970 there is none.
 ///
 /// # Errors
 /// What cannot be written.
@@ -49,20 +49,26 @@ pub(super) fn write_specification_workbook(
     folder: &Path,
     specification: &Specification,
     design: Option<&Design>,
-) -> Result<PathBuf, ReportError> {
+) -> Result<(), ReportError> {
+    if is_before_1970() {
+        return Ok(());
+    }
     let (path, sheets) = (folder.join(SPECIFICATION), specification::sheets(specification, design));
-    write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?;
-    Ok(path)
+    Ok(write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?)
 }
 
 /// A workbook to fill in, which [`crate::gradation::soils_in_file`] reads: a soil a column, as bytes.
 ///
 /// ```
-/// let bytes = voidwalk::report::soil_template();
+/// let bytes = voidwalk::report::soil_template()?;
 /// assert!(bytes.starts_with(b"PK"));
+/// # Ok::<(), voidwalk::report::ReportError>(())
 /// ```
-pub fn soil_template() -> Vec<u8> {
-    workbook("voidwalk: sieve tables", &template::sheets()).expect("a few rows of numbers and words")
+///
+/// # Errors
+/// A clock before 1970.
+pub fn soil_template() -> Result<Vec<u8>, ReportError> {
+    bytes(Path::new("template"), "voidwalk: sieve tables", &template::sheets())
 }
 
 /// A workbook; `path` names it in errors.

@@ -2,6 +2,8 @@
 //!
 //! The same sheets give the same bytes: nothing of the day or of the machine goes in.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
 use crate::report::shell::clean;
@@ -127,11 +129,19 @@ impl Sheet {
     }
 }
 
+/// Whether the clock says a year in which the writer of workbooks takes no time, and panics.
+pub(super) fn is_before_1970() -> bool {
+    SystemTime::now() < UNIX_EPOCH
+}
+
 /// A workbook of these sheets, as bytes.
 ///
 /// # Errors
-/// A sheet that no workbook holds, such as one of more than a million rows.
+/// A sheet that no workbook holds, such as one of more than a million rows; a clock before 1970.
 pub(super) fn workbook(title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, XlsxError> {
+    if is_before_1970() {
+        return Err(XlsxError::ParameterError("no workbook before 1970: set this machine's clock".into()));
+    }
     let mut book = Workbook::new();
     let (year, month, day) = DAY;
     let made = ExcelDateTime::from_ymd(year, month, day)?;

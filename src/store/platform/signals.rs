@@ -1,10 +1,25 @@
 //! How the user, or the system, asks the program to end.
 
 use std::io;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 
-/// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once.
+/// Whether a request ends the program at once: while it reads and prepares there is nothing to save, and no
+/// loop need look for a request.
+static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+/// From now on, and until the first folder is taken, requests end the program at once.
+pub fn end_at_once() {
+    AT_ONCE.store(true, Ordering::SeqCst);
+}
+
+/// From now on requests set the flag of [`stop_on_request`] only: work would be lost.
+pub fn save_first() {
+    AT_ONCE.store(false, Ordering::SeqCst);
+}
+
+/// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once, and
+/// so does any request after [`end_at_once`], with this exit code.
 ///
 /// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP where the terminal is closed (but on Linux not
 /// under `nohup`), and SIGXCPU where the processor time is used up. SIGTERM may come several times: a
@@ -14,30 +29,33 @@ use std::sync::atomic::AtomicBool;
 ///
 /// # Errors
 /// What the system says when it takes no handler.
-pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
+pub fn stop_on_request(code: u8) -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
-    listen(&stop)?;
+    listen(&stop, code.into())?;
     Ok(stop)
 }
 
 #[cfg(unix)]
-fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
+fn listen(stop: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
     use signal_hook::consts::SIGINT;
     use signal_hook::flag::{register, register_conditional_shutdown};
 
     register_conditional_shutdown(SIGINT, 1, Arc::clone(stop))?;
     for signal in requests() {
+        register_conditional_shutdown(signal, code, Arc::clone(&AT_ONCE))?;
         register(signal, Arc::clone(stop))?;
     }
     Ok(())
 }
 
 #[cfg(windows)]
-use super::windows::listen;
+fn listen(stop: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
+    super::windows::listen(stop, &AT_ONCE, code)
+}
 
 /// Nothing is known of such a system: whatever ends the program kills it.
 #[cfg(not(any(unix, windows)))]
-fn listen(_stop: &Arc<AtomicBool>) -> io::Result<()> {
+fn listen(_stop: &Arc<AtomicBool>, _code: i32) -> io::Result<()> {
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use std::path::Path;
 #[cfg(feature = "cli")]
 use std::sync::atomic::{AtomicBool, Ordering};
 #[cfg(feature = "cli")]
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use windows_sys::Win32::Foundation::{CloseHandle, ERROR_IO_PENDING, ERROR_LOCK_VIOLATION, FILETIME};
 use windows_sys::Win32::Storage::FileSystem::{
@@ -198,10 +198,15 @@ pub fn mounts() -> Option<String> {
 #[cfg(feature = "cli")]
 static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 
+/// Whether a request ends the program at once, and with which exit code.
+#[cfg(feature = "cli")]
+static AT_ONCE: OnceLock<(Arc<AtomicBool>, i32)> = OnceLock::new();
+
 /// Has requests to end set the flag. Not by `signal` of the C library, which tells of no window that is
 /// closed, and whose ways differ from one such library to the next.
 #[cfg(feature = "cli")]
-pub fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
+pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
+    let _ = AT_ONCE.set((Arc::clone(at_once), code));
     STOPS.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(stop));
     // SAFETY: the handler is a function of the program itself, of the type that the system calls.
     or_error(unsafe { SetConsoleCtrlHandler(Some(on_request), 1) })
@@ -211,6 +216,9 @@ pub fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
 /// so that waits, for as long as the system lets it, until the state is saved and the program ends by itself.
 #[cfg(feature = "cli")]
 unsafe extern "system" fn on_request(kind: u32) -> i32 {
+    if let Some((_, code)) = AT_ONCE.get().filter(|(at_once, _)| at_once.load(Ordering::SeqCst)) {
+        std::process::exit(*code);
+    }
     let is_interrupt = matches!(kind, CTRL_C_EVENT | CTRL_BREAK_EVENT);
     if request(&STOPS.lock().unwrap_or_else(PoisonError::into_inner)) && is_interrupt {
         std::process::exit(1);

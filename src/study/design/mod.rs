@@ -174,7 +174,7 @@ impl DraftedRow {
         }
         let base = stated.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
         case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
-        have_networks(&case)?;
+        have_networks(&case, &Callbacks::default())?;
         let row = Row {
             case,
             wanted,

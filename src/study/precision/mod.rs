@@ -52,6 +52,7 @@ use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::{Machine, threads};
 use crate::run::prepare::{PrepareOptions, prepare_into};
 use crate::scene::Scene;
+use crate::text::moment;
 
 /// Processor time that may be asked for (s).
 const BUDGET_S: RangeInclusive<f64> = 0.1..=604_800.0;
@@ -175,7 +176,7 @@ impl PrecisionStudy<'_> {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
             machine: Machine::here().description,
-            started: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            started: moment(SystemTime::now()),
             seed: self.case.scene.walk.seed,
             budget_s: self.budget_s,
             scene: format!(

@@ -2,6 +2,7 @@
 
 use super::study::{PrecisionStudy, stopped};
 use crate::run::error::RunError;
+use crate::run::machine::on_each;
 pub(super) use crate::store::platform::{process_seconds as all_threads, thread_seconds as this_thread};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -46,14 +47,7 @@ impl PrecisionStudy<'_> {
                 done.lock().unwrap_or_else(|e| e.into_inner()).push((piece, made));
             }
         };
-        std::thread::scope(|scope| {
-            let workers: Vec<_> =
-                (0..self.threads.clamp(1, count.max(1))).map(|_| scope.spawn(worker)).collect();
-            workers.into_iter().try_for_each(|worker| match worker.join() {
-                Ok(result) => result,
-                Err(panic) => std::panic::resume_unwind(panic),
-            })
-        })?;
+        on_each(self.threads.clamp(1, count.max(1)), worker)?;
         let mut done = done.into_inner().unwrap_or_else(|e| e.into_inner());
         done.sort_by_key(|(piece, _)| *piece);
         done.into_iter().map(|(_, made)| made).collect()
