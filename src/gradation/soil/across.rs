@@ -143,6 +143,7 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
         at: 0,
         first: 0,
         headed: true,
+        accounted: Vec::new(),
         notes,
     };
     let lines = std::iter::once(heading).chain(rows_of_soils.iter().copied()).map(|row| row.line).collect();

@@ -121,6 +121,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             at: 0,
             first: 0,
             headed: true,
+            accounted: Vec::new(),
             notes: Vec::new(),
         };
         (name, grid, layout)

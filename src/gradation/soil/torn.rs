@@ -1,0 +1,58 @@
+//! Rows that a slip has run together in one cell, or cut short.
+
+use super::content::{is_text, is_value, is_words};
+use super::grid::{Grid, GridRow};
+use super::size::{Opening, opening};
+use crate::gradation::error::{TableError, shortened};
+use crate::gradation::sieve::FIELDS;
+
+/// Whether a cell holds an opening and values: another separator, or quotes around the whole row.
+pub(super) fn is_whole_row(cell: &str) -> bool {
+    let signs: &[char] = &[';', '\t', '|', '"'];
+    [cell.replace(signs, " "), cell.replace(signs, " ").replace(',', " ")].iter().any(|text| {
+        let mut rest = text.split_whitespace().filter(|word| *word != "%").collect::<Vec<_>>();
+        let words = rest.len();
+        while rest.last().is_some_and(|word| is_value(word)) {
+            rest.pop();
+        }
+        match rest.len() {
+            0 => words > 1,
+            left => left < words && opening(&rest.join(" ")).is_some(),
+        }
+    })
+}
+
+/// The cell of a row of text that may be a row of numbers, amid a table or at its end.
+pub(super) fn whole_row(row: &GridRow, amid: bool) -> Option<usize> {
+    let ends_in_number = |cell: &str| cell.split_whitespace().next_back().is_some_and(is_value);
+    let holds_number =
+        |cell: &str| cell.contains(|c: char| c.is_ascii_digit()) && (!is_words(cell) || ends_in_number(cell));
+    let is_it = |cell: &str| is_whole_row(cell) || amid && holds_number(cell);
+    let alone = row.filled().take(2).count() == 1;
+    (is_text(row) && (alone || !amid)).then(|| row.filled().find(|&c| is_it(row.cell(c)))).flatten()
+}
+
+/// Refuses such a row.
+pub(super) fn refused(grid: &Grid, row: &GridRow, column: usize) -> TableError {
+    let allowed = "a row of the table, its openings and percents parted as in the other rows and not quoted \
+                   as a whole";
+    grid.refused(row.line, column, FIELDS[0], row.cell(column), allowed)
+}
+
+/// Refuses a row of a text that ends before the column `last`: any of its values may be the one that is not
+/// there. The pan and the sum have fewer.
+pub(super) fn refuse_short(grid: &Grid, row: &GridRow, size: &str, last: usize) -> Result<(), TableError> {
+    let Some(line) = &row.text else { return Ok(()) };
+    if line.cells > grid.left + last
+        || matches!(opening(size), Some((Opening::Pan | Opening::Total | Opening::Below(_), _)))
+    {
+        return Ok(());
+    }
+    Err(TableError::Fields {
+        file: grid.place(),
+        line: row.line,
+        found: line.cells,
+        value: shortened(&line.text),
+        allowed: "as many as the other rows have, with an empty one where nothing was measured",
+    })
+}
