@@ -5,6 +5,7 @@ use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, unit};
 use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
 use super::size::{Opening, Unit, opening};
+use super::torn;
 use crate::gradation::error::{TableError, shortened};
 
 /// Fewer openings in a row may be anything.
@@ -23,6 +24,7 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     });
     let Some((at, openings, soils)) = found else { return Ok(None) };
     refuse_second(grid, at, &soils, &openings)?;
+    refuse_lost(grid, at, &soils, &openings)?;
     Ok(Some(upright(grid, at, &openings, &soils)))
 }
 
@@ -82,6 +84,37 @@ fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> 
     Ok(())
 }
 
+/// Refuses rows of soils that cannot be read, openings that would be passed over, and values that have none.
+fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> Result<(), TableError> {
+    let (heading, last) = (&grid.rows[at], openings[openings.len() - 1]);
+    let refused =
+        |row: &GridRow, c: usize, allowed: &str| Err(grid.refused(row.line, c, "row", row.cell(c), allowed));
+    let rows: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
+    for row in &rows {
+        torn::refuse_short(grid, row, "", last)?;
+        let is_size = |&c: &usize| role(row.cell(c)) == Role::Size && !is_value(row.cell(c));
+        if let Some(c) = (0..openings[0]).find(is_size) {
+            return refused(row, c, "one row of openings");
+        }
+        if let Some(c) = (last + 1..row.cells.len()).find(|&c| {
+            is_value(row.cell(c)) && (heading.cell(c).is_empty() || opening(heading.cell(c)).is_some())
+        }) {
+            let allowed = "an opening above each value, and openings side by side";
+            return refused(row, c, allowed);
+        }
+    }
+    let amid = |row: &&GridRow| is_text(row) && row.filled().any(|c| torn::ends_in_values(row.cell(c)));
+    let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
+    let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
+    match grid.rows[at + 1..end.max(at + 1)].iter().find(amid) {
+        Some(row) => {
+            let column = row.filled().find(|&c| torn::ends_in_values(row.cell(c))).unwrap_or(0);
+            Err(torn::refused(grid, row, column))
+        }
+        None => Ok(()),
+    }
+}
+
 fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid, Layout) {
     let heading = &grid.rows[at];
     let rows_of_soils: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
@@ -120,7 +153,6 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
     let unused: Vec<String> = (last + 1..heading.cells.len().max(last + 1))
         .filter(|&c| named(c))
         .map(|c| format!("{} (\"{}\")", grid.column_said(c), shortened(heading.cell(c))))
-        .take(6)
         .collect();
     let mut notes = vec!["openings read across: a row for each soil".to_owned()];
     if !unused.is_empty() {

@@ -33,7 +33,8 @@ pub(super) fn settle(grid: &mut Grid, layout: &mut Layout) -> Result<(), TableEr
     let mut bounds = None;
     for column in (0..width).filter(|&c| c != layout.size) {
         let heading = heading(grid, layout, column);
-        let says_size = role(&heading) == Role::Size || layout.other_size == Some(column);
+        let is_soil = layout.soils.iter().any(|soil| soil.column == column);
+        let says_size = !is_soil && (role(&heading) == Role::Size || layout.other_size == Some(column));
         let (Some(first), Some(second)) = (unit_of(&heading_of_size(grid, layout)), unit_of(&heading)) else {
             continue;
         };
@@ -43,17 +44,15 @@ pub(super) fn settle(grid: &mut Grid, layout: &mut Layout) -> Result<(), TableEr
         }
         let pairs = pairs(&rows, layout.size, column, first, second);
         let (neighbours, shifted) = shifted(&pairs);
-        let is_soil = layout.soils.iter().any(|soil| soil.column == column);
         let least = if says_size { 1 } else { LEAST_SHIFTED + usize::from(is_soil) };
         let is_monotone = pairs.len() > 1
             && (pairs.is_sorted_by(|a, b| a.second > b.second)
                 || pairs.is_sorted_by(|a, b| a.second < b.second));
-        let is_classes = shifted >= least && shifted == neighbours;
-        if is_classes && bounds.is_none() && !is_soil {
+        let follow = shifted >= least && 2 * shifted > neighbours && (says_size || is_monotone);
+        if follow && shifted == neighbours && says_size && bounds.is_none() {
             bounds = Some((column, pairs[0].second < pairs[0].mm));
-        } else if is_classes || shifted >= least && 2 * shifted > neighbours {
-            return Err(refused(grid, &rows, column, &pairs));
-        } else if says_size && !is_count(&rows, column, second) && (is_monotone || pairs.len() == 1) {
+        } else if follow || says_size && !is_count(&rows, column, second) && (is_monotone || pairs.len() == 1)
+        {
             return Err(refused(grid, &rows, column, &pairs));
         } else if says_size && !pairs.is_empty() {
             layout.accounted.push(column);
@@ -152,8 +151,8 @@ fn refused(grid: &Grid, rows: &[&GridRow], column: usize, pairs: &[Pair]) -> Tab
     let differs = pairs.iter().find(|pair| !near(pair.mm, pair.second)).or(pairs.first());
     let line = differs.map_or(0, |pair| pair.line);
     let cell = rows.iter().find(|row| row.line == line).map_or("", |row| row.cell(column));
-    let allowed = "one column of openings, or a second with the same sieves in another unit, or with the \
-                   bounds of classes that follow each other";
+    let allowed = "one column of openings; or two, as Upper (mm) and Lower (mm), that are the bounds of classes \
+                   which follow each other, or the same sieves in two units";
     grid.refused(line, column, FIELDS[0], cell, allowed)
 }
 

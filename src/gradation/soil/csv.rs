@@ -122,7 +122,8 @@ fn filled(cells: &[String]) -> usize {
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
 }
 
-fn all_cells(line: &str, delimiter: char) -> (Vec<String>, bool) {
+/// The cells of one line, empty ones at its end among them; and whether a quote is left open.
+pub(super) fn all_cells(line: &str, delimiter: char) -> (Vec<String>, bool) {
     let mut cells = vec![String::new()];
     let (mut quoted, mut was_quoted) = (false, false);
     let mut chars = line.chars().peekable();

@@ -6,20 +6,31 @@ use super::size::{Opening, opening};
 use crate::gradation::error::{TableError, shortened};
 use crate::gradation::sieve::FIELDS;
 
+/// A cell without its values at the end, and how many these are: read as if other separators were spaces.
+fn parted(cell: &str) -> [(String, usize); 2] {
+    let signs: &[char] = &[';', '\t', '|', '"'];
+    let spaced = cell.replace(signs, " ");
+    [spaced.clone(), spaced.replace(',', " ")].map(|text| {
+        let mut words: Vec<&str> = text.split_whitespace().filter(|word| *word != "%").collect();
+        let all = words.len();
+        while words.last().is_some_and(|word| is_value(word)) {
+            words.pop();
+        }
+        (words.join(" "), all - words.len())
+    })
+}
+
 /// Whether a cell holds an opening and values: another separator, or quotes around the whole row.
 pub(super) fn is_whole_row(cell: &str) -> bool {
-    let signs: &[char] = &[';', '\t', '|', '"'];
-    [cell.replace(signs, " "), cell.replace(signs, " ").replace(',', " ")].iter().any(|text| {
-        let mut rest = text.split_whitespace().filter(|word| *word != "%").collect::<Vec<_>>();
-        let words = rest.len();
-        while rest.last().is_some_and(|word| is_value(word)) {
-            rest.pop();
-        }
-        match rest.len() {
-            0 => words > 1,
-            left => left < words && opening(&rest.join(" ")).is_some(),
-        }
+    parted(cell).iter().any(|(rest, values)| match rest.is_empty() {
+        true => *values > 1,
+        false => *values > 0 && opening(rest).is_some(),
     })
+}
+
+/// Whether a cell ends in several values, as a row of a table that lies on its side.
+pub(super) fn ends_in_values(cell: &str) -> bool {
+    parted(cell).iter().any(|(_, values)| *values > 1)
 }
 
 /// The cell of a row of text that may be a row of numbers, amid a table or at its end.
