@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 use super::content::percentage;
 use super::extent::Extent;
-use super::grid::Grid;
+use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, says_of_fines};
 use super::layout::{Layout, head};
+use super::size::{Opening, opening};
 use super::table::Soil;
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
@@ -35,7 +36,12 @@ pub(super) fn refuse(
             .rows(grid, layout)
             .filter_map(|row| Some((row.line, percentage(row.cell(column))?)))
             .collect();
-        let differing: Vec<Option<usize>> = read.iter().map(|soil| differs(soil, &values)).collect();
+        let is_pan = |row: &&GridRow| {
+            let size = opening(row.cell(extent.column_of_size(layout, row)));
+            matches!(size, Some((Opening::Pan | Opening::Below(_), _)))
+        };
+        let pan = extent.rows(grid, layout).find(is_pan).map(|row| row.line);
+        let differing: Vec<Option<usize>> = read.iter().map(|soil| differs(soil, &values, pan)).collect();
         if let Some(Some(line)) = differing.first().filter(|_| differing.iter().all(Option::is_some)) {
             let allowed = format!(
                 "percents retained that agree with those in {}, or one of the two columns alone",
@@ -49,7 +55,7 @@ pub(super) fn refuse(
 }
 
 /// The first line in which percents retained, on each sieve or cumulative, are not what the curve leaves.
-fn differs(soil: &Soil, retained: &HashMap<usize, f64>) -> Option<usize> {
+fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pan: Option<usize>) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     let is_fraction = rows.len() > 1 && rows.iter().all(|row| retained[&row.line] <= 1.0);
@@ -61,5 +67,11 @@ fn differs(soil: &Soil, retained: &HashMap<usize, f64>) -> Option<usize> {
         sum += value(row.line);
         (sum - (100.0 - row.percent)).abs() > ROUNDED
     });
-    cumulative.and(single).map(|row| row.line)
+    let single = single.map(|row| row.line);
+    let rest = pan.filter(|line| {
+        let finest = rows.last().filter(|row| row.line != *line);
+        let value = retained.get(line).map(|value| factor * value);
+        finest.zip(value).is_some_and(|(finest, value)| (value - finest.percent).abs() > ROUNDED)
+    });
+    cumulative.and(single.or(rest))
 }

@@ -28,9 +28,12 @@ pub(super) fn is_whole_row(cell: &str) -> bool {
     })
 }
 
-/// Whether a cell ends in several values, as a row of a table that lies on its side.
-pub(super) fn ends_in_values(cell: &str) -> bool {
+/// Whether a cell ends in several values or holds several openings, as a row of a table that lies on its side.
+pub(super) fn holds_several(cell: &str) -> bool {
+    let spaced = cell.replace("  ", ";");
+    let parts = spaced.split([';', '\t', '|', '"', ',']).map(str::trim);
     parted(cell).iter().any(|(_, values)| *values > 1)
+        || parts.filter(|part| opening(part).is_some()).count() > 2
 }
 
 /// The cell of a row of text that may be a row of numbers, amid a table or at its end.
