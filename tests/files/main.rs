@@ -1,5 +1,6 @@
 //! Files that are read: tables that are refused with their message, checkpoints of every version, torn and damaged ones.
 
+mod accounts;
 mod bad_tables;
 mod damaged;
 mod forged_checkpoints;

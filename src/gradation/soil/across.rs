@@ -106,12 +106,14 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
         if let Some(c) = (0..openings[0]).find(is_size) {
             return refused(row, c, "one row of openings");
         }
-        if let Some(c) = (last + 1..row.cells.len()).find(|&c| {
-            is_value(row.cell(c)) && (heading.cell(c).is_empty() || opening(heading.cell(c)).is_some())
-        }) {
-            let allowed = "an opening above each value, and openings side by side";
-            return refused(row, c, allowed);
+        if let Some(c) =
+            (last + 1..row.cells.len()).find(|&c| is_value(row.cell(c)) && heading.cell(c).is_empty())
+        {
+            return refused(row, c, "an opening above each value");
         }
+    }
+    if let Some(c) = (last + 1..heading.cells.len()).find(|&c| is_opening(heading, c)) {
+        return refused(heading, c, "openings side by side");
     }
     let amid = |row: &&GridRow| is_text(row) && row.filled().any(|c| torn::holds_several(row.cell(c)));
     let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
