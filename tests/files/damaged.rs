@@ -182,11 +182,13 @@ impl Sheet {
             }
             "swapped" => {
                 // Exchanged numbers that fit either way are not lost.
+                let c = if self.in_workbook { c } else { 0 };
                 let other = (c + 1) % row.len();
                 row.swap(c, other);
                 let size = |row: usize| self.rows.get(row)?[0].parse::<f64>().ok();
-                let fits = |a: usize, b: usize| size(a).zip(size(b)).is_none_or(|(a, b)| a > b);
-                if c * other == 0 && fits(at - 1, at) && fits(at, at + 1) {
+                let rises = self.rows[self.data.start][0].starts_with('-');
+                let fits = |a: usize, b: usize| size(a).zip(size(b)).is_none_or(|(a, b)| (a < b) == rises);
+                if c == 0 && fits(at.wrapping_sub(1), at) && fits(at, at + 1) {
                     return None;
                 }
             }
