@@ -11,7 +11,7 @@ fn read(text: &str) -> Result<(Vec<(f64, f64)>, String), String> {
 fn read_bytes(name: &str, bytes: &[u8]) -> Result<(Vec<(f64, f64)>, String), String> {
     let soil = Soil::one(name, bytes, None).map_err(|error| error.to_string())?;
     let curve = soil.gradation(None).map_err(|error| error.to_string())?;
-    Ok((curve.points(), soil.notes().join("; ")))
+    Ok((curve.points().iter().map(|point| (point.size, point.percent)).collect(), soil.notes().join("; ")))
 }
 
 const CLASSES: [(f64, f64); 5] = [(0.053, 5.0), (0.075, 15.0), (0.106, 55.0), (0.15, 88.0), (0.3, 100.0)];

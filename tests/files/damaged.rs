@@ -241,7 +241,7 @@ fn read(sheet: &Sheet) -> Result<Read, String> {
     let soils = Soil::all(name, &sheet.bytes()).map_err(|error| error.to_string())?;
     let soil = |soil: &Soil| {
         let curve = soil.gradation(None).map_err(|error| error.to_string())?;
-        Ok((curve.points(), soil.notes().to_vec()))
+        Ok((curve.points().iter().map(|point| (point.size, point.percent)).collect(), soil.notes().to_vec()))
     };
     soils.iter().map(soil).collect()
 }
