@@ -151,8 +151,8 @@ fn refused(grid: &Grid, rows: &[&GridRow], column: usize, pairs: &[Pair]) -> Tab
     let differs = pairs.iter().find(|pair| !near(pair.mm, pair.second)).or(pairs.first());
     let line = differs.map_or(0, |pair| pair.line);
     let cell = rows.iter().find(|row| row.line == line).map_or("", |row| row.cell(column));
-    let allowed = "one column of openings; or two, as Upper (mm) and Lower (mm), that are the bounds of classes \
-                   which follow each other, or the same sieves in two units";
+    let allowed = "one column of openings; or two, as Upper (mm) and Lower (mm), that are the bounds of \
+                   classes which follow each other, or the same sieves in two units";
     grid.refused(line, column, FIELDS[0], cell, allowed)
 }
 
@@ -169,8 +169,8 @@ fn read_classes(
     let names = [upper, lower].map(|c| grid.column_said(c));
     if let Some(soil) = layout.soils.iter().find(|soil| !matches!(soil.role, Role::Retained(_))) {
         let allowed = format!(
-            "`retained` in the heading of what is in each class, as {} and {} are bounds of classes; percents \
-             finer go with one column of openings",
+            "`retained` in the heading of what is in each class, as {} and {} are bounds of classes; \
+             percents finer go with one column of openings",
             names[0], names[1]
         );
         return Err(grid.refused_heading(grid.rows[layout.at].line, &soil.heading, &allowed));

@@ -28,7 +28,7 @@ pub(super) fn is_whole_row(cell: &str) -> bool {
     })
 }
 
-/// Whether a cell ends in several values or holds several openings, as a row of a table that lies on its side.
+/// Whether a cell ends in several values or holds several openings: a row of a table on its side.
 pub(super) fn holds_several(cell: &str) -> bool {
     let spaced = cell.replace("  ", ";");
     let parts = spaced.split([';', '\t', '|', '"', ',']).map(str::trim);
