@@ -346,6 +346,10 @@ fn split(line: &str, delimiter: char) -> Vec<String> {
 /// A field as a number: what Rust reads (so also `nan`, `inf` and `1e400`, for the caller to refuse),
 /// with a decimal comma in place of the point.
 pub(super) fn number(field: &str) -> Option<f64> {
+    // An exponent has its sign, as spreadsheets write it: another letter e is a slip.
+    if field.split_once(['e', 'E']).is_some_and(|(_, power)| !power.starts_with(['+', '-'])) {
+        return None;
+    }
     match (field.matches(',').count(), field.contains('.')) {
         (0, _) => field.parse().ok(),
         (1, false) => field.replace(',', ".").parse().ok(),

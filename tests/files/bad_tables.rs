@@ -86,7 +86,7 @@ fn unusual_tables_are_read() {
         "# lab 7\n\n  # again\nd\tF\n0,5\t0\n1,5\t20,5\n4\t100\n\n",
         "\"0,5\",\"0\"\n\"1,5\",\"20,5\"\n\"4\",\"100\"\n",
         "0.5,0,,\n1.5,20.5,\n,,\n4,100\n",
-        " 5e-1 , -0 \n +1.5 , 20.5 \n 4. , 1e2 \n",
+        " 5e-1 , -0 \n +1.5 , 20.5 \n 4. , 1e+2 \n",
         "0.2,0\n0.3,0\n0.5,0\n1.5,20.5\n4,100\n8,100\n16,100\n",
     ] {
         let found = Gradation::from_sieve_text("t.csv", text.as_bytes(), None);

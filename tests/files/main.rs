@@ -1,6 +1,8 @@
 //! Files that are read: tables that are refused with their message, checkpoints of every version, torn and damaged ones.
 
+mod accounts;
 mod bad_tables;
+mod damaged;
 mod forged_checkpoints;
 mod golden;
 #[path = "../readers/mod.rs"]

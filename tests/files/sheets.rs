@@ -12,10 +12,10 @@ const SHEETS: usize = 20;
 const SEED: u64 = 20261124;
 
 /// Numbers from a seed (SplitMix64).
-struct Draw(u64);
+pub(super) struct Draw(pub(super) u64);
 
 impl Draw {
-    fn next(&mut self) -> u64 {
+    pub(super) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e3779b97f4a7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58476d1ce4e5b9);
@@ -23,11 +23,11 @@ impl Draw {
         z ^ (z >> 31)
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    pub(super) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
-    fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
+    pub(super) fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len())]
     }
 }
@@ -53,7 +53,7 @@ const SIEVES: [(f64, &str); 16] = [
 ];
 
 #[derive(Clone)]
-enum Cell {
+pub(super) enum Cell {
     Text(String),
     Number(f64),
 }
@@ -62,7 +62,7 @@ fn text(words: &str) -> Option<Cell> {
     Some(Cell::Text(words.into()))
 }
 
-type Grid = Vec<Vec<Option<Cell>>>;
+pub(super) type Grid = Vec<Vec<Option<Cell>>>;
 
 /// A table: its soil, and how it is written.
 #[derive(Clone)]
@@ -346,7 +346,7 @@ fn letter(column: usize) -> char {
     char::from(b'A' + column as u8)
 }
 
-fn xlsx(grid: &Grid) -> Vec<u8> {
+pub(super) fn xlsx(grid: &Grid) -> Vec<u8> {
     let mut rows = String::new();
     for (r, row) in grid.iter().enumerate() {
         rows += &format!("<row r=\"{}\">", r + 1);

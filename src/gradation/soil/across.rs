@@ -5,10 +5,13 @@ use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, unit};
 use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
 use super::size::{Opening, Unit, opening};
+use super::torn;
 use crate::gradation::error::{TableError, shortened};
 
 /// Fewer openings in a row may be anything.
 const LEAST_OPENINGS: usize = 3;
+/// Most columns that a note names.
+const MOST_NAMED: usize = 6;
 
 /// The table of a grid that lies on its side, upright, and where it is read; nothing where there is none.
 pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
@@ -23,6 +26,7 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     });
     let Some((at, openings, soils)) = found else { return Ok(None) };
     refuse_second(grid, at, &soils, &openings)?;
+    refuse_lost(grid, at, &soils, &openings)?;
     Ok(Some(upright(grid, at, &openings, &soils)))
 }
 
@@ -82,6 +86,47 @@ fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> 
     Ok(())
 }
 
+/// Refuses rows of soils that cannot be read, openings that would be passed over, and values that have none.
+fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> Result<(), TableError> {
+    let (heading, last) = (&grid.rows[at], openings[openings.len() - 1]);
+    let refused =
+        |row: &GridRow, c: usize, allowed: &str| Err(grid.refused(row.line, c, "row", row.cell(c), allowed));
+    let is_opening = |row: &GridRow, c: usize| opening(row.cell(c)).is_some();
+    if let Some(above) = grid.rows[..at].iter().find(|row| {
+        row.filled().any(|c| !is_opening(row, c) && torn::holds_several(row.cell(c)))
+            || openings.iter().filter(|&&c| is_opening(row, c)).count() >= LEAST_OPENINGS
+    }) {
+        let c = above.filled().next().unwrap_or(0);
+        return refused(above, c, "openings in cells of their own, all rising or all falling");
+    }
+    let rows: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
+    for row in &rows {
+        torn::refuse_short(grid, row, "", last)?;
+        let is_size = |&c: &usize| role(row.cell(c)) == Role::Size && !is_value(row.cell(c));
+        if let Some(c) = (0..openings[0]).find(is_size) {
+            return refused(row, c, "one row of openings");
+        }
+        if let Some(c) =
+            (last + 1..row.cells.len()).find(|&c| is_value(row.cell(c)) && heading.cell(c).is_empty())
+        {
+            return refused(row, c, "an opening above each value");
+        }
+    }
+    if let Some(c) = (last + 1..heading.cells.len()).find(|&c| is_opening(heading, c)) {
+        return refused(heading, c, "openings side by side");
+    }
+    let amid = |row: &&GridRow| is_text(row) && row.filled().any(|c| torn::holds_several(row.cell(c)));
+    let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
+    let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
+    match grid.rows[at + 1..end.max(at + 1)].iter().find(amid) {
+        Some(row) => {
+            let column = row.filled().find(|&c| torn::holds_several(row.cell(c))).unwrap_or(0);
+            Err(torn::refused(grid, row, column))
+        }
+        None => Ok(()),
+    }
+}
+
 fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid, Layout) {
     let heading = &grid.rows[at];
     let rows_of_soils: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
@@ -117,11 +162,14 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
     };
     let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());
     let last = openings[openings.len() - 1];
-    let unused: Vec<String> = (last + 1..heading.cells.len().max(last + 1))
+    let mut unused: Vec<String> = (last + 1..heading.cells.len().max(last + 1))
         .filter(|&c| named(c))
         .map(|c| format!("{} (\"{}\")", grid.column_said(c), shortened(heading.cell(c))))
-        .take(6)
         .collect();
+    if unused.len() > MOST_NAMED {
+        let more = format!("and {} more", unused.len() - MOST_NAMED);
+        unused.splice(MOST_NAMED.., [more]);
+    }
     let mut notes = vec!["openings read across: a row for each soil".to_owned()];
     if !unused.is_empty() {
         notes.push(format!("not used: {}", unused.join(", ")));
@@ -143,6 +191,7 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
         at: 0,
         first: 0,
         headed: true,
+        accounted: Vec::new(),
         notes,
     };
     let lines = std::iter::once(heading).chain(rows_of_soils.iter().copied()).map(|row| row.line).collect();

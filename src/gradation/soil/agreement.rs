@@ -15,12 +15,17 @@ pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
     let mut both = 0;
     for row in &grid.rows[headings.first..] {
         match (in_mm(row.cell(a), unit_a), in_mm(row.cell(b), unit_b)) {
-            (Some(one), Some(other)) if (one - other).abs() <= NEAR * one.max(other) => both += 1,
+            (Some(one), Some(other)) if near(one, other) => both += 1,
             (None, None) => {}
             (Some(_), None) | (None, Some(_)) | (Some(_), Some(_)) => return false,
         }
     }
     both > 0
+}
+
+/// Whether two openings (mm) are those of one sieve.
+pub(super) fn near(one: f64, other: f64) -> bool {
+    (one - other).abs() <= NEAR * one.max(other)
 }
 
 /// Openings in mm, where headings say their unit and where they do not.

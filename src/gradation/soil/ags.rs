@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::csv::split;
+use super::csv::all_cells;
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, unit};
 use super::layout::{Layout, SoilColumn};
@@ -32,8 +32,10 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
     for (index, content) in text.lines().enumerate() {
-        let (cells, line) = (split(content, ',').0, index + 1);
-        let Some(kind) = cells.first() else { continue };
+        let ((cells, open), line) = (all_cells(content, ','), index + 1);
+        let Some(kind) = cells.first().filter(|_| cells.iter().any(|cell| !cell.is_empty())) else {
+            continue;
+        };
         if kind == "GROUP" {
             group = cells.get(1).cloned().unwrap_or_default();
             headings.clear();
@@ -61,6 +63,10 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
                     return Err(refused(line, percent, "the unit of GRAT_PERP: %"));
                 }
             }
+            "DATA" if cells.len() != headings.len() || open => {
+                let allowed = "a row of GRAT with a cell for each of its headings";
+                return Err(refused(line, &shortened(content.trim()), allowed));
+            }
             "DATA" => {
                 for name in ["GRAT_SIZE", "GRAT_PERP"] {
                     if place(name).is_none() {
@@ -85,7 +91,8 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
                 grid.rows.push(row);
                 types.extend(Some(cell("GRAT_TYPE").to_owned()).filter(|kind| !kind.is_empty()));
             }
-            _ => {}
+            "GROUP" | "TYPE" => {}
+            _ => return Err(refused(line, &shortened(kind), "GROUP, HEADING, UNIT, TYPE or DATA")),
         }
     }
     if let Some(line) = summary.filter(|_| soils.is_empty()) {
@@ -121,6 +128,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             at: 0,
             first: 0,
             headed: true,
+            accounted: Vec::new(),
             notes: Vec::new(),
         };
         (name, grid, layout)

@@ -8,6 +8,7 @@ use super::grid::{Grid, GridRow};
 use super::heading::{Role, role};
 use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
 use super::size::{Opening, opening};
+use super::torn::whole_row;
 use super::{across, agreement};
 use crate::gradation::error::TableError;
 
@@ -141,7 +142,9 @@ fn bands(grid: &Grid) -> Vec<Range<usize>> {
 /// The first of the rows of a title above the end of `rows`, of which no title stands above `least`.
 fn title_above(rows: &[GridRow], least: usize) -> usize {
     let next = rows.len();
-    let is_title = |r: usize| !is_data(&rows[r]) || begins_with_words(&rows[r]);
+    let is_title = |r: usize| {
+        (!is_data(&rows[r]) || begins_with_words(&rows[r])) && whole_row(&rows[r], false).is_none()
+    };
     let above = (least..next).rev().take_while(|&r| is_title(r)).last().unwrap_or(next);
     // What stands directly below the numbers is theirs, up to the first empty row.
     let gap = |r: &usize| rows[*r].line > rows[r - 1].line + 1;

@@ -53,6 +53,11 @@ pub(super) fn is_words(cell: &str) -> bool {
         return false;
     }
     let first: String = small.chars().take_while(|c| c.is_alphabetic()).collect();
+    // `D10`, `P80` name sizes of a curve; another letter before a number is a slip.
+    if first.chars().count() == 1 && !["d", "p"].contains(&&*first) && number(&small[first.len()..]).is_some()
+    {
+        return false;
+    }
     let rest = small[first.len()..].trim_start_matches(|c: char| !c.is_alphanumeric());
     !(OF_SIEVES.contains(&first.as_str()) && rest.starts_with(|c: char| c.is_ascii_digit()))
         && cell.contains(|c: char| c.is_alphabetic())
@@ -95,9 +100,10 @@ mod tests {
         {
             assert!(is_words(words), "{words}");
         }
-        for other in
-            ["4.75*", "9.500,00", "No. 4", "No 4a", "US 199", "04-Mar", "Mar-04", "", "-", "Pan", "'9.5"]
-        {
+        for other in [
+            "O.075", "l9", "x1.18", "4.75*", "9.500,00", "No. 4", "No 4a", "US 199", "04-Mar", "Mar-04", "",
+            "-", "Pan", "'9.5",
+        ] {
             assert!(!is_words(other), "{other}");
         }
     }

@@ -1,6 +1,8 @@
 //! Text to rows of cells.
 
-use super::grid::{Grid, GridRow};
+use std::rc::Rc;
+
+use super::grid::{Grid, GridRow, Line};
 use super::heading::{Role, role, unit};
 use super::size::{Said, Unit, opening, us_sieve_number};
 use crate::gradation::table::number;
@@ -55,9 +57,12 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
             content = lines[at - 1..=end].join(" ");
             at = end + 1;
         }
-        let (cells, open) = split(&content, delimiter);
+        let (mut cells, open) = all_cells(&content, delimiter);
+        let written = cells.len();
+        cells.truncate(filled(&cells));
         if !cells.is_empty() {
-            grid.rows.push(GridRow { line, cells, text: Some(content.trim().to_owned()), open });
+            let text = Line { text: content.trim().to_owned(), cells: written };
+            grid.rows.push(GridRow { line, cells, text: Some(Rc::new(text)), open });
         }
     }
     if comments > 0 {
@@ -107,6 +112,18 @@ fn is_open(line: &str, delimiter: char) -> bool {
 /// The cells of one line, trimmed and without their quotes, empty ones at its end left out; and whether a
 /// quote is left open. A quote counts at the beginning of a cell only: elsewhere it is inches.
 pub(super) fn split(line: &str, delimiter: char) -> (Vec<String>, bool) {
+    let (mut cells, open) = all_cells(line, delimiter);
+    cells.truncate(filled(&cells));
+    (cells, open)
+}
+
+/// The number of cells up to the last that holds anything.
+fn filled(cells: &[String]) -> usize {
+    cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
+}
+
+/// The cells of one line, empty ones at its end among them; and whether a quote is left open.
+pub(super) fn all_cells(line: &str, delimiter: char) -> (Vec<String>, bool) {
     let mut cells = vec![String::new()];
     let (mut quoted, mut was_quoted) = (false, false);
     let mut chars = line.chars().peekable();
@@ -128,9 +145,6 @@ pub(super) fn split(line: &str, delimiter: char) -> (Vec<String>, bool) {
     }
     for cell in &mut cells {
         *cell = cell.trim().to_string();
-    }
-    while cells.last().is_some_and(String::is_empty) {
-        cells.pop();
     }
     (cells, quoted)
 }

@@ -3,10 +3,12 @@
 
 use super::content::{is_blank, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
+use super::heading::Role;
 use super::layout::{Layout, repeats_headings};
 use super::lines::listed;
-use super::size::opening;
-use crate::gradation::error::shortened;
+use super::size::{Opening, opening};
+use super::torn;
+use crate::gradation::error::{TableError, shortened};
 
 /// A row below a table: `Dry mass (g) | 500`.
 pub(super) struct Below {
@@ -32,7 +34,10 @@ pub(super) struct Extent {
 
 impl Extent {
     /// Of the table of a grid.
-    pub(super) fn of(grid: &Grid, layout: &Layout) -> Extent {
+    ///
+    /// # Errors
+    /// A row that cannot be read as one, amid the others or as their last.
+    pub(super) fn of(grid: &Grid, layout: &Layout) -> Result<Extent, TableError> {
         let rows = &grid.rows[layout.first..];
         let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
         let mut extent = Extent { table: Vec::new(), below: Vec::new(), notes: Vec::new(), first_value };
@@ -41,6 +46,9 @@ impl Extent {
             rows[..end].iter().rposition(|row| row.filled().any(|c| is_value(row.cell(c)))).unwrap_or(0);
         let mut remarks = Vec::new();
         for (index, row) in rows[..end].iter().enumerate() {
+            if let Some(column) = torn::whole_row(row, index < last) {
+                return Err(torn::refused(grid, row, column));
+            }
             match () {
                 () if repeats_headings(row, layout) => {}
                 () if is_text(row) && (row.filled().count() == 1 || index > last) => remarks.push(row.line),
@@ -62,7 +70,7 @@ impl Extent {
             ));
         }
         extent.notes.extend(extent.said_below(grid, &rows[end..]));
-        extent
+        Ok(extent)
     }
 
     /// The rows of the table.
@@ -81,8 +89,8 @@ impl Extent {
         }
     }
 
-    /// Where the table ends: at the first row of words below its numbers, unless numbers go on below it
-    /// without headings of their own, so that the row is refused.
+    /// Where the table ends: at the first row of words below its numbers, unless the numbers below it
+    /// continue those above, so that a row with a percent is refused.
     fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
         let is_data = |row: &GridRow| {
             let column = self.column_of_size(layout, row);
@@ -90,11 +98,44 @@ impl Extent {
         };
         let Some(begun) = rows.iter().position(is_data) else { return rows.len() };
         let Some(last) = rows.iter().rposition(is_data) else { return rows.len() };
-        let ends = |row: &GridRow| !is_text(row) && self.column_of_words(layout, row).is_some();
-        match rows[begun..].iter().position(ends) {
-            Some(after) if begun + after > last => begun + after,
-            _ => rows.len(),
+        let ends = |&at: &usize| {
+            let row = &rows[at];
+            let has_words = self.column_of_words(layout, row).is_some();
+            has_words
+                && match at > last {
+                    true => !is_text(row),
+                    false => {
+                        !repeats_headings(row, layout)
+                            && !self.continues(&rows[..at], &rows[at + 1..], layout)
+                    }
+                }
+        };
+        (begun..rows.len()).find(ends).unwrap_or(rows.len())
+    }
+
+    /// Whether any of the rows `below` may continue those `above`: a size beyond the last of them, and a
+    /// percent finer that goes the same way.
+    fn continues(&self, above: &[GridRow], below: &[GridRow], layout: &Layout) -> bool {
+        let Some(soil) = layout.soils.first() else { return true };
+        let numbers = |row: &GridRow| match opening(row.cell(self.column_of_size(layout, row)))?.0 {
+            Opening::Mm(size) | Opening::Bare(size) | Opening::Below(size) => {
+                Some((size, percentage(row.cell(soil.column))))
+            }
+            Opening::Pan | Opening::Total => None,
+        };
+        let mut numbers_above = above.iter().filter_map(numbers);
+        let Some(first) = numbers_above.next() else { return true };
+        let last = numbers_above.next_back().unwrap_or(first);
+        if first.0 == last.0 {
+            return true;
         }
+        let falls = first.0 > last.0;
+        let is_beyond = |next: f64, last: f64| if falls { next <= last } else { next >= last };
+        let is_finer = !matches!(soil.role, Role::Retained(_));
+        below.iter().filter_map(numbers).any(|(size, value)| {
+            let value = value.zip(last.1).filter(|_| is_finer);
+            is_beyond(size, last.0) && value.is_none_or(|(next, last)| is_beyond(next, last))
+        })
     }
 
     /// The column of the words with which a row begins in place of an opening.

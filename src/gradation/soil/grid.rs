@@ -1,6 +1,7 @@
 //! Rows of cells: what every kind of file is brought to before its soils are looked for.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use crate::gradation::error::{Position, TableError, letters, shortened};
 
@@ -32,6 +33,14 @@ pub(super) struct Place {
     pub(super) column: usize,
 }
 
+/// A line of a text file.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub(super) text: String,
+    /// The number of its cells, empty ones at its end among them.
+    pub(super) cells: usize,
+}
+
 /// A row of cells.
 #[derive(Clone, Debug)]
 pub(super) struct GridRow {
@@ -40,7 +49,7 @@ pub(super) struct GridRow {
     /// Its cells, trimmed; empty ones at its end are left out.
     pub(super) cells: Vec<String>,
     /// The line itself, of a text file.
-    pub(super) text: Option<String>,
+    pub(super) text: Option<Rc<Line>>,
     /// A quote is left open in it.
     pub(super) open: bool,
 }
@@ -125,7 +134,8 @@ impl Grid {
                 let mut cells = row.cells[range.start..range.end.min(row.cells.len())].to_vec();
                 cells.truncate(cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1));
                 if !cells.is_empty() {
-                    part.rows.push(GridRow { line: row.line, cells, text: None, open: row.open });
+                    let text = row.text.clone();
+                    part.rows.push(GridRow { line: row.line, cells, text, open: row.open });
                 }
             }
         }

@@ -131,6 +131,19 @@ fn any(words: &[String], list: &[&str]) -> bool {
     words.iter().any(|word| list.contains(&word.as_str()))
 }
 
+/// Whether a heading says cumulative. `of total`, `total mass`, `total sample` say what percents are of.
+fn is_cumulative(words: &[String]) -> bool {
+    const OF: [&str; 8] = ["of", "the", "du", "del", "do", "von", "vom", "der"];
+    const WHOLE: [&str; 10] =
+        ["mass", "weight", "wt", "dry", "sample", "soil", "specimen", "aggregate", "masse", "peso"];
+    let is = |at: Option<&String>, list: &[&str]| at.is_some_and(|word| list.contains(&word.as_str()));
+    words.iter().enumerate().any(|(at, word)| {
+        let of_whole =
+            is(at.checked_sub(1).map(|before| &words[before]), &OF) || is(words.get(at + 1), &WHOLE);
+        CUMULATIVE.contains(&word.as_str()) && !(word == "total" && of_whole)
+    })
+}
+
 /// `D10`, `D 85 (mm)`: a size that was read off a curve, not a column of openings.
 fn is_characteristic(words: &[String]) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
@@ -198,11 +211,18 @@ pub(super) fn role(name: &str) -> Role {
     let percent = name.contains('%') || any(&words, &["percent", "pct", "percentage", "prozent"]);
     let mass = any(&words, &MASS);
     let size = any(&words, &SIZE);
-    let cumulative = match (any(&words, &CUMULATIVE), any(&words, &INDIVIDUAL)) {
+    let cumulative = match (is_cumulative(&words), any(&words, &INDIVIDUAL)) {
         (true, _) => Some(true),
         (false, true) => Some(false),
         (false, false) => None,
     };
+    let is_length = matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)));
+    let has_digit = name.contains(|c: char| c.is_ascii_digit());
+    let is_bound = ["passing", "pass", "passed", "retained", "oversize", "undersize"];
+    if is_length && any(&words, &is_bound) && !percent && !mass && !has_digit {
+        // `Passing (mm)`, `Retained on (mm)`: the bounds of a class.
+        return Role::Size;
+    }
     if any(&words, &RETAINED) {
         let percent = percent || !mass;
         return Role::Retained(Retained { percent, cumulative });
@@ -265,6 +285,13 @@ mod tests {
             ("% retained", retained(true, None)),
             ("Cumulative % retained", retained(true, Some(true))),
             ("Cum. mass retained", retained(false, Some(true))),
+            ("Total % retained", retained(true, Some(true))),
+            ("Retained, % of total", retained(true, None)),
+            ("% of the total sample retained", retained(true, None)),
+            ("Cumulative % of total retained", retained(true, Some(true))),
+            ("Retained on (mm)", Role::Size),
+            ("Passing, mm", Role::Size),
+            ("Passing, %", Role::Finer),
             ("percent coarser", retained(true, Some(true))),
             ("Filter A", Role::Other),
             ("D10 (mm)", Role::Other),

@@ -5,6 +5,7 @@ use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_v
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, says_sample, unit, words};
 use super::size::{Opening, Unit, opening};
+use super::torn::whole_row;
 use crate::gradation::error::{TableError, shortened};
 
 /// Titles may take this many rows.
@@ -30,6 +31,8 @@ pub(super) struct Layout {
     pub(super) first: usize,
     /// There are headings.
     pub(super) headed: bool,
+    /// Columns beside these, whose numbers agree with what is read or are named in a note.
+    pub(super) accounted: Vec<usize>,
     /// What was assumed or left out.
     pub(super) notes: Vec<String>,
 }
@@ -101,7 +104,11 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     let Some(at) = at else { return (None, any) };
     // Units, or the names of soils, may stand in rows below the headings.
     let sizes: Vec<usize> = rows[at].filled().filter(|&c| role(rows[at].cell(c)) == Role::Size).collect();
-    let belongs = |row: &&GridRow| is_text(row) && sizes.iter().all(|&c| belongs_to_heading(row.cell(c)));
+    let belongs = |row: &&GridRow| {
+        is_text(row)
+            && sizes.iter().all(|&c| belongs_to_heading(row.cell(c)))
+            && whole_row(row, true).is_none()
+    };
     let below = data.map_or(0, |data| data - at - 1);
     let below = rows[at + 1..].iter().take_while(belongs).take(below).count();
     let samples =
@@ -127,7 +134,7 @@ pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
 }
 
 /// What stands above a column.
-fn head(rows: &[GridRow], column: usize) -> String {
+pub(super) fn head(rows: &[GridRow], column: usize) -> String {
     let cells: Vec<&str> = rows.iter().map(|row| row.cell(column)).filter(|cell| !cell.is_empty()).collect();
     cells.join(" ")
 }
@@ -165,6 +172,7 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
         at,
         first,
         headed: true,
+        accounted: Vec::new(),
         notes: Vec::new(),
     };
     let values = value_columns(&roles, &columns);
@@ -198,7 +206,10 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
             layout.soils.push(soil);
         }
     }
-    layout.notes.extend(not_used(grid, &heads, &columns, &sizes, &values));
+    let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
+    layout.accounted =
+        (0..columns.with_values.len()).filter(|&c| columns.with_values[c]).filter(|c| !is_used(c)).collect();
+    layout.notes.extend(not_used(grid, &heads, &layout.accounted));
     Ok(layout)
 }
 
@@ -272,17 +283,8 @@ fn refuse_unnamed_openings(
 }
 
 /// Says which columns hold numbers and are not read.
-fn not_used(
-    grid: &Grid,
-    heads: &[String],
-    columns: &Columns,
-    sizes: &[usize],
-    values: &[usize],
-) -> Option<String> {
+fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     const MOST: usize = 6;
-    let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
-    let unused: Vec<usize> =
-        (0..columns.with_values.len()).filter(|&c| columns.with_values[c]).filter(|c| !is_used(c)).collect();
     let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
         "" => format!("{} (no heading)", grid.column_said(c)),
         head => format!("{} (\"{}\")", grid.column_said(c), shortened(head)),
@@ -360,14 +362,17 @@ fn is_number(cell: &str) -> bool {
 
 /// No row names the openings: the first row of numbers begins the table, by place.
 fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
-    let begins = |row: &GridRow| row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)));
+    let begins = |row: &GridRow| {
+        row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)))
+            || whole_row(row, false).is_some()
+    };
     let start = grid.rows.iter().position(begins);
     let start = match (start, data) {
         // Titles hold numbers too; but a title looks like a row that is broken only where it has two cells.
         (Some(start), Some(data))
-            if grid.rows[start..data]
-                .iter()
-                .all(|row| row.filled().count() == 1 && !is_number(row.cell(0))) =>
+            if grid.rows[start..data].iter().all(|row| {
+                row.filled().count() == 1 && !is_number(row.cell(0)) && whole_row(row, false).is_none()
+            }) =>
         {
             data
         }
@@ -412,7 +417,8 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     })?;
     let soils = vec![SoilColumn { column: value, heading: head(value), role, end: None }];
     let (headed, at) = (headings.is_some(), start.saturating_sub(1));
-    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, notes: Vec::new() })
+    let (accounted, notes) = (Vec::new(), Vec::new());
+    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, accounted, notes })
 }
 
 /// A row with another number of cells than the table has columns.
@@ -424,6 +430,9 @@ pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
         "two columns, with a comma, a semicolon or a tab between them"
     };
     let separator = if grid.sheet.is_some() { " | ".to_owned() } else { grid.delimiter.to_string() };
-    let value = shortened(row.text.as_deref().unwrap_or(&row.cells.join(&separator)));
+    let value = match &row.text {
+        Some(line) => shortened(&line.text),
+        None => shortened(&row.cells.join(&separator)),
+    };
     TableError::Fields { file: grid.place(), line: row.line, found, value, allowed }
 }

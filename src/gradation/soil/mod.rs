@@ -7,14 +7,17 @@
 //! says what the soils are called. `read` is the way through. What is taken for something that the file does
 //! not spell out becomes a note; what could be two things is refused.
 
+mod account;
 mod across;
 mod agreement;
 mod ags;
 mod blocks;
+mod bounds;
 mod cells;
 mod columns;
 mod commas;
 mod content;
+mod contradiction;
 mod csv;
 mod extent;
 mod grid;
@@ -32,6 +35,7 @@ mod size;
 mod summary;
 mod table;
 mod text;
+mod torn;
 mod units;
 mod workbook;
 mod xlsx;

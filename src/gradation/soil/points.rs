@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::content::{is_blank, is_date, percentage, range};
+use super::content::{is_blank, is_date, is_value, is_words, percentage, range};
 use super::extent::Extent;
 use super::grid::Grid;
 use super::heading::Role;
@@ -11,22 +11,45 @@ use super::lines::listed;
 use super::retained::{Weighed, percents_finer};
 use super::size::{Entry, Opening, Said, Unit, opening};
 use super::table::{Kind, Soil};
-use super::{commas, units};
+use super::{account, commas, contradiction, torn, units};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 use crate::gradation::table::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
 
 /// The soils of a table, column by column.
-pub(super) fn soils(grid: &Grid, layout: &Layout) -> Vec<Result<Soil, TableError>> {
-    let extent = Extent::of(grid, layout);
-    layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect()
+///
+/// # Errors
+/// Rows, openings or numbers that cannot be those of a table, whichever soil is read.
+pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, TableError>>, TableError> {
+    let extent = Extent::of(grid, layout)?;
+    let last = last_column(grid, layout, &extent);
+    for row in extent.rows(grid, layout) {
+        torn::refuse_short(grid, row, row.cell(extent.column_of_size(layout, row)), last)?;
+    }
+    let soils: Vec<_> = layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect();
+    contradiction::refuse(grid, layout, &extent, &soils)?;
+    account::refuse_lost(grid, layout, &extent, &soils)?;
+    Ok(soils)
+}
+
+/// The last column that holds a value in most of the rows.
+fn last_column(grid: &Grid, layout: &Layout, extent: &Extent) -> usize {
+    let mut values: Vec<usize> = Vec::new();
+    let mut rows = 0;
+    for row in extent.rows(grid, layout) {
+        rows += 1;
+        values.resize(values.len().max(row.cells.len()), 0);
+        row.filled().filter(|&c| is_value(row.cell(c))).for_each(|c| values[c] += 1);
+    }
+    let first = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
+    values.iter().rposition(|&n| 2 * n > rows).unwrap_or(0).max(layout.size).max(first)
 }
 
 /// The soil in one column of a grid.
 fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
     let mut notes = grid.notes.clone();
     notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
-    let mut entries = entries(grid, layout, extent, column, &mut notes)?;
+    let (mut entries, missing) = entries(grid, layout, extent, column, &mut notes)?;
     let unit = units::of_bare(grid, layout, column.role, &entries, &mut notes)?;
     for entry in &mut entries {
         entry.opening = match entry.opening {
@@ -46,7 +69,7 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     let rows = match column.role {
         Role::Retained(retained) => {
             let below = &extent.below;
-            let weighed = Weighed { grid, column: column.column, retained, below };
+            let weighed = Weighed { grid, column: column.column, retained, below, missing: &missing };
             percents_finer(&weighed, &entries, &mut notes)?
         }
         _ => finer(grid, column, &entries, &mut notes)?,
@@ -75,17 +98,17 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     Ok(Soil { name, file, rows, places, kind, notes })
 }
 
-/// The rows of the table as they are written.
+/// The rows of the table as they are written, and the lines of the openings whose cell for a value is empty.
 fn entries(
     grid: &Grid,
     layout: &Layout,
     extent: &Extent,
     column: &SoilColumn,
     notes: &mut Vec<String>,
-) -> Result<Vec<Entry>, TableError> {
+) -> Result<(Vec<Entry>, Vec<usize>), TableError> {
     let single = layout.soils.len() == 1;
     let retained = matches!(column.role, Role::Retained(_));
-    let (mut entries, mut without) = (Vec::new(), Vec::new());
+    let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     for row in extent.rows(grid, layout) {
         let line = row.line;
         let value = row.cell(column.column);
@@ -95,6 +118,11 @@ fn entries(
         if is_blank(value) {
             match read {
                 Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Below(_), _)) => {
+                    without.push(line);
+                    missing.extend(value.is_empty().then_some(line));
+                    continue;
+                }
+                None if is_words(size) => {
                     without.push(line);
                     continue;
                 }
@@ -129,7 +157,7 @@ fn entries(
         let text = size.to_owned();
         entries.push(Entry { line, column: at, opening, text, said, value: number + 0.0 });
     }
-    if single && !without.is_empty() {
+    if !without.is_empty() {
         let have = if without.len() == 1 { "has" } else { "have" };
         notes.push(format!(
             "{} {have} no percent: left out",
@@ -137,7 +165,7 @@ fn entries(
         ));
     }
     commas::check(grid, layout, extent, column, notes)?;
-    Ok(entries)
+    Ok((entries, missing))
 }
 
 /// What an opening may be; spreadsheets turn `3/8` into a date.
@@ -177,7 +205,10 @@ fn finer(
     for entry in entries {
         let size = match entry.opening {
             Opening::Mm(size) | Opening::Below(size) => size,
-            Opening::Total => continue,
+            Opening::Total => {
+                notes.push(format!("the total in {} was left out", grid.said(entry.line)));
+                continue;
+            }
             Opening::Pan if entry.value == 0.0 => {
                 notes.push("the pan was left out".into());
                 continue;

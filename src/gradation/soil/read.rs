@@ -7,10 +7,10 @@ use super::blocks::Block;
 use super::grid::Grid;
 use super::heading::Role;
 use super::joined::Read;
-use super::layout::{Layout, SoilColumn};
+use super::layout::SoilColumn;
 use super::summary::SoilSummary;
 use super::table::Soil;
-use super::{ags, blocks, csv, joined, names, points, text, workbook};
+use super::{ags, blocks, bounds, csv, joined, names, points, text, workbook};
 use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
 use crate::gradation::table::{FILE_LIMIT_BYTES, bytes_of};
@@ -94,13 +94,11 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     }
     let (text, note) = text::decoded(file, bytes)?;
     if ags::is_ags(&text) {
-        let named = |(name, grid, layout): (String, Grid, Layout)| {
-            points::soils(&grid, &layout)
-                .into_iter()
-                .map(|soil| (vec![name.clone()], soil))
-                .collect::<Vec<_>>()
-        };
-        return Ok(ags::soils(file, &text)?.into_iter().flat_map(named).collect());
+        let mut named = Vec::new();
+        for (name, grid, layout) in ags::soils(file, &text)? {
+            named.extend(points::soils(&grid, &layout)?.into_iter().map(|soil| (vec![name.clone()], soil)));
+        }
+        return Ok(named);
     }
     let mut refusal = None;
     for delimiter in csv::separators(&text) {
@@ -167,11 +165,12 @@ fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     let several = blocks.len() > 1;
     blocks.iter_mut().for_each(names::name_columns);
     let titles = if several { names::titles(&blocks) } else { vec![String::new(); blocks.len()] };
-    let read = |(block, title): (Block, String)| {
-        let soils = points::soils(&block.grid, &block.layout);
-        Read { block, title, soils }
+    let read = |(mut block, title): (Block, String)| {
+        bounds::settle(&mut block.grid, &mut block.layout)?;
+        let soils = points::soils(&block.grid, &block.layout)?;
+        Ok(Read { block, title, soils })
     };
-    let tables = joined::joined(blocks.into_iter().zip(titles).map(read).collect())?;
+    let tables = joined::joined(blocks.into_iter().zip(titles).map(read).collect::<Result<_, _>>()?)?;
     Ok(named(tables))
 }
 

@@ -18,6 +18,8 @@ pub(super) struct Weighed<'a> {
     pub(super) retained: Retained,
     /// The rows below the table.
     pub(super) below: &'a [Below],
+    /// The lines of openings without a value.
+    pub(super) missing: &'a [usize],
 }
 
 impl Weighed<'_> {
@@ -79,10 +81,24 @@ pub(super) fn percents_finer(
     for entry in entries {
         match entry.opening {
             Opening::Mm(size) => sieves.push((entry.line, size, entry.value)),
+            Opening::Total if total.is_some_and(|total| total != entry.value) => {
+                return Err(weighed.refused(entry.line, entry.value, "one total"));
+            }
             Opening::Total => total = Some(entry.value),
             _ if pan.is_none() => pan = Some((entry.line, entry.value)),
             _ => return Err(weighed.refused(entry.line, entry.value, "one row for the pan")),
         }
+    }
+    let is_turn = |w: &[(usize, f64, f64)]| (w[0].1 - w[1].1) * (w[1].1 - w[2].1) < 0.0;
+    if let Some(turn) = sieves.windows(3).find(|three| is_turn(three)) {
+        let allowed = "sizes all ascending or all descending";
+        return Err(weighed.grid.refused(
+            turn[2].0,
+            weighed.column,
+            FIELDS[0],
+            &turn[2].1.to_string(),
+            allowed,
+        ));
     }
     sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
     let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
@@ -141,6 +157,17 @@ pub(super) fn percents_finer(
             return Err(weighed.refused(first_line, first, &allowed));
         }
     };
+    if !cumulative
+        && let Some(&line) = weighed.missing.first()
+        && !whole.is_some_and(|whole| near(all, whole))
+    {
+        let allowed = "what is retained on every sieve: 0 where nothing is, - where the sieve was not used";
+        return Err(weighed.grid.refused(line, weighed.column, FIELDS[1], "", allowed));
+    }
+    if percent && let Some(total) = total.filter(|&total| !near(total, 100.0) && !near(total, all)) {
+        let allowed = format!("the sum of the percents ({}) or 100 as their total", tidy(all));
+        return Err(weighed.refused(first_line, total, &allowed));
+    }
     let whole = match (cumulative, pan) {
         (false, Some(_)) => all,
         (true, Some(_)) if whole.is_none() || percent => last,
