@@ -147,12 +147,17 @@ fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
     grid.refused(row.line, 0, "heading", name, allowed)
 }
 
+/// Whether a column is one of these, which stand side by side.
+fn is_between(columns: &[usize], c: usize) -> bool {
+    columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
+}
+
 /// Headings beside the openings that name more of them, or seem to.
 fn refuse_other_openings(grid: &Grid, at: usize, columns: &[usize]) -> Result<(), TableError> {
     let row = &grid.rows[at];
     let is_other = |c: &usize| {
         let cell = row.cell(*c);
-        !columns.contains(c) && (is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some()))
+        !is_between(columns, *c) && (is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some()))
     };
     match row.filled().find(is_other) {
         Some(c) => {
@@ -254,7 +259,7 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         text: None,
         open: false,
     };
-    let beside = (0..heading.cells.len()).filter(|c| !columns.contains(c)).map(|c| heading.cell(c));
+    let beside = (0..heading.cells.len()).filter(|&c| !is_between(columns, c)).map(|c| heading.cell(c));
     let words_above: Vec<&str> = grid.rows[..at]
         .iter()
         .rev()

@@ -6,6 +6,9 @@ use super::content::{is_blank, is_value};
 use super::grid::GridRow;
 use super::heading::{says_sample, words};
 
+/// Most columns that tell soils of one name apart.
+const MOST_MORE: usize = 8;
+
 /// What stands to the left of the openings.
 pub(super) struct Labels {
     /// A name for each soil.
@@ -40,6 +43,7 @@ impl Labels {
         };
         let mut names: Vec<String> = rows.iter().map(|row| joined(row, always)).collect();
         let mut unused = Vec::new();
+        let (more, others) = more.split_at(more.len().min(MOST_MORE));
         for &c in more {
             let mut times: HashMap<String, usize> = HashMap::new();
             names.iter().for_each(|name| *times.entry(name.clone()).or_default() += 1);
@@ -52,6 +56,7 @@ impl Labels {
             }
             unused.extend((!used).then_some(c));
         }
+        unused.extend(others);
         Labels { names, unused }
     }
 }

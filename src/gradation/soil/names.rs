@@ -137,12 +137,9 @@ fn merged_names(block: &Block, columns: &[usize]) -> Option<Vec<String>> {
         let after = |&c: &usize| c > layout.size && Some(c) != layout.other_size;
         let starts: Vec<usize> = row.filled().filter(after).collect();
         let is_name = |&c: &usize| role(row.cell(c)) == Role::Other && !is_value(row.cell(c));
-        let ends = starts.iter().skip(1).copied().chain([usize::MAX]);
-        let holds_one = |(&start, end): (&usize, usize)| {
-            columns.iter().filter(|&&c| (start..end).contains(&c)).count() == 1
-        };
         let all = starts.len() == columns.len() && starts.iter().all(is_name);
-        let is_it = all && starts.iter().zip(ends).all(holds_one);
+        let ends = starts.iter().skip(1).copied().chain([usize::MAX]);
+        let is_it = all && starts.iter().zip(columns).zip(ends).all(|((s, c), end)| s <= c && *c < end);
         is_it.then(|| starts.iter().map(|&c| row.cell(c).to_owned()).collect())
     })
 }

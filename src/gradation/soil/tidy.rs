@@ -1,5 +1,7 @@
 //! A table that names the sample in each row is a table for each of them.
 
+use std::collections::HashMap;
+
 use super::content::is_blank;
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, says_sample, words};
@@ -7,6 +9,9 @@ use super::labels::says_depth;
 use super::layout::Layout;
 use super::size::{Opening, opening};
 use crate::gradation::error::TableError;
+
+/// Most places of the headings of all parts.
+const MOST_PLACES: usize = 1_000_000;
 
 /// A sample's part of a table, and its name.
 pub(super) struct Part {
@@ -49,18 +54,18 @@ pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableErro
         rows.push((joined(&samples), joined(&depths), row));
     }
     // `Cu | 5` below the table names no sample.
+    let mut places: HashMap<(&str, &str), usize> = HashMap::new();
     let mut keys: Vec<(&str, &str)> = Vec::new();
     for (sample, depth, _) in rows.iter().filter(|row| !is_blank(row.2.cell(value))) {
-        if !keys.contains(&(sample, depth)) {
+        places.entry((sample, depth)).or_insert_with(|| {
             keys.push((sample, depth));
-        }
+            keys.len() - 1
+        });
     }
     if samples.is_empty() || keys.len() < 2 {
         return Ok(Vec::new());
     }
-    let is_of = |row: &(String, String, &GridRow), key: &(&str, &str)| row.0 == key.0 && row.1 == key.1;
-    let is_alone = |key: &&(&str, &str)| rows.iter().filter(|row| is_of(row, key)).count() == 1;
-    if keys.iter().all(|key| is_alone(&key)) && samples.iter().any(|&c| !heads(c).any(may_be_of_fractions)) {
+    if keys.len() == rows.len() && samples.iter().any(|&c| !heads(c).any(may_be_of_fractions)) {
         let allowed = "a row for each opening of a sample, or openings in the headings above a row for each \
                        sample";
         return Err(grid.refused(rows[0].2.line, samples[0], "row", keys[0].0, allowed));
@@ -68,28 +73,35 @@ pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableErro
     if goes_one_way(rows.iter().map(|row| row.2.cell(layout.size))) {
         return Ok(Vec::new());
     }
-    let without = |row: &GridRow| {
+    if keys.len().saturating_mul(width) > MOST_PLACES {
+        let is = format!("a table of {} samples in {width} columns", keys.len());
+        return Err(TableError::Format { file: grid.place(), is });
+    }
+    let mut times: HashMap<&str, usize> = HashMap::new();
+    keys.iter().for_each(|key| *times.entry(key.0).or_default() += 1);
+    let part = |key: &(&str, &str)| {
+        let name = if times[key.0] > 1 { format!("{} {}", key.0, key.1) } else { key.0.to_owned() };
+        Part { name: name.trim().to_owned(), grid: grid.band(layout.at..layout.first) }
+    };
+    let mut parts: Vec<Part> = keys.iter().map(part).collect();
+    let mut named = rows.iter().peekable();
+    let mut last = 0;
+    for row in &grid.rows[layout.first..] {
         let mut row = row.clone();
-        for &c in samples.iter().chain(&depths) {
-            if let Some(cell) = row.cells.get_mut(c) {
-                cell.clear();
+        if let Some((sample, depth, _)) = named.next_if(|named| named.2.line == row.line)
+            && let Some(&place) = places.get(&(sample.as_str(), depth.as_str()))
+        {
+            last = place;
+            for &c in samples.iter().chain(&depths) {
+                if let Some(cell) = row.cells.get_mut(c) {
+                    cell.clear();
+                }
             }
         }
-        row
-    };
-    let is_of_any =
-        |row: &&GridRow| rows.iter().any(|of| of.2.line == row.line && keys.iter().any(|key| is_of(of, key)));
-    let rest: Vec<&GridRow> = grid.rows[layout.first..].iter().filter(|row| !is_of_any(row)).collect();
-    let part = |key: &(&str, &str)| {
-        let several = keys.iter().filter(|other| other.0 == key.0).count() > 1;
-        let name = if several { format!("{} {}", key.0, key.1) } else { key.0.to_owned() };
-        let mut part = grid.band(0..layout.first);
-        part.rows.extend(rows.iter().filter(|row| is_of(row, key)).map(|row| without(row.2)));
-        let last = part.rows.last().map_or(0, |row| row.line);
-        part.rows.extend(rest.iter().filter(|row| row.line > last).map(|row| (*row).clone()));
-        Part { name: name.trim().to_owned(), grid: part }
-    };
-    Ok(keys.iter().map(part).collect())
+        // What stands between the rows of samples goes with those above it.
+        parts[last].grid.rows.push(row);
+    }
+    Ok(parts)
 }
 
 /// Whether a heading of names may be that of the fractions of one soil.

@@ -106,23 +106,25 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
         let pairs = || (1..sizes.len()).map(|at| mm(at - 1) - mm(at));
         pairs().all(|step| step > 0.0) || pairs().all(|step| step < 0.0)
     };
-    if goes_one_way(0..0) {
-        return Ok(());
-    }
-    for at in 1..sizes.len() {
-        for fine in [at..sizes.len(), 0..at] {
-            if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(fine.clone()) {
-                continue;
-            }
-            let beside = if fine.start > 0 { &sizes[fine.start - 1] } else { &sizes[fine.end] };
-            let (value, entry) = if fine.start > 0 { sizes[fine.start] } else { sizes[fine.end - 1] };
-            let (text, other) = (&entry.text, &beside.1.text);
-            let allowed = format!(
-                "{text} um ({} mm) beside {other}, if these are micrometres: write the unit in each cell",
-                value / 1e3
-            );
-            return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+    let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
+    // One step against the others is where the unit changes.
+    let alone = |falls: bool| {
+        let mut places = (0..steps.len()).filter(|&at| steps[at] == falls);
+        places.next().filter(|_| places.next().is_none() && steps.len() > 1)
+    };
+    let places = [alone(true), alone(false)].into_iter().flatten();
+    for fine in places.flat_map(|at| [at + 1..sizes.len(), 0..at + 1]) {
+        if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(fine.clone()) {
+            continue;
         }
+        let beside = if fine.start > 0 { &sizes[fine.start - 1] } else { &sizes[fine.end] };
+        let (value, entry) = if fine.start > 0 { sizes[fine.start] } else { sizes[fine.end - 1] };
+        let (text, other) = (&entry.text, &beside.1.text);
+        let allowed = format!(
+            "{text} um ({} mm) beside {other}, if these are micrometres: write the unit in each cell",
+            value / 1e3
+        );
+        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
     }
     Ok(())
 }
