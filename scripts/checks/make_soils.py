@@ -430,6 +430,92 @@ def resized(book, name, size):
     return bytes(data)
 
 
+def results():
+    """Tables of results, words of other languages, classes, and what laboratories write beside numbers."""
+    a, b = [(19, 100), (4.75, 91), (0.425, 54), (0.075, 23)], [(19, 100), (4.75, 84), (0.425, 37), (0.075, 11.5)]
+    both = {"Shell-3": a, "Shell-4": b}
+
+    def rows(first, *names):
+        return first + "\n" + "".join(f"{name},{','.join(f'{p:g}' for _, p in soil)}\n" for name, soil in zip(names or both, (a, b)))
+
+    # A sample a row: headings that name openings.
+    put("results_p.csv", rows("Sample,P3/4,P#4,P#40,P#200"), both, ["a row for each soil", "ASTM E11"])
+    put("results_passing.csv", rows("Sample,Passing 19 mm,Passing 4.75 mm,Passing 0.425 mm,Passing 0.075 mm"), both)
+    put("results_percent.csv", rows("Hole,% pass 3/4 in,% pass #4,% pass #40,% pass #200"), both)
+    put("results_below.csv", rows("Sample,%<19mm,%<4.75mm,%<0.425mm,%<0.075mm"), both)
+    put("results_cum.csv", rows("Sample,Cum 19,Cum 4.75,Cum 0.425,Cum 0.075"), both, ["without a unit taken as mm"])
+    put("results_finer.csv", rows("Sample,% finer 3/4 in,% finer No. 4,% finer No. 40,% finer No. 200"), both)
+    put("results_behind.csv", rows("Sample,19 mm (%),4.75 mm (%),0.425 mm (%),0.075 mm (%)"), both)
+    put("results_fractions.csv", "Filter,P3/4,P#4,P#40,P#200\nA,1.00,0.91,0.54,0.23\nB,1.00,0.84,0.37,0.115\n", {"A": a, "B": b}, ["read as fractions"])
+    put("results_properties.csv", "Hole,Depth (m),LL,PI,3/4 in,No. 4,No. 40,No. 200,USCS\nTP7,1.2,38,17,100,91,54,23,SC\n"
+        "TP7,2.6,NP,NP,100,84,37,11.5,SM\nTP9,1.2,29,9,100,84,37,11.5,SM\n", {"TP7 1.2": a, "TP7 2.6": b, "TP9": b}, ["not used: column 3 (\"LL\"), column 4 (\"PI\")"])
+    put("results_retained.csv", "Sample,Cum. % ret 19 mm,Cum. % ret 4.75 mm,Cum. % ret 0.425 mm,Cum. % ret 0.075 mm\nShell-3,0,9,46,77\n", a, ["percents retained"])
+    put("results_numbers.csv", rows("Sample,P 4,P 10,P 40,P 200"), refused=["line 1, opening_mm: \"4\"", "US sieve numbers"])
+    put("results_unread.csv", rows("Sample,F19,F4.75,F0.425,F0.075"), refused=["line 1, heading: \"F19\"", "above the percents of \"Shell-3\""])
+    put("results_words.csv", rows("Sample,Gravel,Coarse sand,Fine sand,Fines"), refused=["line 1, heading: \"Gravel\""])
+    put("results_slip.csv", rows("Sample,P3/4,P#4,P#4O,P#200"), refused=["line 1, heading: \"P#4O\""])
+    put("results_bare.csv", rows("").lstrip("\n"), refused=["line 1, heading: \"Shell-3\"", "a row of openings above them"])
+    put("results_of_samples.csv", rows("", "Sample 3", "Sample 4").lstrip("\n"), refused=["line 1, heading: \"Sample 3\""])
+    put("results_mm.csv", rows("Zone,19,4.75,0.425,0.075"), both, ["a row for each soil"])
+    # Lines that begin with #.
+    gravel = [(50, 100), (37.5, 93), (19, 71), (4.75, 33), (0.075, 4)]
+    put("hash_inches.csv", 'Sieve,% Pass\n2",100\n1.5",93\n0.75",71\n#4,33\n#200,4\n', gravel)
+    put("hash_quoted.csv", 'Sieve;% Pass\n"2""";100\n"1.5""";93\n"0.75""";71\n#4;33\n#200;4\n', gravel)
+    put("hash_mm.csv", "# laboratory 4\nSieve (mm),Retained (g)\n9.5,0\n#4,60\n0.425,220\n#200,80\nPan,40\n", [(9.5, 100), (4.75, 85), (0.425, 30), (0.075, 10)])
+    put("hash_comment.csv", "Sieve (mm),% Pass\n9.5,100\n#6.3,95\n4.75,85\n0.075,10\n", [(9.5, 100), (4.75, 85), (0.075, 10)], ["line 3 with # and a number that is no US sieve taken as comments"])
+    put("any_order.csv", 'Sieve,% Pass\nNo. 4,33\nNo. 200,4\n2 in,100\n', [(50, 100), (4.75, 33), (0.075, 4)], ["sorted"])
+    # Words of other languages.
+    part = [(16, 100), (4, 72), (1, 31), (0.063, 6)]
+    retained = ["0", "28", "41", "25", "6"]
+    for name, heading, pan in [("spanish", "Malla (mm);Peso retenido (g)", "Receptáculo"), ("turkish", "Elek (mm);Elekte kalan (%)", "Tava"),
+                               ("polish", "Sito [mm];Pozostałość [%]", "Denko"), ("czech", "Síto (mm);Zbytek (%)", "Dno"),
+                               ("russian", "Сито, мм;Частный остаток, %", "Поддон"), ("greek", "Κόσκινο (mm);Συγκρατούμενο (%)", "Τυφλό"),
+                               ("dutch", "Zeef (mm);Zeefrest (%)", "Bodem"), ("swedish", "Sikt (mm);Stannar (%)", "Botten"),
+                               ("norwegian", "Sikt (mm);Gjenliggende (%)", "Bunn"), ("japanese", "ふるい目 (mm);残留率 (%)", "受け皿"),
+                               ("korean", "체눈 (mm);잔류율 (%)", "받침"), ("chinese", "筛孔 (mm);分计筛余 (%)", "底盘")]:
+        sieves = ["16", "4", "1", "0,063", pan]
+        put(f"pan_{name}.csv", heading + "\n" + "".join(f"{s};{r}\n" for s, r in zip(sieves, retained)), part, ["retained"])
+    put("passing_turkish.csv", "Elek açıklığı (mm);Kalan (%);Geçen (%)\n16;0;100\n4;28;72\n1;69;31\n0,063;94;6\n", part)
+    put("passing_polish.csv", "Wymiar oczka [mm];Odsiew [%];Przesiew [%]\n16;0;100\n4;28;72\n1;41;31\n0,063;25;6\n", part)
+    put("abbreviated.csv", "Tamis (mm),Ref. part. (g),Ref. part. (%),Ref. cum. (%),Pas. cum. %\n16,0,0,0,100\n4,56,28,28,72\n1,82,41,69,31\n0.063,50,25,94,6\n", part)
+    # Numbers as laboratories write them.
+    put("top_99_95.csv", table([(16, 99.95)] + part[1:]), part, ["99.95 % at the coarsest size read as 100 %"])
+    put("top_99_8.csv", table([(16, 99.8)] + part[1:]), refused=["line 2, percent_finer: \"99.8\""])
+    put("bound.csv", "Size (mm),% passing\n16,100\n4,72\n1,31\n0.063,<1\n", part[:3] + [(0.063, 1)], ["<1 in line 5 read as 1 %"])
+    put("bound_5.csv", "Size (mm),% passing\n16,100\n4,72\n0.063,<5\n", refused=["line 4, percent_finer: \"<5\"", "anything from 0 to 5"])
+    put("footnotes.csv", "Size (mm),% passing\n16,100\n4,72 (1)\n1*,31\n0.063*,6 (a)\n(1) repeated\n* washed\n", part, ["marks of footnotes"])
+    put("us_bare_names.csv", "Sieve,% passing\n3/4 in,100\nUS 4,91\nUS Standard Sieve 40,54\nSieve 200 (US),23\n", a, ["ASTM E11"])
+    put("thousands_masses.csv", 'Sieve (mm),Mass retained (g)\n16,0\n4,"1,400.0"\n1,"2,050.0"\n0.063,"1,250.0"\nPan (dry),300.0\n', part, ["masses retained"])
+    put("phi_masses.csv", "Phi,Weight retained (g),Cumulative wt %\n-4,0,0\n-2,14,28\n0,20.5,69\n2,12.5,94\nPan,3,100\n", [(16, 100), (4, 72), (1, 31), (0.25, 6)], ["rise towards the finer"])
+    put("micrometres_mixed.csv", "Sieve,% passing\n20,100\n6.3,72\n600,31\n75,6\n", refused=["line 4, opening_mm: \"600\"", "600 um (0.6 mm) beside 6.3"])
+    put("micrometres_rising.csv", "Sieve,% passing\n75,6\n600,31\n6.3,72\n20,100\n", refused=["line 3, opening_mm: \"600\"", "micrometres"])
+    # Classes, weighings, samples named in each row.
+    put("classes.csv", "Fraction (mm),% of mass\n>16,0\n16-4,28\n4-1,41\n1-0.063,25\n<0.063,6\n", part, ["percents of classes"])
+    put("classes_mass.csv", "Size,Mass retained (g)\n16 - 4 mm,56\n4 - 1 mm,82\n1 - 0.063 mm,50\n< 0.063 mm,12\n", part, ["masses retained"])
+    put("classes_us.csv", "Size,% retained\n-3/4 in +No. 4,9\n-No. 4 +No. 40,37\n-No. 40 +No. 200,31\n-No. 200,23\n", a)
+    put("classes_gap.csv", "Fraction (mm),% retained\n16-4,28\n1-0.063,66\n<0.063,6\n", refused=["line 3, opening_mm: \"1-0.063\"", "one bound in common"])
+    put("classes_passing.csv", "Fraction (mm),% passing\n16-4,100\n4-1,72\n", refused=["line 2, heading: \"% passing\""])
+    put("classes_no_unit.csv", "Size,% retained\n16-4,28\n4-1,66\n<1,6\n", refused=["line 2, opening_mm: \"16-4\"", "unit"])
+    put("weighings.csv", "Sieve (mm),Mass of sieve (g),Mass of sieve + soil (g)\n4,410,410\n1,395,436\nPan,370,379\n", refused=["line 1, header", "subtract"])
+    put("weighings_retained.csv", "Sieve (mm),Mass of sieve + retained soil (g)\n4,41\n1,43\nPan,37\n", refused=["line 1, header", "subtract"])
+    put("weighings_net.csv", "Sieve (mm),Tare (g),Gross (g),Net (g)\n16,400,400,0\n4,410,466,56\n1,395,477,82\n0.063,380,430,50\nPan,370,382,12\n", part, ["not used: column 2"])
+    put("tidy.csv", "Borehole,Depth (m),Size (mm),% passing\n" + "".join(f"B1,{depth},{s:g},{p:g}\n" for depth, soil in ((1.5, a), (3, b)) for s, p in soil)
+        + "".join(f"B2,3,{s:g},{p:g}\n" for s, p in part), {"B1 1.5": a, "B1 3": b, "B2": part})
+    put("tidy_alone.csv", "Sample,Size (mm),% passing\nA,16,100\nB,4,72\nC,1,31\n", refused=["line 2, row: \"A\"", "a row for each opening"])
+    # Workbooks: a cover, names merged over two rows, AGS4.
+    upright = [["Opening (mm)", "% passing"]] + [list(point) for point in part]
+    xlsx("cover_numbers.xlsx", {"Cover": [["Samples", 2], ["Revision", 1]], "Core": upright}, soils={"Core": part}, notes=["no table was found in sheet \"Cover\""])
+    xlsx("covers_only.xlsx", {"Cover": [["Samples", 2], ["Revision", 1]]}, refused=["Cover"])
+    merged = [["Sieve (mm)", "BH-5", None, "BH-6"], [None, "% retained", "% passing", "% retained", "% passing"]]
+    merged += [[s, 100 - p, p, 100 - q, q] for (s, p), (_, q) in zip(a, b)]
+    xlsx("merged_names.xlsx", {"PSD": merged}, lambda book: [book.active.merge_cells(cells) for cells in ("A1:A2", "B1:C1", "D1:E1")],
+         soils={"PSD/BH-5": a, "PSD/BH-6": b})
+    grat = [["HEADING", "LOCA_ID", "SAMP_TOP", "GRAT_SIZE", "GRAT_PERP"], ["UNIT", None, "m", "mm", "%"], ["TYPE", "ID", "2DP", "3SF", "0DP"]]
+    grat += [["DATA", hole, "1.50", s, p] for hole, soil in (("BH5", a), ("BH6", b)) for s, p in soil]
+    xlsx("gradings.xlsx", {"PROJ": [["HEADING", "PROJ_ID"], ["UNIT"], ["TYPE", "ID"], ["DATA", "P1"]], "GRAT": grat}, soils={"BH5 1.50": a, "BH6 1.50": b}, notes=["\"PROJ\""])
+    put("gradings_plain.csv", "GROUP,GRAT\n" + "".join(",".join(str(c or "") for c in row) + "\n" for row in grat), {"BH5 1.50": a, "BH6 1.50": b})
+
+
 def main():
     HERE.mkdir(exist_ok=True)
     for old in HERE.iterdir():
@@ -438,6 +524,7 @@ def main():
     ags()
     workbooks()
     several_tables()
+    results()
     print(len(list(HERE.iterdir())) // 2, "files", file=sys.stderr)
 
 

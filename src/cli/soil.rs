@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::args::SoilArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::case::CaseError;
-use crate::gradation::{SoilSummary, samples_in, soils_in_file};
+use crate::gradation::{SoilSummary, named_soils_in, soils_in_file};
 #[cfg(feature = "xlsx")]
 use crate::report::soil_template;
 use crate::report::soils_figure;
@@ -32,8 +32,8 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     }
     let Some(file) = &args.file else { return Err(RunError::refused("name a file of soils")) };
     if args.names {
-        let samples = samples_in(file).map_err(RunError::refused)?;
-        to_stdout(&samples.iter().map(|sample| format!("{}\n", shown(&sample.path))).collect::<String>());
+        let soils = named_soils_in(file).map_err(RunError::refused)?;
+        to_stdout(&soils.iter().map(|soil| format!("{}\n", shown(&soil.path))).collect::<String>());
         return Ok(());
     }
     let soils = soils_in_file(file, args.d0_mm).map_err(CaseError::from)?;

@@ -3,57 +3,177 @@
 use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, unit};
+use super::heads::{Head, head, is_broken, is_of_names};
+use super::labels::Labels;
 use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
 use super::size::{Opening, Unit, opening};
 use super::torn;
 use crate::gradation::error::{TableError, shortened};
 
-/// Fewer openings in a row may be anything.
+/// Fewer bare numbers in a row may be anything, and fewer named openings are no curve.
 const LEAST_OPENINGS: usize = 3;
+const LEAST_NAMED: usize = 2;
 /// Most columns that a note names.
 const MOST_NAMED: usize = 6;
+
+/// The openings of a table that lies on its side.
+struct Openings {
+    columns: Vec<usize>,
+    /// As they are written, without the words around them.
+    texts: Vec<String>,
+    /// What is retained, where their words say so.
+    retained: Option<Role>,
+    /// All of them are numbers without a unit or a word.
+    bare: bool,
+}
 
 /// The table of a grid that lies on its side, upright, and where it is read; nothing where there is none.
 pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     let upper = &grid.rows[..grid.rows.len().min(ROWS_OF_TITLES)];
-    if upper.iter().any(|row| is_heading(row) && says_soil(row)) {
+    if upper.iter().any(|row| is_heading(row) && says_soil(row) && openings(row).is_none_or(|o| o.bare)) {
         return Ok(None);
     }
     let found = upper.iter().enumerate().find_map(|(at, row)| {
         let openings = openings(row)?;
-        let soils = soils(row, &grid.rows[at + 1..], &openings)?;
+        let soils = soils(row, &grid.rows[at + 1..], &openings.columns)?;
         Some((at, openings, soils))
     });
     let Some((at, openings, soils)) = found else { return Ok(None) };
-    refuse_second(grid, at, &soils, &openings)?;
-    refuse_lost(grid, at, &soils, &openings)?;
+    if openings.bare && !are_openings(grid, at, &openings.columns) {
+        return match upper.iter().any(is_heading) {
+            true => Ok(None),
+            false => Err(refused_percents(grid, at, &openings.columns)),
+        };
+    }
+    refuse_second(grid, at, &soils, &openings.columns)?;
+    refuse_other_openings(grid, at, &openings.columns)?;
+    refuse_lost(grid, at, &soils, &openings.columns)?;
     Ok(Some(upright(grid, at, &openings, &soils)))
 }
 
-/// The columns of a row that holds openings behind words, rising or falling, and the pan behind them.
-fn openings(row: &GridRow) -> Option<Vec<usize>> {
-    let size = |c: usize| match opening(row.cell(c))?.0 {
-        Opening::Mm(size) | Opening::Bare(size) if size > 0.0 && size.is_finite() => Some(size),
-        _ => None,
-    };
-    let first = row.filled().find(|&c| size(c).is_some())?;
-    let mut columns: Vec<usize> = (first..row.cells.len()).take_while(|&c| size(c).is_some()).collect();
-    let sizes: Vec<f64> = columns.iter().filter_map(|&c| size(c)).collect();
-    let one_way = sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1]);
-    if first == 0 || columns.len() < LEAST_OPENINGS || !one_way {
+/// The openings of a row behind words, rising or falling, and the pan behind them.
+fn openings(row: &GridRow) -> Option<Openings> {
+    let is_head = |c: usize| head(row.cell(c)).is_some();
+    let first = row.filled().find(|&c| is_head(c)).filter(|&first| first > 0)?;
+    let mut starts = row.filled().filter(|&c| c >= first && is_head(c) && !is_head(c - 1));
+    starts.find_map(|start| openings_from(row, start).filter(|openings| start == first || !openings.bare))
+}
+
+/// Those that begin in this column.
+fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
+    let mut heads: Vec<Head> = Vec::new();
+    for c in first..row.cells.len() {
+        let is_rest = matches!(opening(row.cell(c)), Some((Opening::Below(_), _)));
+        let Some(head) = head(row.cell(c)) else { break };
+        // Behind openings without words `< 0.075` is the pan.
+        if is_rest && heads.last().is_some_and(|last| last.role.is_none()) {
+            break;
+        }
+        heads.push(head);
+    }
+    let read: Vec<(f64, bool)> = heads
+        .iter()
+        .filter_map(|head| match opening(&head.text)? {
+            (Opening::Mm(size), _) => Some((size, false)),
+            (Opening::Bare(size), _) => Some((size, head.role.is_none())),
+            _ => None,
+        })
+        .collect();
+    let bare = read.iter().all(|(_, bare)| *bare);
+    let one_way = read.windows(2).all(|w| w[0].0 > w[1].0) || read.windows(2).all(|w| w[0].0 < w[1].0);
+    let least = if bare { LEAST_OPENINGS } else { LEAST_NAMED };
+    if heads.len() < least || !one_way && !mixes_units(&heads) {
         return None;
     }
+    let retained = heads.iter().find_map(|head| head.role.filter(|role| *role != Role::Finer));
+    let mut texts: Vec<String> = heads.into_iter().map(|head| head.text).collect();
     let is_rest = |c: &usize| matches!(opening(row.cell(*c)), Some((Opening::Pan | Opening::Below(_), _)));
-    let end = first + columns.len();
-    columns.extend((end..row.cells.len()).take_while(is_rest));
-    Some(columns)
+    let end = first + texts.len();
+    let rest: Vec<usize> = (end..row.cells.len()).take_while(is_rest).collect();
+    texts.extend(rest.iter().map(|&c| row.cell(c).to_owned()));
+    Some(Openings { columns: (first..end).chain(rest).collect(), texts, retained, bare })
+}
+
+/// Whether bare numbers stand beside openings with a unit, so that their order says nothing yet.
+fn mixes_units(heads: &[Head]) -> bool {
+    let is_bare = |head: &Head| matches!(opening(&head.text), Some((Opening::Bare(_), _)));
+    heads.iter().any(|head| head.role.is_some()) && heads.iter().any(is_bare)
+}
+
+/// Whether a row of bare numbers holds openings, by the words at its left or its numbers, and is no row of
+/// percents beside the name of a soil.
+fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
+    let row = &grid.rows[at];
+    let labels: Vec<&str> = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !is_blank(cell)).collect();
+    if labels.iter().any(|label| role(label) == Role::Size || is_of_names(label)) {
+        return true;
+    }
+    if let Some(above) = text_above(grid, at, columns) {
+        let says_size = |row: &GridRow| row.cells.iter().any(|cell| role(cell) == Role::Size);
+        return labels.is_empty() && says_size(above);
+    }
+    let sizes = || columns.iter().filter_map(|&c| percentage(row.cell(c)));
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    labels.is_empty() || most > 100.0 || most > 1.0 && least < LEAST_PERCENT
+}
+
+/// No percent in a row of percents is less, but openings are (mm).
+const LEAST_PERCENT: f64 = 0.1;
+
+/// The row of words above numbers, as over percents of which the headings are not understood.
+fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a GridRow> {
+    let is_words = |row: &&GridRow| {
+        let words = columns.iter().filter(|&&c| !row.cell(c).is_empty() && !is_value(row.cell(c))).count();
+        2 * words >= columns.len()
+    };
+    grid.rows[..at].iter().rev().find(is_words)
+}
+
+/// A row of percents beside the name of a soil, of which nothing says the openings.
+fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
+    let row = &grid.rows[at];
+    let name = (0..columns[0]).map(|c| row.cell(c)).find(|cell| !is_blank(cell)).unwrap_or_default();
+    if let Some(above) = text_above(grid, at, columns) {
+        let is_unread = |c: &usize| !above.cell(*c).is_empty() && head(above.cell(*c)).is_none();
+        let column = columns.iter().copied().find(is_unread).unwrap_or(columns[0]);
+        let allowed = format!(
+            "an opening above the percents of \"{}\", such as P#200, Passing 19 mm or 0.075 mm",
+            shortened(name)
+        );
+        return grid.refused(above.line, column, "heading", above.cell(column), allowed);
+    }
+    let allowed = "Sample or Sieve (mm) beside these numbers if they are openings, or a row of openings above \
+                   them if they are percents";
+    grid.refused(row.line, 0, "heading", name, allowed)
+}
+
+/// Whether a column is one of these, which stand side by side.
+fn is_between(columns: &[usize], c: usize) -> bool {
+    columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
+}
+
+/// Headings beside the openings that name more of them, or seem to.
+fn refuse_other_openings(grid: &Grid, at: usize, columns: &[usize]) -> Result<(), TableError> {
+    let row = &grid.rows[at];
+    let is_other = |c: &usize| {
+        let cell = row.cell(*c);
+        !is_between(columns, *c) && (is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some()))
+    };
+    match row.filled().find(is_other) {
+        Some(c) => {
+            let allowed = "an opening, such as P#200, Passing 19 mm or 0.075 mm, beside the other openings";
+            Err(grid.refused(row.line, c, "heading", row.cell(c), allowed))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The rows below that hold a soil each: words, then percents.
 fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
     // A number is a name only below a heading of names: below one of openings it is an opening.
     let of_names = |c: usize| !heading.cell(c).is_empty() && role(heading.cell(c)) == Role::Other;
-    let is_name = |c: usize, cell: &str| match is_value(cell) || opening(cell).is_some() {
+    let is_sieve = |cell: &str| opening(cell).is_some_and(|(o, _)| !matches!(o, Opening::Class(..)));
+    let is_name = |c: usize, cell: &str| match is_value(cell) || is_sieve(cell) {
         true => of_names(c),
         false => !is_blank(cell),
     };
@@ -127,24 +247,25 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
     }
 }
 
-fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid, Layout) {
+fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Grid, Layout) {
+    let Openings { columns, texts, retained, .. } = openings;
     let heading = &grid.rows[at];
     let rows_of_soils: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
-    let turned = |&c: &usize| GridRow {
+    let turned = |(&c, text): (&usize, &String)| GridRow {
         line: c + 1,
-        cells: std::iter::once(heading)
-            .chain(rows_of_soils.iter().copied())
-            .map(|row| row.cell(c).to_owned())
+        cells: std::iter::once(text.clone())
+            .chain(rows_of_soils.iter().map(|row| row.cell(c).to_owned()))
             .collect(),
         text: None,
         open: false,
     };
+    let beside = (0..heading.cells.len()).filter(|&c| !is_between(columns, c)).map(|c| heading.cell(c));
     let words_above: Vec<&str> = grid.rows[..at]
         .iter()
         .rev()
-        .chain([heading])
         .flat_map(|row| row.cells.iter())
         .map(String::as_str)
+        .chain(beside)
         .filter(|cell| cell.contains(char::is_alphabetic) && opening(cell).is_none())
         .collect();
     let said_unit = |text: &&str| match (role(text), unit(text)) {
@@ -154,15 +275,20 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
     };
     let said_retained =
         words_above.iter().map(|text| role(text)).find(|role| matches!(role, Role::Retained(_)));
+    let labels = Labels::new(&grid.rows[..=at], &rows_of_soils, columns[0]);
     let soil = |(index, row): (usize, &&GridRow)| {
-        let labels = || (0..openings[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
-        let own = labels().map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
-        let role = own.or(said_retained).unwrap_or(if own.is_some() { Role::Finer } else { Role::Other });
-        SoilColumn { column: index + 1, heading: labels().collect::<Vec<_>>().join(" "), role, end: None }
+        let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
+        let own = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
+        let role = own.or(*retained).or(said_retained).unwrap_or(Role::Other);
+        SoilColumn { column: index + 1, heading: labels.names[index].clone(), role, end: None }
     };
     let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());
-    let last = openings[openings.len() - 1];
-    let mut unused: Vec<String> = (last + 1..heading.cells.len().max(last + 1))
+    let last = columns[columns.len() - 1];
+    let mut unused: Vec<String> = labels
+        .unused
+        .iter()
+        .copied()
+        .chain(last + 1..heading.cells.len().max(last + 1))
         .filter(|&c| named(c))
         .map(|c| format!("{} (\"{}\")", grid.column_said(c), shortened(heading.cell(c))))
         .collect();
@@ -199,7 +325,7 @@ fn upright(grid: &Grid, at: usize, openings: &[usize], soils: &[usize]) -> (Grid
         file: grid.file.clone(),
         sheet: grid.sheet.clone(),
         delimiter: grid.delimiter,
-        rows: openings.iter().map(turned).collect(),
+        rows: columns.iter().zip(texts).map(turned).collect(),
         notes: grid.notes.clone(),
         left: 0,
         across: Some(lines),

@@ -14,25 +14,59 @@ use crate::gradation::table::number;
 /// What tells one specimen from another.
 const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
 
-/// Whether a text is AGS4.
+/// Whether a text is AGS4, as it is written or as a spreadsheet saves it.
 pub(super) fn is_ags(text: &str) -> bool {
-    text.trim_start().to_uppercase().starts_with("\"GROUP\",")
+    let start = text.trim_start().to_uppercase();
+    start.starts_with("\"GROUP\",") || start.starts_with("GROUP,")
+}
+
+/// Whether a sheet of a workbook holds groups of AGS4.
+pub(super) fn is_ags_sheet(grid: &Grid) -> bool {
+    let any = |kind: &str| grid.rows.iter().any(|row| row.cell(0) == kind);
+    any("HEADING") && any("DATA")
 }
 
 /// The soils of the group GRAT: a name, its rows, and where they stand in these.
 pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)>, TableError> {
+    let rows = text.lines().enumerate().map(|(index, content)| {
+        let (cells, open) = all_cells(content, ',');
+        (index + 1, cells, open)
+    });
+    soils_of_rows(file, None, rows)
+}
+
+/// The soils of a sheet, which is called as its group or names it in a row.
+pub(super) fn soils_of_sheet(grid: &Grid) -> Result<Vec<(String, Grid, Layout)>, TableError> {
+    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let named = |name: &str| vec!["GROUP".to_owned(), name.trim().to_uppercase()];
+    let group = grid.sheet.iter().map(|name| (0, named(name), false));
+    let rows = grid.rows.iter().map(|row| {
+        let cells = (0..width).map(|c| row.cell(c).to_owned());
+        (row.line, cells.collect(), false)
+    });
+    soils_of_rows(&grid.file, grid.sheet.as_deref(), group.chain(rows))
+}
+
+fn soils_of_rows(
+    file: &str,
+    sheet: Option<&str>,
+    rows: impl Iterator<Item = (usize, Vec<String>, bool)>,
+) -> Result<Vec<(String, Grid, Layout)>, TableError> {
+    let empty = || {
+        let (file, sheet) = (file.to_owned(), sheet.map(str::to_owned));
+        Grid { file, sheet, delimiter: ',', ..Grid::default() }
+    };
     let refused = |line: usize, value: &str, allowed: &str| TableError::Header {
-        file: file.into(),
+        file: empty().place(),
         line,
         value: value.into(),
         allowed: allowed.into(),
     };
     let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), None);
-    let mut soils: Vec<(String, Grid, BTreeSet<String>)> = Vec::new();
+    let mut soils: Vec<(String, Grid, BTreeSet<String>, [usize; 2])> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
-    for (index, content) in text.lines().enumerate() {
-        let ((cells, open), line) = (all_cells(content, ','), index + 1);
+    for (line, cells, open) in rows {
         let Some(kind) = cells.first().filter(|_| cells.iter().any(|cell| !cell.is_empty())) else {
             continue;
         };
@@ -49,7 +83,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
         let place = |name: &str| headings.iter().position(|heading| heading == name);
         let cell = |name: &str| place(name).and_then(|at| cells.get(at)).map_or("", String::as_str);
         match kind.as_str() {
-            "HEADING" => headings = cells,
+            "HEADING" => headings.clone_from(&cells),
             "UNIT" => {
                 size_unit = match cell("GRAT_SIZE") {
                     "" => None,
@@ -65,7 +99,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             }
             "DATA" if cells.len() != headings.len() || open => {
                 let allowed = "a row of GRAT with a cell for each of its headings";
-                return Err(refused(line, &shortened(content.trim()), allowed));
+                return Err(refused(line, &shortened(&cells.join(",")), allowed));
             }
             "DATA" => {
                 for name in ["GRAT_SIZE", "GRAT_PERP"] {
@@ -76,18 +110,13 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
                 let keys: Vec<&str> =
                     KEYS.iter().map(|key| cell(key)).filter(|key| !key.is_empty()).collect();
                 let name = keys.join(" ");
-                let row = GridRow {
-                    line,
-                    cells: vec![cell("GRAT_SIZE").to_owned(), cell("GRAT_PERP").to_owned()],
-                    text: None,
-                    open: false,
-                };
-                let place = *places.entry(name.clone()).or_insert(soils.len());
-                if place == soils.len() {
-                    let grid = Grid { file: file.into(), delimiter: ',', ..Grid::default() };
-                    soils.push((name, grid, BTreeSet::new()));
+                let row = GridRow { line, cells: cells.clone(), text: None, open: false };
+                let at = *places.entry(name.clone()).or_insert(soils.len());
+                if at == soils.len() {
+                    let [size, percent] = ["GRAT_SIZE", "GRAT_PERP"].map(|name| place(name).unwrap_or(0));
+                    soils.push((name, empty(), BTreeSet::new(), [size, percent]));
                 }
-                let (_, grid, types) = &mut soils[place];
+                let (_, grid, types, _) = &mut soils[at];
                 grid.rows.push(row);
                 types.extend(Some(cell("GRAT_TYPE").to_owned()).filter(|kind| !kind.is_empty()));
             }
@@ -102,12 +131,13 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     }
     if soils.is_empty() {
         return Err(TableError::Format {
-            file: file.into(),
+            file: empty().place(),
             is: "AGS4 without a row in its group GRAT (gradings)".into(),
         });
     }
-    let soils = soils.into_iter().map(|(name, mut grid, types)| {
-        in_order(&mut grid);
+    let soils = soils.into_iter().map(|(name, mut grid, types, columns)| {
+        let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+        in_order(&mut grid, columns);
         if types.len() > 1 {
             let types = types.into_iter().take(8).collect::<Vec<_>>().join(", ");
             grid.notes.push(format!(
@@ -119,16 +149,17 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
             grid.notes
                 .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
         }
-        let soil = SoilColumn { column: 1, heading: name.clone(), role: Role::Finer, end: None };
+        let soil = SoilColumn { column: columns[1], heading: name.clone(), role: Role::Finer, end: None };
         let layout = Layout {
-            size: 0,
+            size: columns[0],
             other_size: None,
             unit: size_unit,
             soils: vec![soil],
             at: 0,
             first: 0,
             headed: true,
-            accounted: Vec::new(),
+            // Headings of AGS4 say what the other columns are.
+            accounted: (0..width).collect(),
             notes: Vec::new(),
         };
         (name, grid, layout)
@@ -137,12 +168,12 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
 }
 
 /// Sieves and hydrometer may come one after the other, in any order; a row that stands twice counts once.
-fn in_order(grid: &mut Grid) {
-    let size = |row: &GridRow| number(&row.cells[0]).unwrap_or(f64::INFINITY);
+fn in_order(grid: &mut Grid, columns: [usize; 2]) {
+    let size = |row: &GridRow| number(row.cell(columns[0])).unwrap_or(f64::INFINITY);
     grid.rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let mut twice = Vec::new();
     grid.rows.dedup_by(|next, kept| {
-        let same = next.cells == kept.cells;
+        let same = columns.iter().all(|&c| next.cell(c) == kept.cell(c));
         twice.extend(same.then(|| next.line.to_string()));
         same
     });

@@ -9,7 +9,7 @@ use super::heading::{Role, role};
 use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
 use super::size::{Opening, opening};
 use super::torn::whole_row;
-use super::{across, agreement};
+use super::{across, agreement, tidy};
 use crate::gradation::error::TableError;
 
 /// A sheet of soils has some tens of tables; their columns may be many more.
@@ -21,6 +21,8 @@ pub(super) struct Block {
     pub(super) layout: Layout,
     /// Its columns in the file.
     pub(super) columns: Range<usize>,
+    /// Name of its sample, where the rows give one.
+    pub(super) sample: Option<String>,
 }
 
 impl Block {
@@ -36,7 +38,7 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
         return Err(fields(&grid, row));
     }
     if let Some((grid, layout)) = across::find(&grid)? {
-        return Ok(vec![Block { grid, layout, columns: 0..0 }]);
+        return Ok(vec![Block { grid, layout, columns: 0..0, sample: None }]);
     }
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let place = grid.place();
@@ -56,6 +58,16 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
         }
     }
     Ok(blocks)
+}
+
+/// Whether a sheet seems to hold a table: headings of openings, or rows of numbers. A cover has few numbers,
+/// behind words.
+pub(super) fn has_table(grid: &Grid) -> bool {
+    const LEAST_ROWS: usize = 2;
+    const LEAST_VALUES: usize = 3;
+    let values = |row: &GridRow| row.filled().filter(|&c| is_value(row.cell(c))).count();
+    let is_row = |row: &&GridRow| is_data(row) && (!begins_with_words(row) || values(row) >= LEAST_VALUES);
+    grid.rows.iter().any(is_heading) || grid.rows.iter().filter(is_row).take(LEAST_ROWS).count() == LEAST_ROWS
 }
 
 /// Refuses more tables than any sheet has.
@@ -205,7 +217,16 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         }
         let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         let columns = grid.left..grid.left + width;
-        blocks.push(Block { grid, layout, columns });
+        let parts = tidy::parts(&grid, &layout)?;
+        if parts.is_empty() {
+            blocks.push(Block { grid, layout, columns, sample: None });
+            continue;
+        }
+        bounded(&grid.place(), parts.len())?;
+        for tidy::Part { name, grid } in parts {
+            let layout = find(&grid)?;
+            blocks.push(Block { grid, layout, columns: columns.clone(), sample: Some(name) });
+        }
     }
     Ok(blocks)
 }

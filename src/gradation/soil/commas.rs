@@ -23,7 +23,8 @@ pub(super) fn check(
         let at = extent.column_of_size(layout, row);
         for c in [at, column.column] {
             let cell = row.cell(c);
-            let is_number = percentage(cell).is_some();
+            // `1,254.6` has both: one of them parts thousands.
+            let is_number = percentage(cell).is_some() && !(cell.contains('.') && cell.contains(','));
             if is_number && cell.contains('.') {
                 point = point.or(Some(row.line));
             }

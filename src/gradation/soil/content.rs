@@ -4,9 +4,43 @@ use super::grid::GridRow;
 use super::size::{Opening, Said, opening};
 use crate::gradation::table::number;
 
-/// A percentage as laboratories write it: `97`, `97 %`, `97,0%`.
+/// A percentage as laboratories write it: `97`, `97 %`, `97,0%`, `22.7 (1)`; or a mass, such as `1,254.6`.
 pub(super) fn percentage(cell: &str) -> Option<f64> {
-    number(cell.strip_suffix('%').unwrap_or(cell).trim())
+    let read = |cell: &str| {
+        let plain = cell.strip_suffix('%').unwrap_or(cell).trim();
+        number(plain).or_else(|| with_thousands(plain))
+    };
+    read(cell).or_else(|| read(unmarked(cell)))
+}
+
+/// A number in which one sign parts thousands and the other decimals: `1,254.6`, `1.254,6`.
+fn with_thousands(text: &str) -> Option<f64> {
+    let at = text.rfind(['.', ','])?;
+    let (whole, decimals) = (&text[..at], &text[at + 1..]);
+    let sign = if text[at..].starts_with('.') { ',' } else { '.' };
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let mut groups = whole.split(sign);
+    let first =
+        groups.next().filter(|first| is_digits(first) && first.len() <= 3 && !first.starts_with('0'))?;
+    let rest: Vec<&str> = groups.collect();
+    let is_grouped = !rest.is_empty() && rest.iter().all(|group| is_digits(group) && group.len() == 3);
+    (is_grouped && is_digits(decimals))
+        .then(|| format!("{first}{}.{decimals}", rest.concat()).parse().ok())?
+}
+
+/// A cell without the mark of a footnote behind it: `0.075*`, `22.7 (1)`, `11.3 (a)`.
+pub(super) fn unmarked(cell: &str) -> &str {
+    let bare = cell.trim_end_matches(['*', '†', '‡']).trim_end();
+    let is_mark = |mark: &str| mark.len() == 1 && mark.bytes().all(|b| b.is_ascii_alphanumeric());
+    match bare.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
+        Some((rest, mark)) if is_mark(mark) && !rest.trim().is_empty() => rest.trim_end(),
+        _ => bare,
+    }
+}
+
+/// The most that a percent may be of which a bound is given: `<1`, `< 0.5 %`.
+pub(super) fn bound(cell: &str) -> Option<f64> {
+    percentage(cell.strip_prefix(['<', '≤'])?.trim())
 }
 
 /// The least and the most that a specification allows: `95-100`, `95 to 100 %`.
@@ -70,7 +104,9 @@ pub(super) fn is_short_opening(cell: &str) -> bool {
 
 /// An opening in one cell and a value in another, and no words before them.
 pub(super) fn is_data(row: &GridRow) -> bool {
-    let is_size = |cell: &str| matches!(opening(cell), Some((Opening::Mm(_) | Opening::Bare(_), _)));
+    let is_size = |cell: &str| {
+        matches!(opening(cell), Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Class(..), _)))
+    };
     let mut sizes = row.filled().filter(|&c| is_size(row.cell(c)));
     let (Some(first), more) = (sizes.next(), sizes.next().is_some()) else { return false };
     row.filled().any(|c| (more || c != first) && is_value(row.cell(c)))
@@ -85,7 +121,8 @@ pub(super) fn begins_with_words(row: &GridRow) -> bool {
 pub(super) fn is_text(row: &GridRow) -> bool {
     row.filled().all(|c| {
         let cell = row.cell(c);
-        !is_value(cell) && opening(cell).is_none() && !cell.ends_with("(a date)")
+        let is_opening = opening(cell).is_some_and(|(opening, _)| !matches!(opening, Opening::Class(..)));
+        !is_value(cell) && !is_opening && !cell.ends_with("(a date)")
     })
 }
 

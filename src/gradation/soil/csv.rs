@@ -2,10 +2,10 @@
 
 use std::rc::Rc;
 
+use super::content::{is_blank, is_value};
 use super::grid::{Grid, GridRow, Line};
-use super::heading::{Role, role, unit};
-use super::size::{Said, Unit, opening, us_sieve_number};
-use crate::gradation::table::number;
+use super::lines::listed;
+use super::size::{opening, us_sieve_number};
 
 /// A quoted cell may go on over this many lines.
 const LINES_OF_A_CELL: usize = 6;
@@ -17,8 +17,7 @@ pub(super) fn separators(text: &str) -> Vec<char> {
         return vec![sign];
     }
     const ALL: [char; 3] = [';', '\t', ','];
-    let named = names_are_sieves(text);
-    let lines = text.lines().filter(|line| !line.trim_start().starts_with('#') || named && names_sieve(line));
+    let lines = text.lines().filter(|line| !is_comment(line));
     let found = lines.filter_map(|line| ALL.into_iter().find(|&c| line.contains(c))).next().unwrap_or(',');
     let others = ALL.into_iter().filter(|&c| c != found && text.contains(c));
     std::iter::once(found).chain(others).collect()
@@ -35,15 +34,14 @@ fn stated_separator(text: &str) -> Option<char> {
 pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
     let mut grid = Grid { file: file.into(), delimiter, ..Grid::default() };
     let lines: Vec<&str> = text.lines().collect();
-    let named = names_are_sieves(text);
-    let mut comments = 0;
+    let mut comments = Vec::new();
     let mut at = usize::from(stated_separator(text).is_some());
     while at < lines.len() {
         let line = at + 1;
         let mut content = lines[at].to_owned();
         at += 1;
-        if content.trim_start().starts_with('#') && !(named && names_sieve(&content)) {
-            comments += usize::from(names_sieve(&content));
+        if is_comment(&content) {
+            comments.extend((marked(&content) == Some(Marked::Numbers)).then_some(line));
             continue;
         }
         // A quoted heading may hold line breaks.
@@ -65,44 +63,46 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
             grid.rows.push(GridRow { line, cells, text: Some(Rc::new(text)), open });
         }
     }
-    if comments > 0 {
+    if !comments.is_empty() {
         grid.notes.push(format!(
-            "{comments} line(s) that begin with # and a number were taken as comments, as other openings are \
-             numbers without a unit"
+            "{} with # and a number that is no US sieve taken as comments",
+            listed("line", &comments, usize::to_string)
         ));
     }
     grid
 }
 
-/// Whether lines like `#200,12` are rows of a table: they are where other rows begin with sieves in inches,
-/// and where none begins with a bare number, of which such a line could be one that is commented out.
-fn names_are_sieves(text: &str) -> bool {
-    let mut bare = false;
-    for line in text.lines().map(str::trim).filter(|line| !line.starts_with('#')) {
-        let quoted = line.starts_with('"');
-        let first = line.trim_start_matches('"').split([',', ';', '\t']).next().unwrap_or_default();
-        let first = first.split(if quoted { "\"\"" } else { "\t" }).next().unwrap_or_default();
-        let first = first.trim_end_matches('"').trim();
-        let is_fraction = first.contains('/') && opening(first).is_some();
-        if is_fraction || opening(first).is_some_and(|(_, said)| said > Said::WithUnit) {
-            return true;
-        }
-        if role(first) == Role::Size && unit(first) == Ok(Some(Unit::Inch)) {
-            return true;
-        }
-        bare |= number(first).is_some();
-    }
-    !bare
+/// A line that begins with `#`.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Marked {
+    /// `#200,12`: a US sieve and numbers.
+    Sieve,
+    /// Another number and numbers, such as a row that is commented out.
+    Numbers,
+    Comment,
 }
 
-/// `#200,12`: a US sieve and a number.
-fn names_sieve(line: &str) -> bool {
-    let Some(rest) = line.trim_start().strip_prefix('#') else { return false };
-    let digits: String = rest.trim_start().chars().take_while(char::is_ascii_digit).collect();
-    let after = rest.trim_start()[digits.len()..].trim_start();
-    us_sieve_number(&digits).is_some()
-        && after.starts_with([',', ';', '\t', '"'])
-        && after.contains(|c: char| c.is_ascii_digit())
+/// What a line holds that begins with `#`; nothing for any other.
+fn marked(line: &str) -> Option<Marked> {
+    let rest = line.trim_start().strip_prefix('#')?;
+    let signs = [',', ';', '\t'].into_iter().filter(|&sign| rest.contains(sign));
+    let read = |sign: char| {
+        let cells = split(rest, sign).0;
+        let mut values = cells.iter().skip(1).filter(|cell| !is_blank(cell)).peekable();
+        let is_row = values.peek().is_some() && values.all(|cell| is_value(cell));
+        is_row.then(|| cells.into_iter().next()).flatten()
+    };
+    let sizes: Vec<String> = signs.filter_map(read).collect();
+    Some(match () {
+        () if sizes.iter().any(|size| us_sieve_number(size).is_some()) => Marked::Sieve,
+        () if sizes.iter().any(|size| opening(size).is_some()) => Marked::Numbers,
+        () => Marked::Comment,
+    })
+}
+
+/// Whether a line is none of a table.
+fn is_comment(line: &str) -> bool {
+    marked(line).is_some_and(|marked| marked != Marked::Sieve)
 }
 
 fn is_open(line: &str, delimiter: char) -> bool {

@@ -118,7 +118,7 @@ impl Extent {
     fn continues(&self, above: &[GridRow], below: &[GridRow], layout: &Layout) -> bool {
         let Some(soil) = layout.soils.first() else { return true };
         let numbers = |row: &GridRow| match opening(row.cell(self.column_of_size(layout, row)))?.0 {
-            Opening::Mm(size) | Opening::Bare(size) | Opening::Below(size) => {
+            Opening::Mm(size) | Opening::Bare(size) | Opening::Below(size) | Opening::Class(_, size) => {
                 Some((size, percentage(row.cell(soil.column))))
             }
             Opening::Pan | Opening::Total => None,

@@ -1,5 +1,6 @@
 //! What the heading of a column says it holds.
 
+use super::languages::{say_cumulative, say_finer, say_individual, say_retained, say_size};
 use super::size::Unit;
 
 /// What a column holds, by its heading.
@@ -119,8 +120,8 @@ const MASS: [&str; 11] =
 const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
 const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
 const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
-const MICROMETRE: [&str; 9] =
-    ["um", "µm", "μm", "micron", "microns", "micrometre", "micrometer", "micrometres", "micrometers"];
+const MICROMETRE: [&str; 10] =
+    ["um", "µm", "μm", "мкм", "micron", "microns", "micrometre", "micrometer", "micrometres", "micrometers"];
 
 /// The words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
@@ -172,6 +173,42 @@ pub(super) fn says_sedimentation(text: &str) -> bool {
     words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
 }
 
+/// Whether a soil is the mean of others by its name.
+pub(super) fn says_mean(name: &str) -> bool {
+    const MEAN: [&str; 12] = [
+        "average",
+        "avg",
+        "ave",
+        "mean",
+        "mittel",
+        "mittelwert",
+        "moyenne",
+        "media",
+        "promedio",
+        "média",
+        "gemiddelde",
+        "średnia",
+    ];
+    any(&words(name), &MEAN)
+}
+
+/// Whether a soil is a limit of others by its name.
+pub(super) fn says_limit(name: &str) -> bool {
+    const LIMIT: [&str; 10] = [
+        "min",
+        "max",
+        "minimum",
+        "maximum",
+        "limit",
+        "limits",
+        "mínimo",
+        "máximo",
+        "untergrenze",
+        "obergrenze",
+    ];
+    any(&words(name), &LIMIT)
+}
+
 /// `Sample no.`, `Borehole:`: what stands before the name of a soil.
 pub(super) fn says_sample(text: &str) -> bool {
     const SAMPLE: [&str; 15] = [
@@ -202,16 +239,75 @@ pub(super) fn says_of_fines(text: &str) -> bool {
     of_part.iter().any(|part| small.contains(part)) || small.contains("200") && !small.contains("2000")
 }
 
+/// Whether a heading of percents says that they are finer, and not of the whole or cumulative alone.
+pub(super) fn says_finer(name: &str) -> bool {
+    const VAGUE: [&str; 6] = ["percent", "pct", "percentage", "cumulative", "massenanteil", "perp"];
+    let words = words(name);
+    say_finer(&words)
+        || words.iter().any(|word| FINER.contains(&word.as_str()) && !VAGUE.contains(&word.as_str()))
+}
+
+/// Whether a heading says cumulative, of what is finer or of what is retained.
+pub(super) fn says_cumulative(name: &str) -> bool {
+    let words = words(name);
+    words.iter().any(|word| word.starts_with("cum")) || say_cumulative(&words)
+}
+
+/// Whether a heading is that of a weighing from which the sieve or its tare is still to be subtracted.
+pub(super) fn is_weighing(name: &str) -> bool {
+    const TARE: [&str; 14] = [
+        "tare",
+        "gross",
+        "empty",
+        "tara",
+        "brutto",
+        "bruto",
+        "container",
+        "dish",
+        "leer",
+        "leeres",
+        "vide",
+        "vacío",
+        "vacio",
+        "vuoto",
+    ];
+    const AND: [&str; 10] = ["and", "with", "plus", "und", "mit", "et", "avec", "y", "con", "com"];
+    const SOIL: [&str; 11] = [
+        "soil",
+        "sample",
+        "material",
+        "boden",
+        "probe",
+        "sol",
+        "échantillon",
+        "suelo",
+        "muestra",
+        "solo",
+        "retained",
+    ];
+    let words = words(name);
+    let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
+    let (size, mass) = (any(&words, &SIZE) || say_size(&words), any(&words, &MASS));
+    let both = name.contains(['+', '&']) || any(&words, &AND);
+    mass && !has_unit
+        && (any(&words, &TARE)
+            || both && size && any(&words, &SOIL)
+            || size && !any(&words, &RETAINED) && !say_retained(&words))
+}
+
 /// What a column of this name holds.
 pub(super) fn role(name: &str) -> Role {
     let words = words(name);
     if is_characteristic(&words) {
         return Role::Other;
     }
+    if is_weighing(name) {
+        return Role::Other;
+    }
     let percent = name.contains('%') || any(&words, &["percent", "pct", "percentage", "prozent"]);
     let mass = any(&words, &MASS);
-    let size = any(&words, &SIZE);
-    let cumulative = match (is_cumulative(&words), any(&words, &INDIVIDUAL)) {
+    let size = any(&words, &SIZE) || say_size(&words);
+    let cumulative = match (is_cumulative(&words), any(&words, &INDIVIDUAL) || say_individual(&words)) {
         (true, _) => Some(true),
         (false, true) => Some(false),
         (false, false) => None,
@@ -223,17 +319,16 @@ pub(super) fn role(name: &str) -> Role {
         // `Passing (mm)`, `Retained on (mm)`: the bounds of a class.
         return Role::Size;
     }
-    if any(&words, &RETAINED) {
+    // `Ref. cum. (%)`, but not `Sample ref.`.
+    let is_short = any(&words, &["ref"]) && (percent || mass);
+    if any(&words, &RETAINED) || say_retained(&words) || is_short {
         let percent = percent || !mass;
         return Role::Retained(Retained { percent, cumulative });
     }
-    if percent || any(&words, &FINER) || any(&words, &["fraction", "ratio"]) && !size {
+    if percent || any(&words, &FINER) || say_finer(&words) || any(&words, &["fraction", "ratio"]) && !size {
         return Role::Finer;
     }
-    let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
     match (size, mass) {
-        // `Mass of sieve (g)` is what the empty sieve weighs.
-        (true, true) if !has_unit => Role::Other,
         (true, _) => Role::Size,
         // `mass` alone may be that of what passes; grams are weighed.
         (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
@@ -245,7 +340,7 @@ pub(super) fn role(name: &str) -> Role {
 pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     let words = words(name);
     let last_is_in = words.last().is_some_and(|word| word == "in") || name.contains("(in");
-    Ok(Some(if any(&words, &["mm", "millimetre", "millimeter", "millimetres", "millimeters"]) {
+    Ok(Some(if any(&words, &["mm", "мм", "millimetre", "millimeter", "millimetres", "millimeters"]) {
         Unit::Mm
     } else if any(&words, &MICROMETRE) {
         Unit::Micrometre

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
 use super::grid::{Grid, GridRow};
-use super::heading::{Role, role, says_sample, unit, words};
+use super::heading::{Role, is_weighing, role, says_sample, unit, words};
 use super::size::{Opening, Unit, opening};
 use super::torn::whole_row;
 use crate::gradation::error::{TableError, shortened};
@@ -182,6 +182,11 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
             _ if heads.len() == 2 => Ok(layout.with_one(&heads)),
             _ => Err(TableError::NoRows { file: grid.place(), header: true }),
         };
+    }
+    if let Some(&c) = values.iter().find(|&&c| roles[c] == Role::Other && is_weighing(&heads[c])) {
+        let allowed = "the mass retained on each sieve: subtract what the empty sieve weighs from what it \
+                       weighs with the soil";
+        return Err(grid.refused_heading(line, &heads[c], allowed));
     }
     // A specification is two soils.
     if rows.len().saturating_mul(2 * values.len()) > MOST_PLACES {

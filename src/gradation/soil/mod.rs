@@ -2,7 +2,7 @@
 //!
 //! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`; `ags`), those become rows
 //! of cells (`grid`), which are cut into parts with one table each (`blocks`; `across` turns one that lies
-//! on its side), in which the table is found (`layout`, by `heading`; `extent` says where it ends) and read
+//! on its side, by `heads` and `labels`), in which the table is found (`layout`, by `heading`; `extent` says where it ends) and read
 //! (`points`, `size`, `units`, `retained`). What continues another table is joined to it (`joined`); `names`
 //! says what the soils are called. `read` is the way through. What is taken for something that the file does
 //! not spell out becomes a note; what could be two things is refused.
@@ -22,7 +22,10 @@ mod csv;
 mod extent;
 mod grid;
 mod heading;
+mod heads;
 mod joined;
+mod labels;
+mod languages;
 mod layout;
 mod lines;
 mod names;
@@ -30,11 +33,13 @@ mod ods;
 mod points;
 mod read;
 mod retained;
+mod roles;
 mod samples;
 mod size;
 mod summary;
 mod table;
 mod text;
+mod tidy;
 mod torn;
 mod units;
 mod workbook;
@@ -43,7 +48,7 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
-pub use samples::{SoilSample, samples_in};
+pub use samples::{SoilSample, named_soils_in, samples_in};
 pub use size::us_sieve;
 pub use summary::SoilSummary;
 pub use table::Soil;

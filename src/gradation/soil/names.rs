@@ -8,6 +8,26 @@ use super::content::{is_data, is_value};
 use super::grid::GridRow;
 use super::heading::{Role, role, says_sample, words};
 use super::layout::End;
+use super::read::listed;
+use crate::gradation::error::{TableError, shortened};
+
+/// Refuses to count soils that are no samples by their names, such as the mean of others.
+pub(super) fn ask_about(
+    file: &str,
+    names: &[&str],
+    is_none: fn(&str) -> bool,
+    what: &str,
+) -> Result<(), TableError> {
+    let (none, samples): (Vec<&str>, Vec<&str>) = names.iter().partition(|name| is_none(name));
+    if none.is_empty() || names.len() < 2 {
+        return Ok(());
+    }
+    let first = samples.first().or(none.first()).map_or(String::new(), |name| shortened(name));
+    let quoted = |names: Vec<&str>| listed(&names.into_iter().map(str::to_owned).collect::<Vec<_>>());
+    let beside = if samples.is_empty() { String::new() } else { format!("{}, and ", quoted(samples)) };
+    let soils = format!("{beside}{what}: {}", quoted(none));
+    Err(TableError::SeveralSoils { file: file.to_owned(), soils, first })
+}
 
 /// What a line above a table says that names no soil.
 const NO_NAME: [&str; 14] = [
@@ -92,13 +112,12 @@ pub(super) fn name_columns(block: &mut Block) {
         cells.iter().all(|cell| !cell.is_empty()) && (ends || cells.windows(2).all(|pair| pair[0] != pair[1]))
     };
     let above = || block.grid.rows[..layout.at.min(block.grid.rows.len())].iter().rev().filter(distinct);
+    let merged = merged_names(block, &columns).filter(|_| same_headings);
     let labelled = above().find(|row| (0..first).any(|c| says_sample(row.cell(c))));
     let lettered = |row: &&GridRow| columns.iter().all(|&c| row.cell(c).contains(char::is_alphabetic));
     let row = labelled.or_else(|| above().find(lettered).filter(|_| same_headings));
-    let Some(names) = row.map(|row| columns.iter().map(|&c| row.cell(c).to_owned()).collect::<Vec<_>>())
-    else {
-        return;
-    };
+    let names = row.map(|row| columns.iter().map(|&c| row.cell(c).to_owned()).collect::<Vec<_>>());
+    let Some(names) = names.or(merged) else { return };
     for (soil, name) in block.layout.soils.iter_mut().zip(names) {
         soil.heading = match soil.end {
             Some(End::Least) => format!("{name} min"),
@@ -106,4 +125,21 @@ pub(super) fn name_columns(block: &mut Block) {
             None => name,
         };
     }
+}
+
+/// The names of soils in a row of the headings, or directly above them, each merged over its columns: it
+/// stands in the first of these.
+fn merged_names(block: &Block, columns: &[usize]) -> Option<Vec<String>> {
+    let (rows, layout) = (&block.grid.rows, &block.layout);
+    let near = layout.at.saturating_sub(1)..layout.first.min(rows.len());
+    near.into_iter().find_map(|r| {
+        let row = &rows[r];
+        let after = |&c: &usize| c > layout.size && Some(c) != layout.other_size;
+        let starts: Vec<usize> = row.filled().filter(after).collect();
+        let is_name = |&c: &usize| role(row.cell(c)) == Role::Other && !is_value(row.cell(c));
+        let all = starts.len() == columns.len() && starts.iter().all(is_name);
+        let ends = starts.iter().skip(1).copied().chain([usize::MAX]);
+        let is_it = all && starts.iter().zip(columns).zip(ends).all(|((s, c), end)| s <= c && *c < end);
+        is_it.then(|| starts.iter().map(|&c| row.cell(c).to_owned()).collect())
+    })
 }

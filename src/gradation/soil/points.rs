@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::content::{is_blank, is_date, is_value, is_words, percentage, range};
+use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range, unmarked};
 use super::extent::Extent;
 use super::grid::Grid;
 use super::heading::Role;
@@ -11,10 +11,15 @@ use super::lines::listed;
 use super::retained::{Weighed, percents_finer};
 use super::size::{Entry, Opening, Said, Unit, opening};
 use super::table::{Kind, Soil};
-use super::{account, commas, contradiction, torn, units};
+use super::{account, commas, contradiction, roles, torn, units};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 use crate::gradation::table::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
+
+/// Percents from here on at the coarsest size are 100 % as a laboratory rounds it.
+const ALL_PERCENT: f64 = 99.9;
+/// A percent below a bound of so much is read as the bound: no more of the mass is uncertain.
+const LEAST_BOUND: f64 = 1.0;
 
 /// The soils of a table, column by column.
 ///
@@ -62,11 +67,24 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
                     other => other,
                 }
             }
+            Opening::Class(one, other) => {
+                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                let mm = |value: f64| match value {
+                    f64::INFINITY => Ok(value),
+                    value => match in_mm(grid, entry, value, unit)? {
+                        Opening::Mm(mm) => Ok(mm),
+                        _ => Ok(0.0),
+                    },
+                };
+                let (one, other) = (mm(one)?, mm(other)?);
+                Opening::Class(one.max(other), one.min(other))
+            }
             other => other,
         };
     }
     units::say_names(&entries, unit, &mut notes);
-    let rows = match column.role {
+    let role = roles::settle(grid, layout, column, &mut entries, &mut notes)?;
+    let mut rows = match role {
         Role::Retained(retained) => {
             let below = &extent.below;
             let weighed = Weighed { grid, column: column.column, retained, below, missing: &missing };
@@ -74,10 +92,14 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
         }
         _ => finer(grid, column, &entries, &mut notes)?,
     };
-    if rows.is_empty() {
+    let Some(top) = rows.iter_mut().max_by(|a, b| a.size.total_cmp(&b.size)) else {
         return Err(TableError::NoRows { file: grid.place(), header: layout.headed });
+    };
+    if top.percent < 100.0 && top.percent >= ALL_PERCENT {
+        notes.push(format!("{} % at the coarsest size read as 100 %", top.percent));
+        top.percent = 100.0;
     }
-    let largest = rows.iter().map(|row| row.size).fold(0.0, f64::max);
+    let largest = top.size;
     if largest > 500.0 && unit == Unit::Mm && layout.unit != Some(Unit::Inch) {
         notes.push(format!("its largest opening is {largest} mm: is the column in micrometres?"));
     }
@@ -109,6 +131,7 @@ fn entries(
     let single = layout.soils.len() == 1;
     let retained = matches!(column.role, Role::Retained(_));
     let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
+    let mut marked: Option<String> = None;
     for row in extent.rows(grid, layout) {
         let line = row.line;
         let value = row.cell(column.column);
@@ -147,8 +170,19 @@ fn entries(
         }
         let allowed = if retained { "a number from 0".to_owned() } else { allowed_percent() };
         let of_range = |(least, most): (f64, f64)| if column.end == Some(End::Least) { least } else { most };
-        let value_read =
-            percentage(value).or_else(|| range(value).filter(|_| column.end.is_some()).map(of_range));
+        let bound = bound(value).filter(|_| !retained);
+        if let Some(most) = bound.filter(|&most| most > LEAST_BOUND) {
+            let allowed = format!("a number: below {most} it may be anything from 0 to {most}");
+            return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
+        }
+        if let Some(most) = bound {
+            notes.push(format!("{value} in {} read as {most} %, the most that it may be", grid.said(line)));
+        }
+        let value_read = percentage(value)
+            .or(bound)
+            .or_else(|| range(value).filter(|_| column.end.is_some()).map(of_range));
+        let mark = [size, value].into_iter().find(|cell| unmarked(cell) != *cell);
+        marked = marked.or_else(|| mark.map(str::to_owned));
         let number =
             value_read.filter(|&v| if retained { v >= 0.0 && v.is_finite() } else { percent_is_allowed(v) });
         let Some(number) = number else {
@@ -164,6 +198,7 @@ fn entries(
             listed(grid.row_word(), &without, |&line| grid.row_name(line))
         ));
     }
+    notes.extend(marked.map(|cell| format!("marks of footnotes, as in {cell}, left out")));
     commas::check(grid, layout, extent, column, notes)?;
     Ok((entries, missing))
 }
@@ -201,6 +236,11 @@ fn finer(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Row>, TableError> {
     let factor = fractions(grid, column, entries, notes)?;
+    let sieves = entries.iter().filter_map(|entry| match entry.opening {
+        Opening::Mm(size) => Some((size, entry.value)),
+        _ => None,
+    });
+    let finest = sieves.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value);
     let mut rows = Vec::new();
     for entry in entries {
         let size = match entry.opening {
@@ -213,13 +253,25 @@ fn finer(
                 notes.push("the pan was left out".into());
                 continue;
             }
-            Opening::Pan | Opening::Bare(_) => {
+            Opening::Pan if Some(entry.value) == finest => {
+                notes.push("the percent of the pan, that of the finest sieve again, was left out".into());
+                continue;
+            }
+            Opening::Pan | Opening::Bare(_) | Opening::Class(..) => {
                 let allowed = "0, or nothing: the pan lets nothing pass (or a heading that says retained)";
                 let value = entry.value.to_string();
                 return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
             }
         };
         rows.push(Row { line: entry.line, size, percent: entry.value * factor });
+    }
+    let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
+    let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
+    if !falls(&rows) && !rises && entries.iter().all(|entry| entry.said > Said::Plain) {
+        notes.push(
+            "rows in no order of their sizes, each with its unit or the name of its sieve, sorted".into(),
+        );
+        rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     }
     Ok(rows)
 }

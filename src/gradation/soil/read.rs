@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::blocks::Block;
 use super::grid::Grid;
-use super::heading::Role;
+use super::heading::{Role, says_mean};
 use super::joined::Read;
-use super::layout::SoilColumn;
+use super::layout::{Layout, SoilColumn};
 use super::summary::SoilSummary;
 use super::table::Soil;
 use super::{ags, blocks, bounds, csv, joined, names, points, text, workbook};
@@ -67,7 +67,7 @@ pub(crate) fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     }
 }
 
-fn listed(names: &[String]) -> String {
+pub(super) fn listed(names: &[String]) -> String {
     const MOST: usize = 12;
     let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
     if names.len() > MOST {
@@ -94,11 +94,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     }
     let (text, note) = text::decoded(file, bytes)?;
     if ags::is_ags(&text) {
-        let mut named = Vec::new();
-        for (name, grid, layout) in ags::soils(file, &text)? {
-            named.extend(points::soils(&grid, &layout)?.into_iter().map(|soil| (vec![name.clone()], soil)));
-        }
-        return Ok(named);
+        return of_ags(ags::soils(file, &text)?);
     }
     let mut refusal = None;
     for delimiter in csv::separators(&text) {
@@ -117,6 +113,14 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
 }
 
+fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError> {
+    let mut named = Vec::new();
+    for (name, grid, layout) in tables {
+        named.extend(points::soils(&grid, &layout)?.into_iter().map(|soil| (vec![name.clone()], soil)));
+    }
+    Ok(named)
+}
+
 /// The soils of every sheet. One in which no table is found, such as a cover, is passed over where others
 /// have one, and said; asked for by its name, it says what is wrong with it.
 fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
@@ -127,10 +131,18 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
     }
     for grid in sheets {
         let sheet = grid.sheet.clone().unwrap_or_default();
-        match soils_of(grid) {
+        let (place, has_table) = (grid.place(), blocks::has_table(&grid));
+        let read = match ags::is_ags_sheet(&grid) {
+            true => ags::soils_of_sheet(&grid).and_then(of_ags),
+            false => soils_of(grid),
+        };
+        match read {
+            Ok(found) if !has_table && found.iter().all(|(_, soil)| soil.is_err()) => {
+                refusals.push((sheet, TableError::NoRows { file: place, header: false }));
+            }
             Ok(found) => soils.extend(found),
             // A table that is there and cannot be read is not passed over.
-            Err(error @ (TableError::Value { .. } | TableError::Header { .. })) => {
+            Err(error @ (TableError::Value { .. } | TableError::Header { .. })) if has_table => {
                 soils.push((vec![sheet], Err(error)));
             }
             Err(error) => refusals.push((sheet, error)),
@@ -166,6 +178,7 @@ fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     blocks.iter_mut().for_each(names::name_columns);
     let titles = if several { names::titles(&blocks) } else { vec![String::new(); blocks.len()] };
     let read = |(mut block, title): (Block, String)| {
+        let title = block.sample.take().unwrap_or(title);
         bounds::settle(&mut block.grid, &mut block.layout)?;
         let soils = points::soils(&block.grid, &block.layout)?;
         Ok(Read { block, title, soils })
@@ -250,12 +263,20 @@ fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     Ok(soils)
 }
 
+/// The soils of a file as samples; one that is the mean of others is asked about.
+fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
+    let soils = soils_of_file(path)?;
+    let names: Vec<&str> = soils.iter().map(Soil::name).collect();
+    names::ask_about(&path.display().to_string(), &names, says_mean, "means, which are no samples")?;
+    Ok(soils)
+}
+
 /// What there is to say of the soils of a file, or of the one that `path` names after a `#`.
 ///
 /// # Errors
 /// As [`Gradation::from_sieve_csv`], for each of them.
 pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
-    soils_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
+    samples_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
 }
 
 /// The names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
@@ -263,8 +284,14 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 /// # Errors
 /// As [`Gradation::from_sieve_csv`], for each of them.
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
-    let soils = soils_of_file(path)?;
-    soils.iter().map(|soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?))).collect()
+    let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?));
+    samples_of_file(path)?.iter().map(named).collect()
+}
+
+/// As [`curves_in_file`], with those that are no samples.
+pub(super) fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
+    let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(None)?));
+    soils_of_file(path)?.iter().map(named).collect()
 }
 
 /// What was assumed of the soils of a file, or of the one that `path` names after a `#`, each thing once.

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::read::{curves_in_file, file_and_soil};
+use super::heading::says_limit;
+use super::names;
+use super::read::{all_in_file, curves_in_file, file_and_soil};
 use crate::gradation::error::{GradationError, TableError};
 use crate::gradation::sieve::Gradation;
 
@@ -25,10 +27,32 @@ const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
 /// file by file in the order of their names. Folders within it are not looked into.
 ///
 /// # Errors
-/// A folder without a table; a file that cannot be read as one, as [`curves_in_file`] says.
+/// A folder without a table; a file that cannot be read as one, as [`curves_in_file`] says; limits of a
+/// specification, or the mean of others, beside the samples.
 pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_files(path, &|file| {
+        let curves = curves_in_file(file, None)?;
+        let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
+        let what = "limits, which are no samples";
+        names::ask_about(&file.display().to_string(), &names, says_limit, what)?;
+        Ok(curves)
+    })
+}
+
+/// Every soil of a file or a folder, as [`samples_in`], with those that are no samples.
+///
+/// # Errors
+/// A folder without a table; a file that cannot be read as one.
+pub fn named_soils_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_files(path, &all_in_file)
+}
+
+/// The names and curves of a file.
+type Curves<'a> = &'a dyn Fn(&Path) -> Result<Vec<(String, Gradation)>, GradationError>;
+
+fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationError> {
     if !path.is_dir() {
-        return in_file(path);
+        return in_file(path, curves);
     }
     let folder = || path.display().to_string();
     let read = |source| TableError::Read { file: folder(), source };
@@ -54,7 +78,7 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
         let is_alone = stems.iter().filter(|other| lower(other) == lower(stem)).count() == 1;
         let whole = || file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let stem = if is_alone { stem.clone() } else { whole() };
-        let of_file = in_file(file)?;
+        let of_file = in_file(file, curves)?;
         let several = of_file.len() > 1;
         samples.extend(of_file.into_iter().map(|sample| {
             let name = if several { format!("{stem}/{}", sample.name) } else { stem.clone() };
@@ -64,8 +88,8 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     Ok(samples)
 }
 
-fn in_file(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
-    let curves = curves_in_file(path, None)?;
+fn in_file(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationError> {
+    let curves = curves(path)?;
     let several = curves.len() > 1;
     let (file, _) = file_and_soil(path);
     let of = |(name, curve): (String, Gradation)| {
@@ -102,6 +126,30 @@ mod tests {
         }
         write("c.csv", "nothing");
         assert!(samples_in(root.path()).unwrap_err().to_string().contains("c.csv"));
+    }
+
+    #[test]
+    fn means_and_limits_are_no_samples_unless_they_are_named() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.csv");
+        let write = |heads: &str| {
+            let rows = "2,100,100,100\n0.5,40,45,50\n0.1,2,3,4\n";
+            std::fs::write(&path, format!("Sieve (mm),{heads}\n{rows}")).unwrap();
+        };
+        let one = |name: &str| Gradation::from_sieve_csv(root.path().join(format!("a.csv#{name}")), None);
+        write("Min,Result,Max");
+        assert!(
+            samples_in(&path).unwrap_err().to_string().contains("limits, which are no samples: Min, Max")
+        );
+        assert_eq!(curves_in_file(&path, None).unwrap().len(), 3);
+        assert_eq!(named_soils_in(&path).unwrap().len(), 3);
+        assert_eq!(samples_in(&root.path().join("a.csv#Result")).unwrap().len(), 1);
+        write("Test 1 % passing,Average % passing,Test 2 % passing");
+        assert!(curves_in_file(&path, None).unwrap_err().to_string().contains("means, which are no samples"));
+        assert!(samples_in(&path).is_err() && named_soils_in(&path).is_ok());
+        assert_eq!(one("Average % passing").unwrap().percent_finer_if_known(0.5), Some(45.0));
+        write("Upper shell,Lower shell,Core");
+        assert_eq!(samples_in(&path).unwrap().len(), 3);
     }
 
     /// Two files of one stem, and a `#` in the names of files and soils: every sample is read again by its

@@ -1,5 +1,7 @@
 //! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
 
+use super::content::unmarked;
+use super::languages::{is_pan, is_total};
 use crate::gradation::table::number;
 use crate::schema::length::fraction;
 
@@ -88,6 +90,8 @@ pub(super) enum Opening {
     Bare(f64),
     /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the share that passes it.
     Below(f64),
+    /// Between two openings, as in `9.5-4.75`: the larger, infinite for `> 9.5`, and the smaller.
+    Class(f64, f64),
     /// What passed the finest sieve.
     Pan,
     /// The sum of all.
@@ -126,41 +130,66 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     }
     let text = text.to_lowercase().replace('\u{a0}', " ");
     let text = text.trim();
-    const PAN: [&str; 12] = [
-        "pan",
-        "the pan",
-        "bottom",
-        "receiver",
-        "rest",
-        "schale",
-        "boden",
-        "fond",
-        "fondo",
-        "tray",
-        "base pan",
-        "bottom pan",
-    ];
-    if PAN.contains(&text) {
+    let (before, within) = text.split_once('(').unwrap_or((text, ""));
+    let is_unit = |word: &str| ["g", "kg", "gr", "grams"].contains(&word.trim_matches([')', ' ']));
+    let plain = if within.contains('%') || is_unit(within) { text } else { before };
+    let plain = plain.trim_end_matches([' ', ':', '.', ',']);
+    const PAN: [&str; 7] = ["pan", "the pan", "bottom", "receiver", "rest", "tray", "base pan"];
+    if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) {
         return Some((Opening::Pan, Said::Plain));
     }
-    if ["total", "totals", "sum", "summe", "gesamt", "somme", "suma", "total mass"].contains(&text) {
+    if ["total", "totals", "sum", "total mass"].contains(&plain) || is_total(plain) {
         return Some((Opening::Total, Said::Plain));
     }
     if let Some(rest) =
-        ["<", "pass ", "passing ", "finer than ", "minus "].iter().find_map(|p| text.strip_prefix(p))
+        ["<", "≤", "pass ", "passing ", "finer than ", "minus "].iter().find_map(|p| text.strip_prefix(p))
     {
         return match opening(rest.trim())? {
             (Opening::Mm(mm) | Opening::Bare(mm), said) => Some((Opening::Below(mm), said)),
             _ => None,
         };
     }
-    metric(text).map(|mm| (Opening::Mm(mm), Said::WithUnit)).or_else(|| us(text))
+    let minus = text.strip_prefix('-').and_then(us).filter(|(_, said)| *said == Said::UsNumber);
+    if let Some((Opening::Mm(mm), said)) = minus {
+        return Some((Opening::Below(mm), said));
+    }
+    let read = metric(text).map(|mm| (Opening::Mm(mm), Said::WithUnit)).or_else(|| us(text));
+    read.or_else(|| class(text)).or_else(|| {
+        let bare = unmarked(text);
+        if bare == text { None } else { opening(bare) }
+    })
+}
+
+/// `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`: what lies between two sieves.
+fn class(text: &str) -> Option<(Opening, Said)> {
+    let sieve = |text: &str| match opening(text.trim())? {
+        (Opening::Mm(size) | Opening::Bare(size), said) if size >= 0.0 => Some((size, said)),
+        _ => None,
+    };
+    if let Some(rest) = [">=", ">", "≥", "coarser than "].iter().find_map(|sign| text.strip_prefix(sign)) {
+        return sieve(rest).map(|(lower, said)| (Opening::Class(f64::INFINITY, lower), said));
+    }
+    let passed = text.strip_prefix('-').and_then(|rest| rest.split_once('+'));
+    let ends = passed.or_else(|| {
+        const SIGNS: [&str; 7] = ["-", "–", "—", "~", " to ", " bis ", " à "];
+        SIGNS.iter().find_map(|sign| text.split_once(sign))
+    });
+    let (first, second) = ends?;
+    let (lower, said) = sieve(second)?;
+    // The unit may stand once, at the end.
+    let unit = second.trim_start_matches(|c: char| !c.is_alphabetic());
+    let with_unit = || if said > Said::Plain { sieve(&format!("{first} {unit}")) } else { None };
+    let is_bare = |said: Said| said == Said::Plain;
+    let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(said)).or_else(with_unit)?;
+    (upper != lower).then_some((Opening::Class(upper, lower), said))
 }
 
 /// `9.5 mm`, also within `No. 4 (4.75 mm)`; `75 um`.
 fn metric(text: &str) -> Option<f64> {
-    const UNITS: [(&str, f64); 12] = [
+    const UNITS: [(&str, f64); 14] = [
         ("mm", 1.0),
+        ("мм", 1.0),
+        ("мкм", 1e3),
         ("millimet", 1.0),
         ("um", 1e3),
         ("µm", 1e3),
@@ -191,10 +220,20 @@ fn metric(text: &str) -> Option<f64> {
 /// `No. 4`, `#200`, `200 mesh`, `3/8"`, `1 1/2 in`.
 fn us(text: &str) -> Option<(Opening, Said)> {
     let mut text = text;
-    for lead in ["u.s. ", "us ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. "] {
-        text = text.strip_prefix(lead).unwrap_or(text).trim();
+    let mut is_us = false;
+    for lead in ["u.s. ", "us ", "uss ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. ", "sieve "] {
+        let rest = text.strip_prefix(lead).map(str::trim);
+        is_us |= rest.is_some() && lead.starts_with('u');
+        text = rest.unwrap_or(text);
     }
-    text = text.strip_suffix("sieve").unwrap_or(text).trim();
+    for end in ["sieve", "(us)", "(u.s.)"] {
+        let rest = text.strip_suffix(end).map(str::trim);
+        is_us |= rest.is_some() && end.starts_with('(');
+        text = rest.unwrap_or(text);
+    }
+    if let Some(mm) = us_sieve_number(text).filter(|_| is_us) {
+        return Some((Opening::Mm(mm), Said::UsNumber));
+    }
     for lead in ["no.", "no ", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "] {
         if let Some(mm) = text.strip_prefix(lead).and_then(|rest| us_sieve_number(rest.trim())) {
             return Some((Opening::Mm(mm), Said::UsNumber));
@@ -305,14 +344,48 @@ mod tests {
             ("4.75 mm (No. 4)", 4.75),
             ("3/4 in. (19.0 mm)", 19.0),
             ("2 cm", 20.0),
+            ("US 4", 4.75),
+            ("US Sieve No. 200", 0.075),
+            ("US Standard Sieve 40", 0.425),
+            ("USS #200", 0.075),
+            ("Sieve 200 (US)", 0.075),
+            ("No. 200*", 0.075),
+            ("0.075 mm (1)", 0.075),
         ] {
             assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
         }
         assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Said::Plain)));
-        assert_eq!(opening("Pan"), Some((Opening::Pan, Said::Plain)));
+        for pan in ["Pan", "Pan (dry)", "bottom pan", "Receptáculo", "Siebpfanne:", "底盘", "受け皿"] {
+            assert_eq!(opening(pan), Some((Opening::Pan, Said::Plain)), "{pan}");
+        }
+        assert_eq!(opening("0.075*"), Some((Opening::Bare(0.075), Said::Plain)));
+        assert_eq!(opening("-#200"), Some((Opening::Below(0.075), Said::UsNumber)));
+        for (class, bounds, said) in [
+            ("9.5-4.75", (9.5, 4.75), Said::Plain),
+            ("9.5 - 4.75 mm", (9.5, 4.75), Said::WithUnit),
+            ("3/4 in - 3/8 in", (19.0, 9.5), Said::Inches),
+            ("-3/8 in +No. 4", (9.5, 4.75), Said::UsNumber),
+            ("> 9.5", (f64::INFINITY, 9.5), Said::Plain),
+        ] {
+            assert_eq!(opening(class), Some((Opening::Class(bounds.0, bounds.1), said)), "{class}");
+        }
         assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Said::WithUnit)));
-        for text in ["No. 3", "#", "project no. 4", "mm", "sixty", "3/0\"", "8-Mar", "1 3/2\"", "x9.5 mm", ""]
-        {
+        for text in [
+            "Rest (%)",
+            "US 199",
+            "2026-03-14",
+            "BH-1",
+            "No. 3",
+            "#",
+            "project no. 4",
+            "mm",
+            "sixty",
+            "3/0\"",
+            "8-Mar",
+            "1 3/2\"",
+            "x9.5 mm",
+            "",
+        ] {
             assert_eq!(opening(text), None, "{text}");
         }
         for (inches, mm) in BY_INCHES {

@@ -32,6 +32,9 @@ pub(super) fn of_bare(
     entries: &[Entry],
     notes: &mut Vec<String>,
 ) -> Result<Unit, TableError> {
+    if matches!(layout.unit, None | Some(Unit::Mm)) {
+        refuse_micrometres(grid, entries)?;
+    }
     let is_no_sieve = |entry: &Entry| match entry.opening {
         Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
         _ => false,
@@ -79,6 +82,51 @@ pub(super) fn of_bare(
     }
     notes.push("openings without a unit taken as mm".into());
     Ok(Unit::Mm)
+}
+
+/// No sieve is finer, and larger openings in mm are few.
+const LEAST_MICROMETRES: f64 = 25.0;
+
+/// Refuses openings of which the finer ones seem to be in micrometres and the coarser ones in mm: they go one
+/// way only if these are a thousandth.
+fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> {
+    let sizes: Vec<(f64, &Entry)> = entries
+        .iter()
+        .filter_map(|entry| match entry.opening {
+            Opening::Mm(mm) => Some((mm, entry)),
+            Opening::Bare(value) if value > 0.0 => Some((value, entry)),
+            _ => None,
+        })
+        .collect();
+    let may_be = |(value, entry): &(f64, &Entry)| {
+        matches!(entry.opening, Opening::Bare(_)) && value.fract() == 0.0 && *value >= LEAST_MICROMETRES
+    };
+    let goes_one_way = |fine: std::ops::Range<usize>| {
+        let mm = |at: usize| if fine.contains(&at) { sizes[at].0 / 1e3 } else { sizes[at].0 };
+        let pairs = || (1..sizes.len()).map(|at| mm(at - 1) - mm(at));
+        pairs().all(|step| step > 0.0) || pairs().all(|step| step < 0.0)
+    };
+    let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
+    // One step against the others is where the unit changes.
+    let alone = |falls: bool| {
+        let mut places = (0..steps.len()).filter(|&at| steps[at] == falls);
+        places.next().filter(|_| places.next().is_none() && steps.len() > 1)
+    };
+    let places = [alone(true), alone(false)].into_iter().flatten();
+    for fine in places.flat_map(|at| [at + 1..sizes.len(), 0..at + 1]) {
+        if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(fine.clone()) {
+            continue;
+        }
+        let beside = if fine.start > 0 { &sizes[fine.start - 1] } else { &sizes[fine.end] };
+        let (value, entry) = if fine.start > 0 { sizes[fine.start] } else { sizes[fine.end - 1] };
+        let (text, other) = (&entry.text, &beside.1.text);
+        let allowed = format!(
+            "{text} um ({} mm) beside {other}, if these are micrometres: write the unit in each cell",
+            value / 1e3
+        );
+        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+    }
+    Ok(())
 }
 
 /// Whether the openings rise or fall all the way where those without a unit are in this one.

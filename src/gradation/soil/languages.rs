@@ -1,0 +1,214 @@
+//! Words of laboratories in languages other than English, in small letters; some of the larger ones are with
+//! the English in `heading`.
+
+/// What stays on a sieve.
+const RETAINED: [&str; 24] = [
+    "retido",
+    "tertahan",
+    "kalan",
+    "pozostałość",
+    "pozostalosc",
+    "odsiew",
+    "zbytek",
+    "zůstatek",
+    "zvyšok",
+    "остаток",
+    "залишок",
+    "ostatak",
+    "συγκρατούμενο",
+    "συγκρατούμενα",
+    "stannar",
+    "kvarstannande",
+    "gjenliggende",
+    "sikterest",
+    "sigterest",
+    "seulalle",
+    "fennmaradt",
+    "reținut",
+    "retinut",
+    "retenus",
+];
+/// What passes it.
+const FINER: [&str; 26] = [
+    "pas",
+    "passante",
+    "passato",
+    "tamisats",
+    "geçen",
+    "gecen",
+    "przechodzi",
+    "propad",
+    "prepad",
+    "проход",
+    "прохід",
+    "prolaz",
+    "διερχόμενο",
+    "διερχόμενα",
+    "passerande",
+    "passerat",
+    "passerar",
+    "passert",
+    "gjennomgang",
+    "gennemfald",
+    "läpäisy",
+    "áthullott",
+    "lolos",
+    "trecut",
+    "treceri",
+    "zeefdoorval",
+];
+/// Sieves and their openings.
+const SIZE: [&str; 21] = [
+    "elek",
+    "sito",
+    "sita",
+    "oczka",
+    "síto",
+    "сито",
+    "сита",
+    "κόσκινο",
+    "sikt",
+    "sikte",
+    "sigte",
+    "seula",
+    "szita",
+    "peneira",
+    "saringan",
+    "setaccio",
+    "vaglio",
+    "maaswijdte",
+    "maskevidde",
+    "粒径",
+    "粒徑",
+];
+/// Words that are not parted by spaces, and stems.
+const RETAINED_WITHIN: [&str; 5] = ["筛余", "篩余", "残留", "殘留", "잔류"];
+const FINER_WITHIN: [&str; 5] = ["通过", "通過", "小于", "小於", "통과"];
+const SIZE_WITHIN: [&str; 6] = ["筛孔", "篩孔", "ふるい", "粒径", "粒徑", "체눈"];
+const CUMULATIVE_WITHIN: [&str; 10] =
+    ["kümül", "kumul", "skumul", "累计", "累計", "累积", "加積", "누적", "накоплен", "полный"];
+const INDIVIDUAL_WITHIN: [&str; 4] = ["分计", "分計", "частн", "częściow"];
+/// What lies below the finest sieve.
+const PAN: [&str; 58] = [
+    "schale",
+    "siebpfanne",
+    "pfanne",
+    "boden",
+    "siebboden",
+    "auffangschale",
+    "auffangboden",
+    "fond",
+    "fond de tamis",
+    "plateau",
+    "bac",
+    "récipient",
+    "recipient",
+    "fondo",
+    "recipiente",
+    "receptáculo",
+    "receptaculo",
+    "receptor",
+    "cazoleta",
+    "charola",
+    "bandeja",
+    "ciego",
+    "fundo",
+    "prato",
+    "coletor",
+    "panela",
+    "vassoio",
+    "piatto",
+    "raccoglitore",
+    "bodem",
+    "zeefpan",
+    "opvangbak",
+    "dno",
+    "denko",
+    "miska",
+    "tava",
+    "tepsi",
+    "elek altı",
+    "botten",
+    "bunn",
+    "bund",
+    "pohja",
+    "поддон",
+    "дно",
+    "τυφλό",
+    "πυθμένας",
+    "gyűjtőtálca",
+    "tavă",
+    "posuda",
+    "底",
+    "底盘",
+    "底盤",
+    "筛底",
+    "受皿",
+    "受け皿",
+    "받침",
+    "팬",
+    "바닥",
+];
+/// The sum of all rows.
+const TOTAL: [&str; 22] = [
+    "summe",
+    "gesamt",
+    "somme",
+    "suma",
+    "totale",
+    "totaal",
+    "toplam",
+    "razem",
+    "celkem",
+    "spolu",
+    "итого",
+    "всего",
+    "сумма",
+    "σύνολο",
+    "summa",
+    "yhteensä",
+    "összesen",
+    "ukupno",
+    "jumlah",
+    "合计",
+    "合計",
+    "합계",
+];
+
+fn any(words: &[String], list: &[&str]) -> bool {
+    words.iter().any(|word| list.contains(&word.as_str()))
+}
+
+fn within(words: &[String], list: &[&str]) -> bool {
+    words.iter().any(|word| list.iter().any(|part| word.contains(part)))
+}
+
+pub(super) fn say_retained(words: &[String]) -> bool {
+    any(words, &RETAINED) || within(words, &RETAINED_WITHIN)
+}
+
+pub(super) fn say_finer(words: &[String]) -> bool {
+    any(words, &FINER) || within(words, &FINER_WITHIN)
+}
+
+pub(super) fn say_size(words: &[String]) -> bool {
+    any(words, &SIZE) || within(words, &SIZE_WITHIN)
+}
+
+pub(super) fn say_cumulative(words: &[String]) -> bool {
+    within(words, &CUMULATIVE_WITHIN)
+}
+
+pub(super) fn say_individual(words: &[String]) -> bool {
+    within(words, &INDIVIDUAL_WITHIN)
+}
+
+/// Whether a text, in small letters, names the pan.
+pub(super) fn is_pan(text: &str) -> bool {
+    PAN.contains(&text)
+}
+
+/// Whether a text, in small letters, names the sum.
+pub(super) fn is_total(text: &str) -> bool {
+    TOTAL.contains(&text)
+}
