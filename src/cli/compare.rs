@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::{CompareArgs, SettingArgs, WalkArgs};
 use super::case_progress::CaseProgress;
-use super::exit::{Answer, accept};
+use super::exit::{JudgedAnswer, accept};
 use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
@@ -41,7 +41,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     }
     let answer = |case: &ComparedCase| {
         let (verdict, confidence) = (case.verdict, case.confidence);
-        Answer { verdict, confidence, by_practice: case.by_practice }
+        JudgedAnswer { verdict, confidence, by_practice: case.by_practice }
     };
     accept(args.accept.fail_on, comparison.cases.iter().map(|case| (case.name.as_str(), answer(case))))
 }

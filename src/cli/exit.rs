@@ -36,7 +36,7 @@ pub enum FailOn {
 
 /// What a walk and practice say of a case.
 #[derive(Clone, Copy)]
-pub struct Answer {
+pub struct JudgedAnswer {
     pub verdict: Verdict,
     pub confidence: Confidence,
     /// The class as which practice counts; `None` where no rule was applied.
@@ -45,8 +45,8 @@ pub struct Answer {
 
 impl FailOn {
     /// Why an answer is not accepted, by the worse of walk and practice; `None` where it is.
-    fn refused(self, answer: Answer) -> Option<String> {
-        let Answer { verdict, confidence, by_practice } = answer;
+    fn refused(self, answer: JudgedAnswer) -> Option<String> {
+        let JudgedAnswer { verdict, confidence, by_practice } = answer;
         if self.refuses(verdict, confidence) {
             return Some(format!("{} ({})", verdict.words(), confidence.words()));
         }
@@ -80,7 +80,7 @@ impl FailOn {
 /// The cases whose verdict is not accepted.
 pub fn accept<'a>(
     fail_on: Option<FailOn>,
-    cases: impl IntoIterator<Item = (&'a str, Answer)>,
+    cases: impl IntoIterator<Item = (&'a str, JudgedAnswer)>,
 ) -> Result<(), RunError> {
     accept_walked(fail_on, cases.into_iter().map(|(name, answer)| (name, Ok(answer))))
 }
@@ -91,10 +91,10 @@ pub fn accept<'a>(
 /// The cases whose verdict is not accepted, or not known.
 pub fn accept_walked<'a>(
     fail_on: Option<FailOn>,
-    cases: impl IntoIterator<Item = (&'a str, Result<Answer, &'a str>)>,
+    cases: impl IntoIterator<Item = (&'a str, Result<JudgedAnswer, &'a str>)>,
 ) -> Result<(), RunError> {
     let Some(fail_on) = fail_on else { return Ok(()) };
-    let refused = |walked: Result<Answer, &str>| match walked {
+    let refused = |walked: Result<JudgedAnswer, &str>| match walked {
         Ok(answer) => fail_on.refused(answer),
         Err(why) => Some(format!("not walked ({why})")),
     };
@@ -136,8 +136,8 @@ mod tests {
         }
     }
 
-    fn met(verdict: Verdict, confidence: Confidence) -> Answer {
-        Answer { verdict, confidence, by_practice: Some(Verdict::None) }
+    fn met(verdict: Verdict, confidence: Confidence) -> JudgedAnswer {
+        JudgedAnswer { verdict, confidence, by_practice: Some(Verdict::None) }
     }
 
     #[test]
@@ -149,7 +149,7 @@ mod tests {
             (Some(Verdict::Continuing), [false; 3]),
             (Some(Verdict::Undecided), [false; 3]),
         ] {
-            let answer = Answer { by_practice, ..met(Verdict::None, Confidence::Within) };
+            let answer = JudgedAnswer { by_practice, ..met(Verdict::None, Confidence::Within) };
             let each = FailOn::value_variants().iter().map(|of| accept(Some(*of), [("a", answer)]).is_ok());
             assert_eq!(each.collect::<Vec<_>>(), accepted, "{by_practice:?}");
         }

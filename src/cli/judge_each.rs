@@ -7,7 +7,7 @@ use super::args::JudgeArgs;
 use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
 use super::compare::{campaign_options, of_earlier_cover};
-use super::exit::{Answer, accept_walked};
+use super::exit::{JudgedAnswer, accept_walked};
 use super::print::{json, plain, shown, to_stdout};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
@@ -56,7 +56,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let pairs = asked.map(|(row, name)| {
         let answer = row.walk.as_ref().map(|walk| {
             let (verdict, confidence) = (walk.verdict, walk.confidence);
-            Answer { verdict, confidence, by_practice: walk.by_practice }
+            JudgedAnswer { verdict, confidence, by_practice: walk.by_practice }
         });
         (name.as_str(), answer.ok_or(row.not_walked.as_str()))
     });

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
-use super::exit::{Answer, accept};
+use super::exit::{JudgedAnswer, accept};
 use super::print::{count, counted, grains_per_void, json, of_base, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
@@ -34,7 +34,10 @@ impl AcceptArgs {
     pub fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
         let outcome = &run.outcome;
         let (verdict, confidence) = (outcome.verdict, outcome.confidence);
-        accept(self.fail_on, [("", Answer { verdict, confidence, by_practice: counts_as(&outcome.rules) })])
+        accept(
+            self.fail_on,
+            [("", JudgedAnswer { verdict, confidence, by_practice: counts_as(&outcome.rules) })],
+        )
     }
 }
 

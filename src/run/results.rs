@@ -424,7 +424,7 @@ mod tests {
     /// it 0.111 mm, and the limit of design has a floor of 0.2 mm.
     #[test]
     fn the_next_step_goes_down_to_the_floor_of_the_limit_of_design() {
-        const CLAY: &str = "0.002,51\n0.006,70\n0.02,87\n0.063,95\n0.63,100\n";
+        const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
             let next = walked_base(rows, d15f, set).next_in_words();
             next.split("at most ").nth(1).map(|of| of.split(' ').next().unwrap().to_owned())

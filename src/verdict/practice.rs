@@ -254,7 +254,7 @@ mod tests {
     use crate::verdict::{BatchRow, PairOptions, PairRules, SpecificationOptions};
 
     fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
-        vec![("soil".to_owned(), Gradation::from_points(points, None).unwrap())]
+        vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
     }
 
     fn filter(d15f: f64) -> Vec<NamedCurve> {
@@ -321,7 +321,7 @@ mod tests {
         let soil = |points: &[(f64, f64)], by: f64| {
             let points: Vec<(f64, f64)> =
                 points.iter().map(|(size, percent)| (size * by, *percent)).collect();
-            vec![("soil".to_owned(), Gradation::from_points(&points, None).unwrap())]
+            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
         };
         let bases: [&[(f64, f64)]; 4] = [
             &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],

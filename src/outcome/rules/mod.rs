@@ -10,6 +10,7 @@ mod authority;
 mod base;
 mod drainage;
 mod exit;
+mod judging;
 mod open;
 mod retention;
 mod rule;

@@ -10,8 +10,9 @@
 use std::cmp::Ordering;
 
 use super::all::RULES;
-use super::apply::{judged, margin};
+
 use super::base::BaseSoil;
+use super::judging::{judged, margin};
 use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
 use crate::gradation::{End, Gradation, Step};
 use crate::outcome::applied::RuleRole;
