@@ -28,6 +28,7 @@ mod labels;
 mod languages;
 mod layout;
 mod lines;
+mod marks;
 mod names;
 mod ods;
 mod points;

@@ -72,14 +72,14 @@ pub(super) fn of_bare(
                 notes.push("openings without a unit read as inches, as those around them are".into());
                 return Ok(Unit::Inch);
             }
-            (true, false) => match entries.iter().find(|entry| any(Said::Inches) && is_sieve_number(entry)) {
-                Some(entry) => {
+            (true, false) => {
+                let is_either = |entry: &&Entry| any(Said::Inches) && is_sieve_number(entry);
+                if let Some(entry) = entries.iter().find(is_either) {
                     let text = &entry.text;
                     let allowed = format!("No. {text} or {text} mm, as other rows are in inches");
                     return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
                 }
-                None => {}
-            },
+            }
             (false, false) if !any(Said::Inches) => {}
             (true, true) if !any(Said::Inches) && !is_series_of_inches(entries) => {}
             _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
