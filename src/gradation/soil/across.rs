@@ -142,8 +142,8 @@ fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
         );
         return grid.refused(above.line, column, "heading", above.cell(column), allowed);
     }
-    let allowed = "Sample or Sieve (mm) beside these numbers if they are openings, or a row of openings above \
-                   them if they are percents";
+    let allowed = "Sample or Sieve (mm) beside these numbers if they are openings, or a row of openings \
+                   above them if they are percents";
     grid.refused(row.line, 0, "heading", name, allowed)
 }
 

@@ -1,6 +1,7 @@
 //! What stands in one cell: a percentage, a range, a date, words, nothing; and what a row of such cells is.
 
 use super::grid::GridRow;
+use super::marks::{unmarked, with_thousands};
 use super::size::{Opening, Said, opening};
 use crate::gradation::table::number;
 
@@ -11,31 +12,6 @@ pub(super) fn percentage(cell: &str) -> Option<f64> {
         number(plain).or_else(|| with_thousands(plain))
     };
     read(cell).or_else(|| read(unmarked(cell)))
-}
-
-/// A number in which one sign parts thousands and the other decimals: `1,254.6`, `1.254,6`.
-fn with_thousands(text: &str) -> Option<f64> {
-    let at = text.rfind(['.', ','])?;
-    let (whole, decimals) = (&text[..at], &text[at + 1..]);
-    let sign = if text[at..].starts_with('.') { ',' } else { '.' };
-    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let mut groups = whole.split(sign);
-    let first =
-        groups.next().filter(|first| is_digits(first) && first.len() <= 3 && !first.starts_with('0'))?;
-    let rest: Vec<&str> = groups.collect();
-    let is_grouped = !rest.is_empty() && rest.iter().all(|group| is_digits(group) && group.len() == 3);
-    (is_grouped && is_digits(decimals))
-        .then(|| format!("{first}{}.{decimals}", rest.concat()).parse().ok())?
-}
-
-/// A cell without the mark of a footnote behind it: `0.075*`, `22.7 (1)`, `11.3 (a)`.
-pub(super) fn unmarked(cell: &str) -> &str {
-    let bare = cell.trim_end_matches(['*', '†', '‡']).trim_end();
-    let is_mark = |mark: &str| mark.len() == 1 && mark.bytes().all(|b| b.is_ascii_alphanumeric());
-    match bare.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
-        Some((rest, mark)) if is_mark(mark) && !rest.trim().is_empty() => rest.trim_end(),
-        _ => bare,
-    }
 }
 
 /// The most that a percent may be of which a bound is given: `<1`, `< 0.5 %`.

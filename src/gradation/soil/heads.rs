@@ -59,7 +59,10 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
             take("plus", &mut said);
             continue;
         }
-        let word: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
+        let mut word: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
+        if ["pno", "pnr"].contains(&word.as_str()) {
+            word.truncate(1);
+        }
         if word.is_empty() || !take(&word, &mut said) {
             break;
         }
@@ -142,6 +145,7 @@ mod tests {
             ("P3/4", "3/4"),
             ("P#4", "#4"),
             ("P 200", "200"),
+            ("PNo. 40", "no. 40"),
             ("P-#40", "#40"),
             ("Passing 19 mm", "19 mm"),
             ("% pass #40", "#40"),

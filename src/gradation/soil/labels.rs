@@ -18,8 +18,8 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// Of `rows` below `headings`, whose openings begin in column `end`. A name has the first column and those
-    /// whose heading says so; a depth and the others only where names would be the same without.
+    /// Of `rows` below `headings`, whose openings begin in column `end`. A name has the first column and
+    /// those whose heading says so; a depth and the others only where names would be the same without.
     pub(super) fn new(headings: &[GridRow], rows: &[&GridRow], end: usize) -> Labels {
         let head = |c: usize| {
             let near = headings.iter().rev().take(3).map(|row| row.cell(c));

@@ -1,4 +1,7 @@
-//! Lists of lines or rows within a sentence.
+//! Lists of lines, rows or names within a sentence.
+
+use crate::gradation::error::shortened;
+use crate::text::plain;
 
 /// Most that are named one by one.
 const MOST: usize = 8;
@@ -12,4 +15,14 @@ pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> S
         n if n > MOST => format!("{word}s {shown} and {} more", n - MOST),
         _ => format!("{word}s {shown}"),
     }
+}
+
+/// Names of soils, shortened, and the first of many.
+pub(super) fn names_listed(names: &[String]) -> String {
+    const MOST: usize = 12;
+    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
+    if names.len() > MOST {
+        shown.push(format!("and {} more", names.len() - MOST));
+    }
+    shown.join(", ")
 }

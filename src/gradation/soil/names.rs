@@ -8,8 +8,9 @@ use super::content::{is_data, is_value};
 use super::grid::GridRow;
 use super::heading::{Role, role, says_sample, words};
 use super::layout::End;
-use super::read::listed;
-use crate::gradation::error::{TableError, shortened};
+use super::lines::names_listed;
+use crate::gradation::error::TableError;
+use crate::text::plain;
 
 /// Refuses to count soils that are no samples by their names, such as the mean of others.
 pub(super) fn ask_about(
@@ -22,8 +23,8 @@ pub(super) fn ask_about(
     if none.is_empty() || names.len() < 2 {
         return Ok(());
     }
-    let first = samples.first().or(none.first()).map_or(String::new(), |name| shortened(name));
-    let quoted = |names: Vec<&str>| listed(&names.into_iter().map(str::to_owned).collect::<Vec<_>>());
+    let first = samples.first().or(none.first()).map_or(String::new(), |name| plain(name));
+    let quoted = |names: Vec<&str>| names_listed(&names.into_iter().map(str::to_owned).collect::<Vec<_>>());
     let beside = if samples.is_empty() { String::new() } else { format!("{}, and ", quoted(samples)) };
     let soils = format!("{beside}{what}: {}", quoted(none));
     Err(TableError::SeveralSoils { file: file.to_owned(), soils, first })

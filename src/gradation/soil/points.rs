@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range, unmarked};
+use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range};
 use super::extent::Extent;
 use super::grid::Grid;
 use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
 use super::lines::listed;
+use super::marks::unmarked;
 use super::retained::{Weighed, percents_finer};
 use super::size::{Entry, Opening, Said, Unit, opening};
 use super::table::{Kind, Soil};

@@ -8,6 +8,7 @@ use super::grid::Grid;
 use super::heading::{Role, says_mean};
 use super::joined::Read;
 use super::layout::{Layout, SoilColumn};
+use super::lines::names_listed;
 use super::summary::SoilSummary;
 use super::table::Soil;
 use super::{ags, blocks, bounds, csv, joined, names, points, text, workbook};
@@ -37,13 +38,13 @@ impl Soil {
             let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
             soils.retain(|(names, _)| is_named(names, name));
             if soils.is_empty() {
-                let (file, name, soils) = (file.to_owned(), shortened(name), listed(&all));
+                let (file, name, soils) = (file.to_owned(), shortened(name), names_listed(&all));
                 return Err(TableError::NoSuchSoil { file, name, soils }.into());
             }
         }
         if soils.len() > 1 {
             let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
-            let (soils, first) = (listed(&all), plain(&all[0]));
+            let (soils, first) = (names_listed(&all), plain(&all[0]));
             return Err(TableError::SeveralSoils { file: file.to_owned(), soils, first }.into());
         }
         match soils.pop() {
@@ -65,15 +66,6 @@ pub(crate) fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
         Some((file, soil)) => (PathBuf::from(file), Some(soil.trim().to_owned())),
         None => (path.to_owned(), None),
     }
-}
-
-pub(super) fn listed(names: &[String]) -> String {
-    const MOST: usize = 12;
-    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
-    if names.len() > MOST {
-        shown.push(format!("and {} more", names.len() - MOST));
-    }
-    shown.join(", ")
 }
 
 /// A name as it is shown, without what two writings of it may differ in.
@@ -161,7 +153,7 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
         return Err(error);
     }
     if !all.is_empty() && wanted.is_none() {
-        let note = format!("no table was found in sheet {}", listed(&all));
+        let note = format!("no table was found in sheet {}", names_listed(&all));
         soils.iter_mut().filter_map(|(_, soil)| soil.as_mut().ok()).for_each(|s| s.notes.push(note.clone()));
     }
     Ok(soils)

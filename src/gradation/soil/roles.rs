@@ -47,8 +47,8 @@ fn of_classes(
         return Ok(column.role);
     }
     if says_finer(&column.heading) || says_cumulative(&column.heading) {
-        let allowed = "percents of each class, as their openings are the bounds of classes, or one opening in \
-                       each row";
+        let allowed = "percents of each class, as their openings are the bounds of classes, or one opening \
+                       in each row";
         return Err(grid.refused(class.line, column.column, "heading", &column.heading, allowed));
     }
     notes.push(format!("percents of classes such as {} read as retained on the finer sieve", class.text));

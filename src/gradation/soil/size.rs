@@ -1,7 +1,7 @@
 //! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
 
-use super::content::unmarked;
 use super::languages::{is_pan, is_total};
+use super::marks::unmarked;
 use crate::gradation::table::number;
 use crate::schema::length::fraction;
 

@@ -22,7 +22,7 @@ pub(super) struct Part {
 /// The parts of a table whose rows name their samples; nothing where there are not two names.
 ///
 /// # Errors
-/// Rows of which each names another sample, as where a sample stands in a row and its openings in the headings.
+/// Rows of which each names another sample, as where openings stand in the headings.
 pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableError> {
     let headings = &grid.rows[layout.at..layout.first];
     if !layout.headed || layout.soils.len() != 1 {

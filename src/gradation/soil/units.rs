@@ -46,6 +46,10 @@ pub(super) fn of_bare(
         None => {}
     }
     let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
+    let is_sieve_number = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) => value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some(),
+        _ => false,
+    };
     let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
     let any = |said: Said| entries.iter().any(|entry| entry.said == said);
     let refused =
@@ -68,7 +72,14 @@ pub(super) fn of_bare(
                 notes.push("openings without a unit read as inches, as those around them are".into());
                 return Ok(Unit::Inch);
             }
-            (true, false) => {}
+            (true, false) => {
+                let is_either = |entry: &&Entry| any(Said::Inches) && is_sieve_number(entry);
+                if let Some(entry) = entries.iter().find(is_either) {
+                    let text = &entry.text;
+                    let allowed = format!("No. {text} or {text} mm, as other rows are in inches");
+                    return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+                }
+            }
             (false, false) if !any(Said::Inches) => {}
             (true, true) if !any(Said::Inches) && !is_series_of_inches(entries) => {}
             _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
@@ -292,6 +303,8 @@ mod tests {
         }
         let bare = read("4,100", &["10,68", "40,17", "200,1.5"], false).unwrap_err();
         assert!(bare.contains("a.csv, line 1, ") && bare.contains("US sieve numbers"), "{bare}");
+        let beside = read("Sieve,% Passing", &["1 1/2,100", "3/4,60", "10,7"], false).unwrap_err();
+        assert!(beside.contains("No. 10 or 10 mm"), "{beside}");
         let numbered = read("Sieve No.,% Passing", &["4,100", "16,68", "50,17", "200,1.5"], false);
         assert_eq!(numbered.unwrap().largest_mm(), 4.75);
     }
