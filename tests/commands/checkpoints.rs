@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
@@ -275,6 +275,20 @@ fn a_run_goes_on_after_stops_and_kills_with_the_same_bits() {
     assert!(stops + kills >= 3, "{stops} stops and {kills} kills: the run is too short to be broken");
     assert_eq!(lasting(&at.join("whole")), lasting(&at.join("broken")));
     assert!(!at.join("broken/checkpoint").exists());
+}
+
+#[test]
+fn a_request_before_any_work_ends_a_run_at_once() {
+    let root = tempfile::tempdir().unwrap();
+    let long = ["nx=120", "ny=120", "nz=120", "connectivity={5=50,7=50}"].map(|set| format!("network.{set}"));
+    let mut args = vec!["run", "--out", "run", "--set", "base.n_base=1000"];
+    long.iter().for_each(|set| args.extend(["--set", set]));
+    let mut child = voidwalk(root.path(), &args).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    let asked = Instant::now();
+    assert_eq!(child.wait().unwrap().code(), Some(3));
+    assert!(asked.elapsed() < Duration::from_secs(3) && !root.path().join("run").exists());
 }
 
 /// A run that was stopped on its way; the folder holds its checkpoints.
