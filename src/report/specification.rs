@@ -187,7 +187,8 @@ fn limits(of: &Specification) -> Markup {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
-            "Percent finer by mass, rounded into the band; above D60F of a side no text was read for it. At most 5 % may be finer than \
+            "Percent finer by mass, rounded into the band; above D60F of a side no text was read for it. \
+             At most 5 % may be finer than \
              0.075 mm, and these fines must not be plastic. Segregation is not checked: the maximum D90F is \
              still to be set (see its step)."
         }

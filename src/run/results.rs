@@ -340,7 +340,8 @@ mod tests {
     }
 
     /// With 38 % fines design allows 0.860 mm, more than the boundary of no erosion, and a dispersive base
-    /// less. D15B of a base whose finest sieve 38 % pass is finer than that: five times that sieve are enough.
+    /// less. D15B of a base whose finest sieve 38 % pass is finer than that: five times that sieve are
+    /// enough.
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
         let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();

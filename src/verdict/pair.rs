@@ -59,8 +59,8 @@ pub struct PairOptions {
     pub as_given: bool,
 }
 
-/// Sizes of a filter (mm), of the curve that keeps the limit of design worst where it is an envelope; `None` where they lie in a finest
-/// tail of unknown size.
+/// Sizes of a filter (mm), of the curve that keeps the limit of design worst where it is an envelope; `None`
+/// where they lie in a finest tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FilterSizes {

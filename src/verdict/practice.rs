@@ -31,7 +31,8 @@ pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule>
 pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     let of_role = |role| rules.iter().filter(move |rule| rule.role == role && rule.is_broken());
     let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(of_role);
-    // One number is one finding, and of a filter that practice does not call too coarse its line has the tests.
+    // One number is one finding, and of a filter that practice does not call too coarse its line has the
+    // tests.
     let counts = without_margin(rules).is_none() && !broken(rules, RuleRole::Retention).is_empty();
     let each = each.filter(|rule| rule.id != TESTS_NO_EROSION || counts);
     let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();

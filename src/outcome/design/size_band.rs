@@ -13,7 +13,8 @@ use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 pub struct SizeBand {
     /// D5, D15 and D60 of both sides.
     pub sizes: Vec<BandSize>,
-    /// The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies above.
+    /// The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies
+    /// above.
     pub fine_side: Vec<[f64; 2]>,
     /// The coarse side, likewise.
     pub coarse_side: Vec<[f64; 2]>,

@@ -151,8 +151,8 @@ impl Specification {
         Some(format!("D15F from {lower} to {upper} mm{open}, Cu from {LEAST_CU} to {MOST_CU}"))
     }
 
-    /// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains
-    /// it, in a sentence without its end; `None` where it does neither.
+    /// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that
+    /// retains it, in a sentence without its end; `None` where it does neither.
     pub fn raised_in_words(&self) -> Option<String> {
         let [least, greatest] = self.band.as_ref()?.d15_mm();
         if let Some(retains) = self.d15f_max_mm.filter(|of| greatest < of * (1.0 - 1e-9)) {
@@ -177,7 +177,8 @@ impl Specification {
         let least = steps::least_d10(self.band.as_ref()?);
         Some(format!(
             "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be \
-             set from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), \
+             set from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter \
+             26), \
              for a minimum D10F of {} mm.",
             // Where a table is entered: a finer D10F allows no coarser D90F.
             rounded_down(least)

@@ -290,11 +290,11 @@ impl Found<'_> {
         };
         SpecificationStep {
             values: sizes.iter().flat_map(both).collect(),
-            note:
-                "The control points are joined by straight lines on the form. Above 60 % finer neither side is \
+            note: "The control points are joined by straight lines on the form. Above 60 % finer neither \
+                 side is \
                    drawn, as no text was read for it. Below its D5 the fine side runs level to the No. 200 \
                    sieve."
-                    .into(),
+                .into(),
             source: "a drawing of this program".into(),
             ..step("Draw both sides of the band")
         }
