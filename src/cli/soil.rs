@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::args::SoilArgs;
 use super::print::{json, plain, shown, to_stdout};
 use crate::case::CaseError;
-use crate::gradation::{SoilSummary, named_soils_in, soils_in_file};
+use crate::gradation::{Gradation, SoilSummary, named_soils_in, soils_in_file};
 #[cfg(feature = "xlsx")]
 use crate::report::soil_template;
 use crate::report::soils_figure;
@@ -92,6 +92,9 @@ fn words(soils: &[SoilSummary]) -> String {
         if !unknown.is_empty() {
             line("  not known", format!("{}: finer than the finest opening", unknown.join(", ")));
         }
+        for [finer, coarser] in far_apart(soil) {
+            line("  straight line", format!("between {finer} and {coarser} mm, where no sieve tells the sizes"));
+        }
         let number = |value: Option<f64>| value.map_or("not known".to_owned(), digits);
         line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));
         line("fines", percent(soil.fines_percent, "finer than 0.075 mm"));
@@ -104,6 +107,13 @@ fn words(soils: &[SoilSummary]) -> String {
         }
     }
     text
+}
+
+/// Neighbouring sieves (mm) between which a rule of practice would read no straight line.
+fn far_apart(soil: &SoilSummary) -> Vec<[String; 2]> {
+    let points: Vec<(f64, f64)> = soil.points.iter().map(|point| (point.size, point.percent)).collect();
+    let steps = Gradation::from_points(&points, None).map_or(Vec::new(), |curve| curve.open_steps());
+    steps.iter().map(|step| [step.from_mm, step.to_mm].map(digits)).collect()
 }
 
 /// A percentage and what it is of.
