@@ -7,6 +7,7 @@ mod forged_checkpoints;
 mod golden;
 #[path = "../readers/mod.rs"]
 mod readers;
+mod results;
 mod sheets;
 mod soils;
 mod torn_checkpoints;

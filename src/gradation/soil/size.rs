@@ -250,11 +250,20 @@ fn us(text: &str) -> Option<(Opening, Said)> {
     let marked =
         MARKS.iter().find_map(|mark| text.strip_suffix(mark)).map(|rest| rest.trim_end_matches('-').trim());
     let inches = match marked {
-        Some(rest) => fraction(rest, number)?,
-        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => fraction(text, number)?,
+        Some(rest) => inches_of(rest)?,
+        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => inches_of(text)?,
         None => return None,
     };
     Some((Opening::Mm(of_inches(inches)), Said::Inches))
+}
+
+/// Inches as decimals or a fraction; `11/2` may be 1 1/2 without its space.
+fn inches_of(text: &str) -> Option<f64> {
+    let is_run_together = text.split_once('/').is_some_and(|(above, _)| {
+        let above = above.trim_start_matches(['-', ' ']);
+        above.len() > 1 && above.bytes().all(|b| b.is_ascii_digit())
+    });
+    fraction(text, number).filter(|&inches| !is_run_together || inches < 1.0)
 }
 
 /// The name of the US sieve with this opening (mm), by ASTM E11: `No. 4`, `3/8 in`; `None` for any other.
