@@ -206,8 +206,8 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
         _ if fails => Standing::Fails,
         _ if washout(rules).is_some() => Standing::WashedOut,
         Some(false) => Standing::NoMargin,
-        _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
         _ if open.is_some() => Standing::Open(open.unwrap_or_default()),
+        _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
         Some(true) => Standing::Met,
         None => {
             let needs = first_clause(&design.needs.to_string());

@@ -2,8 +2,9 @@
 //! may be spread, at its finer or at its coarser sieve.
 //!
 //! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it a rule whose answer hangs on the step
-//! has no result. Rules of internal stability read a straight line up to [`WIDE_STEP`]: the sieves of ASTM
-//! D448 stones stand that far apart where next to nothing passes.
+//! has no result. A rule of the filter's shape has none on any such step: what a filter loses is not known.
+//! Internal stability reads a straight line where next to nothing passes: sieves of ASTM D448 stones stand
+//! that far apart there.
 //!
 //! [`WIDE_STEP`]: crate::gradation::WIDE_STEP
 
@@ -14,6 +15,7 @@ use super::all::RULES;
 use super::base::BaseSoil;
 use super::judging::{judged, margin};
 use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
+use super::stability::MOST_HIDDEN_PERCENT;
 use crate::gradation::{End, Gradation, Step};
 use crate::outcome::applied::RuleRole;
 use crate::outcome::record::RuleNote;
@@ -87,7 +89,7 @@ impl OpenBase {
 pub struct OpenFilter {
     steps: Vec<Step>,
     curves: Vec<Gradation>,
-    /// The same with straight lines over steps that are not wide.
+    /// The same with straight lines where next to nothing passes.
     stable: Vec<Gradation>,
 }
 
@@ -96,8 +98,8 @@ impl OpenFilter {
     pub fn of(filter: &Gradation, is_measured: bool) -> Self {
         let steps = if is_measured { filter.open_steps() } else { Vec::new() };
         let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_| true) };
-        let stable =
-            if curves.is_empty() { Vec::new() } else { spread(filter, &steps, |step| step.is_wide()) };
+        let passes = |step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
+        let stable = if curves.is_empty() { Vec::new() } else { spread(filter, &steps, passes) };
         Self { steps: chosen(&steps), curves, stable }
     }
 }
@@ -219,7 +221,8 @@ fn combined(
     let by_margin =
         |a: &&Judged, b: &&Judged| margin(rule, a).partial_cmp(&margin(rule, b)).unwrap_or(Ordering::Equal);
     let Some(worst) = results.iter().chain([&plain]).min_by(by_margin).cloned() else { return plain };
-    let wide: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_wide()).collect();
+    let is_of_shape = matches!(rule.role, RuleRole::Stability | RuleRole::Placing);
+    let wide: Vec<usize> = (0..choices.len()).filter(|i| is_of_shape || choices[*i].is_wide()).collect();
     let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
     // Of what is not far apart the worst counts.
     let answer = |place: usize| {

@@ -8,7 +8,7 @@ use crate::outcome::record::{RuleNote, ValueBound, WithoutFiner};
 const KEZDI: f64 = 4.0;
 
 /// Percent below the finest sieve from which an index of the rest of the curve is only a bound.
-const MOST_HIDDEN_PERCENT: f64 = 5.0;
+pub(super) const MOST_HIDDEN_PERCENT: f64 = 5.0;
 
 /// Kezdi's ratio over sensible splits.
 pub fn kezdi(inputs: &RuleInputs) -> Judged {
