@@ -360,7 +360,7 @@ mod tests {
         use crate::outcome::record::{Confidence, Evidence};
         use crate::outcome::rules::BaseSoil;
         use crate::verdict::finding;
-        let rows = "0.01,0\n0.075,25\n0.3,92\n0.6,100\n";
+        let rows = "0.01,0\n0.02,8.6\n0.04,17.2\n0.075,25\n0.15,58.5\n0.3,92\n0.6,100\n";
         let points = [(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
         let soil = BaseSoil::of(&crate::Gradation::from_lines(&points).unwrap(), false);
         let of = |d15f: f64| {
