@@ -93,7 +93,10 @@ fn words(soils: &[SoilSummary]) -> String {
             line("  not known", format!("{}: finer than the finest opening", unknown.join(", ")));
         }
         for [finer, coarser] in far_apart(soil) {
-            line("  straight line", format!("between {finer} and {coarser} mm, where no sieve tells the sizes"));
+            line(
+                "  straight line",
+                format!("between {finer} and {coarser} mm, where no sieve tells the sizes"),
+            );
         }
         let number = |value: Option<f64>| value.map_or("not known".to_owned(), digits);
         line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));

@@ -10,7 +10,8 @@ use crate::judge::SMALL;
 use crate::program::{call, done};
 
 /// A till, which the rules regrade on 4.75 mm: 70 % are finer.
-const TILL: &str = "opening_mm,percent_finer\n19,100\n9.5,85\n4.75,70\n0.425,60\n0.075,21\n0.01,0\n";
+const TILL: &str = "opening_mm,percent_finer\n19,100\n9.5,85\n4.75,70\n2,66.5\n0.9,63.5\n0.425,60\n0.2,42\n0.1,26\n\
+                    0.075,21\n0.03,12\n0.01,0\n";
 
 /// A sand with D15 = 0.25 mm and Cu of about 3.
 const SAND: &str = "opening_mm,percent_finer\n4,100\n1,70\n0.25,15\n0.15,0\n";
@@ -107,7 +108,8 @@ fn has_both_gradations(base: &str, named: &str) {
 #[test]
 fn the_box_of_a_specification_warns_of_the_base_itself() {
     let root = site();
-    let gap = "opening_mm,percent_finer\n19,100\n4.75,50\n2,30\n0.425,29\n0.075,20\n0.01,0\n";
+    let gap = "opening_mm,percent_finer\n19,100\n9.5,75\n4.75,50\n2,30\n0.9,29.5\n0.425,29\n0.2,26\n0.075,20\n\
+               0.03,10\n0.01,0\n";
     fs::write(root.path().join("gap.csv"), gap).unwrap();
     let said = call(root.path(), &call_of("design gap.csv --steps --out gap", &[])).stdout;
     let said = String::from_utf8(said).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
@@ -127,7 +129,7 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
         assert!(answer.contains(&format!("<b>Warning</b>: {words}")), "{words}: {answer}");
         assert!(said.contains(words), "{words}: {said}");
     }
-    assert!(said.contains("Not a complete specification: the maximum D90F"), "{said}");
+    assert!(said.contains("Not a complete specification: there is no limit above D60F"), "{said}");
     // Nor is it silent where the same soil is walked, and it says each once.
     let words =
         call_of("design gap.csv --filter filter.csv --density loose --bracket 0.5,12 --out d", &SMALL);
@@ -167,8 +169,8 @@ fn a_specification_has_every_curve_of_its_base() {
         "<h3>Base, as sampled</h3>",
         "<h3>Base, regraded</h3>",
         &input("base.csv", TILL),
-        "Not a complete specification: the maximum D90F is still to be set from the table of FEMA (2011) or \
-         NRCS (National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of ",
+        "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be set",
+        "(National Engineering Handbook, Part 633, Chapter 26), for a minimum D10F of ",
     ] {
         assert!(page.contains(part), "{part}");
     }
@@ -181,7 +183,7 @@ fn a_specification_has_every_curve_of_its_base() {
     let said = format!("minimum D10F of {}\u{202f}mm", voidwalk::report::numbers::rounded_down(least));
     assert!(page.contains(&said), "{said}");
 
-    let both = TILL.replace("percent_finer", "north,south").replace(",70\n", ",70,60\n");
+    let both = TILL.replace("percent_finer", "north,south").replace(",85\n", ",85,80\n");
     let both: String = both
         .lines()
         .map(|line| match line.matches(',').count() {

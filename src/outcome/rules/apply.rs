@@ -148,7 +148,10 @@ impl Worst {
         let both = [before.lost, lost].into_iter().flatten();
         before.least = before.least.min(limit);
         before.lost = both.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
-        if margin < before.margin {
+        // Of equals the coarser base, which comes later, is the one to drain.
+        if margin < before.margin
+            || rule.at_least && rule.pairing == Pairing::EachPair && margin == before.margin
+        {
             (before.judged, before.margin, before.at) = (judged, margin, at);
         }
     }
