@@ -49,7 +49,8 @@ impl Gradation {
         let range = self.smallest_mm().max(least_mm)..=self.largest_mm();
         let [low, high] = [GAP_RANGE[0] - 100.0 * TIE, GAP_RANGE[1] + 100.0 * TIE];
         // On a straight stretch every D has as much between itself and 4 D: the finest counts.
-        let ends = [self.d(GAP_RANGE[0]), Some(least_mm)].into_iter().flatten();
+        let [first, last] = GAP_RANGE.map(|percent| self.d(percent));
+        let ends = [first, last, Some(least_mm)].into_iter().flatten();
         let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain(ends);
         let flat = candidates.filter(|d| range.contains(d)).map(at);
         let flat: Vec<Gap> = flat.filter(|gap| (low..=high).contains(&gap.percent)).collect();

@@ -44,6 +44,8 @@ pub(crate) mod dispersion;
 mod entry;
 pub(crate) mod evidence;
 mod evidence_groups;
+#[cfg(test)]
+mod fewer_sieves;
 pub(crate) mod finding;
 pub(crate) mod fitting;
 pub(crate) mod left_out;
