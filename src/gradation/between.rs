@@ -32,6 +32,11 @@ impl Step {
         self.to_mm > self.from_mm * WIDE_STEP * (1.0 + TIE)
     }
 
+    /// Whether a size lies between the two sieves, and on none of them.
+    pub(crate) fn holds(self, size_mm: f64) -> bool {
+        size_mm > self.from_mm * (1.0 + TIE) && size_mm < self.to_mm * (1.0 - TIE)
+    }
+
     /// Whether a size lies between the two sieves, or on one of them.
     pub fn encloses(self, size_mm: f64) -> bool {
         (self.from_mm * (1.0 - TIE)..=self.to_mm * (1.0 + TIE)).contains(&size_mm)

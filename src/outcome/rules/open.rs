@@ -64,8 +64,16 @@ impl OpenBase {
             return Self { choices: Vec::new(), curves: Vec::new() };
         }
         let steps = base.open_steps();
-        let curves =
-            spread(base, &steps, |_| true).into_iter().zip(spread(base, &steps, |step| step.is_wide()));
+        let wide = spread(base, &steps, |_, step| step.is_wide());
+        let cut = |curve: &Gradation| {
+            let otherwise = curve.regraded_otherwise(curve).and_then(|other| other.at_mm);
+            [curve.regraded().at_mm, otherwise]
+        };
+        let cuts: Vec<[Option<f64>; 2]> = wide.iter().map(cut).collect();
+        // What passes a cut within a step that is not wide is read on the straight line.
+        let is_cut = |place: usize, step: &Step| cuts[place].iter().flatten().any(|at| step.holds(*at));
+        let curves = spread(base, &steps, |place, step| step.is_wide() || !is_cut(place, step));
+        let curves = curves.into_iter().zip(wide);
         let read = |(curve, regraded_as): (Gradation, Gradation)| {
             let (soil, otherwise) = BaseSoil::both(&curve, &regraded_as);
             (curve, soil, otherwise)
@@ -97,8 +105,8 @@ impl OpenFilter {
     /// Of a filter; without curves where its table leaves nothing open.
     pub fn of(filter: &Gradation, is_measured: bool) -> Self {
         let steps = if is_measured { filter.open_steps() } else { Vec::new() };
-        let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_| true) };
-        let passes = |step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
+        let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_, _| true) };
+        let passes = |_: usize, step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
         let stable = if curves.is_empty() { Vec::new() } else { spread(filter, &steps, passes) };
         Self { steps: chosen(&steps), curves, stable }
     }
@@ -116,7 +124,7 @@ fn chosen(steps: &[Step]) -> Vec<Step> {
 /// A curve with the mass of each step at either end: bit `i` of a place is set where step `i` has it at its
 /// coarser sieve. Steps that are not looked at one by one go with the last of those that are; of those that
 /// are not read by their ends the curve is the straight line.
-fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(&Step) -> bool) -> Vec<Gradation> {
+fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> bool) -> Vec<Gradation> {
     let chosen = chosen(steps);
     let end = |place: usize, step: &Step| {
         let at = chosen.iter().position(|of| of == step).unwrap_or(chosen.len().saturating_sub(1));
@@ -124,7 +132,7 @@ fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(&Step) -> bool) ->
     };
     let at = |place: usize| {
         let ends: Vec<(Step, End)> =
-            steps.iter().filter(|step| by_ends(step)).map(|step| (*step, end(place, step))).collect();
+            steps.iter().filter(|step| by_ends(place, step)).map(|step| (*step, end(place, step))).collect();
         curve.with_mass_at(&ends)
     };
     (0..1usize << chosen.len()).map(at).collect()
