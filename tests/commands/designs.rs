@@ -195,7 +195,11 @@ fn by_practice_alone_nothing_is_walked_and_a_folder_of_sheets_is_taken() {
     let at = root.path();
     fs::create_dir(at.join("sheets")).unwrap();
     fs::rename(at.join("samples.csv"), at.join("sheets/one.csv")).unwrap();
-    fs::write(at.join("sheets/two.csv"), "mm,percent finer\n2,100\n0.075,60\n0.002,5\n").unwrap();
+    fs::write(
+        at.join("sheets/two.csv"),
+        "mm,percent finer\n2,100\n0.6,92\n0.2,80\n0.075,60\n0.02,45\n0.006,30\n0.002,15\n",
+    )
+    .unwrap();
     let said = designed(at, &["design", "sheets", "--each", "--steps"]).stdout;
     let said = String::from_utf8(said).unwrap();
     let all = record(&at.join("voidwalk-designs"));

@@ -125,7 +125,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
     assert!(!text.contains("Short lines at the 15 % row"));
 
     // One number of Fell et al. is both limits of a dispersive base.
-    let soil = |points: &[(f64, f64)]| vec![("soil".into(), Gradation::from_points(points, None).unwrap())];
+    let soil = |points: &[(f64, f64)]| vec![("soil".into(), Gradation::from_lines(points).unwrap())];
     let clay = soil(&[(0.002, 30.0), (0.02, 62.0), (0.075, 88.0), (0.425, 98.0), (2.0, 100.0)]);
     let options = PairOptions { dispersive: true, ..PairOptions::default() };
     plan.outcome.rules =
@@ -140,7 +140,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
 #[test]
 fn a_rule_that_is_met_was_judged_for_these_gradations_alone() {
     let mut plan = Plan::usual();
-    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
+    let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
     let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
     let said = |plan: &Plan| words(&made(plan).0).matches("Judged for these two gradations alone. ").count();
     for (filter, times) in [([(1.0, 0.0), (3.0, 100.0)], 1), ([(8.0, 0.0), (16.0, 100.0)], 0)] {
@@ -153,8 +153,8 @@ fn a_rule_that_is_met_was_judged_for_these_gradations_alone() {
 /// graded among the first findings.
 #[test]
 fn a_washout_is_said_once_and_a_broad_base_among_the_first() {
-    let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
-    let gap = soil(&[(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)]);
+    let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
+    let gap = soil(&[(0.3, 0.0), (0.36, 16.0), (2.4, 16.0), (6.0, 100.0)]);
     let mut plan = Plan::usual();
     plan.outcome.rules = PairRules::of(&soil(&[(0.2, 0.0), (0.6, 100.0)]), &gap).rules;
     let found = |id: &str, weight: Weight, against: bool| FindingRecord {
