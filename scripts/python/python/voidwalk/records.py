@@ -808,7 +808,8 @@ class AppliedRule(_AppliedRule, total=False):
     at_least
         Whether `limit` is the least that the rule allows instead of the most.
     limit_at_most
-        Whether the true limit is not known, and is at most `limit`.
+        Whether the true limit is not known, and is at most `limit`; on either side of it where `needs` names
+        sieves that stand far apart.
     met
         Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing erosion
         `true` says only that this is not reached: some or excessive erosion is not excluded.
