@@ -347,9 +347,10 @@ mod tests {
         let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();
         let begin = "take a filter with a D15F of at most 0.860 mm (if the base is dispersive, which is not \
                      stated: at most 0.500 mm, and have the pair tested) and at least ";
-        let design = next("0.01,0\n0.075,38\n0.6,84\n4,100\n");
+        let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
+        let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");
-        let pan = next("0.075,38\n0.6,84\n4,100\n");
+        let pan = next(sieved);
         assert!(pan.starts_with(&format!("{begin}0.375 mm; for a filter that exists")), "{pan}");
     }
 
