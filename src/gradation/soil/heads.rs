@@ -157,7 +157,7 @@ mod tests {
             ("3/4 in. % passing", "3/4 in"),
             ("Minus #200", "#200"),
             ("Durchgang 4 mm", "4 mm"),
-            ("Passant 80 µm (%)", "80 µm"),
+            ("Passant 80 µm", "80 µm"),
             ("No. 4", "No. 4"),
         ] {
             let head = head(heading).unwrap_or_else(|| panic!("{heading}"));
