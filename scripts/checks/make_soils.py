@@ -372,6 +372,22 @@ def several_tables():
     put("cell_twice.xlsx", repacked(book, {sheet: f"<worksheet><sheetData>{cell_twice}</sheetData></worksheet>"}), refused=["cell B1 stands in it twice"])
 
 
+def washed():
+    """What was washed out, rows that are commented out, classes that end at 0, results in other languages."""
+    soil = [(8, 100), (2, 85), (0.5, 35), (0.063, 5)]
+    sieved = "Sieve (mm),Retained (g)\n8,0\n2,60\n0.5,200\n0.063,120\n"
+    put("washed.csv", sieved + "Pan (dry),2\nFines washed out,18\nTotal dry mass before washing,400\n", soil, ["masses retained"])
+    put("washed_no_total.csv", sieved + "Pan,2\nFines washed out,18\n", refused=["line 7", "a part of the whole"])
+    put("washed_wrong_total.csv", sieved + "Pan,2\nFines washed out,18\nTotal,480\n", refused=["line 7", "a part of the whole"])
+    put("washed_beside_percent.csv", "Sieve (mm),% retained,% finer\n8,0,100\n2,15,85\n0.5,50,35\n0.063,30,5\nPan,0.5,5\nLoss by washing,4.5,\n",
+        soil, ["that of the finest sieve again"])
+    put("mass_in_comment.csv", "Sieve (mm),Retained (g)\n8,0\n# 2,60\n0.5,200\n0.063,120\nPan,20\n", refused=["line 3", "a part of the whole"])
+    put("classes_to_0.csv", "Size (mm),% of mass\n8-2,15\n2-0.5,50\n0.5-0.063,30\n0.063-0,5\n", soil, ["percents of classes"])
+    put("classes_rising.csv", "Size (mm),Mass (g)\n0 - 0.063,20\n0.063 - 0.5,120\n0.5 - 2,200\n2 - 8,60\n", soil)
+    put("results_german.csv", "Probe;Durchgang 8 mm;Durchgang 2 mm;Durchgang 0,063 mm\nP1;100;85;5\nP2;100;91;12,5\n",
+        {"P1": [(8, 100), (2, 85), (0.063, 5)], "P2": [(8, 100), (2, 91), (0.063, 12.5)]})
+
+
 def repacked(book, changes, deflate=zipfile.ZIP_DEFLATED):
     """The zip with parts replaced or added."""
     out = io.BytesIO()
@@ -525,6 +541,7 @@ def main():
     workbooks()
     several_tables()
     results()
+    washed()
     print(len(list(HERE.iterdir())) // 2, "files", file=sys.stderr)
 
 

@@ -25,6 +25,7 @@ pub(super) fn refuse_lost(
     let is_rest = |row: &GridRow| {
         let size = opening(row.cell(extent.column_of_size(layout, row)));
         matches!(size, Some((Opening::Pan | Opening::Total | Opening::Below(_), _)))
+            || matches!(size, Some((Opening::Class(_, 0.0), _)))
             || matches!(size, Some((Opening::Bare(0.0) | Opening::Mm(0.0), _)))
     };
     let mut read: HashSet<usize> = HashSet::new();

@@ -326,6 +326,7 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         sheet: grid.sheet.clone(),
         delimiter: grid.delimiter,
         rows: columns.iter().zip(texts).map(turned).collect(),
+        commented: grid.commented.clone(),
         notes: grid.notes.clone(),
         left: 0,
         across: Some(lines),

@@ -40,8 +40,8 @@ pub(super) fn refuse(
             let size = opening(row.cell(extent.column_of_size(layout, row)));
             matches!(size, Some((Opening::Pan | Opening::Below(_), _)))
         };
-        let pan = extent.rows(grid, layout).find(is_pan).map(|row| row.line);
-        let differing: Vec<Option<usize>> = read.iter().map(|soil| differs(soil, &values, pan)).collect();
+        let pans: Vec<usize> = extent.rows(grid, layout).filter(is_pan).map(|row| row.line).collect();
+        let differing: Vec<Option<usize>> = read.iter().map(|soil| differs(soil, &values, &pans)).collect();
         if let Some(Some(line)) = differing.first().filter(|_| differing.iter().all(Option::is_some)) {
             let allowed = format!(
                 "percents retained that agree with those in {}, or one of the two columns alone",
@@ -55,7 +55,7 @@ pub(super) fn refuse(
 }
 
 /// The first line in which percents retained, on each sieve or cumulative, are not what the curve leaves.
-fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pan: Option<usize>) -> Option<usize> {
+fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     let is_fraction = rows.len() > 1 && rows.iter().all(|row| retained[&row.line] <= 1.0);
@@ -68,10 +68,11 @@ fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pan: Option<usize>) -> O
         (sum - (100.0 - row.percent)).abs() > ROUNDED
     });
     let single = single.map(|row| row.line);
-    let rest = pan.filter(|line| {
-        let finest = rows.last().filter(|row| row.line != *line);
-        let value = retained.get(line).map(|value| factor * value);
-        finest.zip(value).is_some_and(|(finest, value)| (value - finest.percent).abs() > ROUNDED)
+    // What was washed out is a part of the pan.
+    let of_pans: Vec<f64> = pans.iter().filter_map(|line| Some(factor * retained.get(line)?)).collect();
+    let rest = pans.first().copied().filter(|_| {
+        let finest = rows.last().filter(|row| !pans.contains(&row.line) && !of_pans.is_empty());
+        finest.is_some_and(|finest| (of_pans.iter().sum::<f64>() - finest.percent).abs() > ROUNDED)
     });
     cumulative.and(single.or(rest))
 }

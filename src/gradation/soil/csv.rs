@@ -41,7 +41,10 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
         let mut content = lines[at].to_owned();
         at += 1;
         if is_comment(&content) {
-            comments.extend((marked(&content) == Some(Marked::Numbers)).then_some(line));
+            if marked(&content) == Some(Marked::Numbers) {
+                comments.push(line);
+                grid.commented.push((line, content.trim().to_owned()));
+            }
             continue;
         }
         // A quoted heading may hold line breaks.

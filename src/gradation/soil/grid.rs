@@ -16,6 +16,8 @@ pub(super) struct Grid {
     pub(super) delimiter: char,
     /// Rows that hold anything.
     pub(super) rows: Vec<GridRow>,
+    /// Rows of numbers that are commented out: their lines and texts.
+    pub(super) commented: Vec<(usize, String)>,
     /// What was assumed so far.
     pub(super) notes: Vec<String>,
     /// Columns of the file to the left of this grid, where it is a part of one.
@@ -116,6 +118,7 @@ impl Grid {
             sheet: self.sheet.clone(),
             delimiter: self.delimiter,
             rows: Vec::new(),
+            commented: self.commented.clone(),
             notes: self.notes.clone(),
             left: self.left + range.start,
             across: None,
@@ -149,6 +152,7 @@ impl Grid {
             sheet: self.sheet.clone(),
             delimiter: self.delimiter,
             rows: self.rows[range].to_vec(),
+            commented: self.commented.clone(),
             notes: self.notes.clone(),
             left: self.left,
             across: None,

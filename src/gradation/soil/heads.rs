@@ -1,6 +1,6 @@
 //! Openings within the headings of percents, as tables of results have them: `P#200`, `Passing 19 mm`.
 
-use super::heading::{Retained, Role, says_sample, words};
+use super::heading::{Retained, Role, role, says_finer, says_sample, words};
 use super::size::{Opening, opening};
 
 /// Words before or behind an opening that say what passes it.
@@ -41,12 +41,13 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
     let small = heading.to_lowercase().replace('_', " ");
     let (mut rest, mut said, mut retained, mut cumulative) = (small.as_str(), false, false, None);
     let mut take = |word: &str, said: &mut bool| {
-        let is_retained = RETAINED.contains(&word);
+        let is_retained =
+            RETAINED.contains(&word) || matches!(role(word), Role::Retained(Retained { percent: true, .. }));
         retained |= is_retained;
         if word.starts_with("cum") {
             cumulative = Some(true);
         }
-        let is_word = is_retained || FINER.contains(&word);
+        let is_word = is_retained || FINER.contains(&word) || says_finer(word);
         *said |= is_word;
         is_word || *said && BETWEEN.contains(&word)
     };
@@ -159,13 +160,15 @@ mod tests {
             ("19 mm passing", "19 mm"),
             ("3/4 in. % passing", "3/4 in"),
             ("Minus #200", "#200"),
+            ("Durchgang 4 mm", "4 mm"),
+            ("Passant 80 µm", "80 µm"),
             ("No. 4", "No. 4"),
         ] {
             let head = head(heading).unwrap_or_else(|| panic!("{heading}"));
             assert_eq!(head.text, text, "{heading}");
             assert!(!matches!(head.role, Some(Role::Retained(_))), "{heading}");
         }
-        for heading in ["% ret #4", "Cum. % retained on 4.75 mm", "+4.75 mm"] {
+        for heading in ["% ret #4", "Rückstand 4 mm", "Cum. % retained on 4.75 mm", "+4.75 mm"] {
             assert!(matches!(head(heading).unwrap().role, Some(Role::Retained(_))), "{heading}");
         }
         for heading in ["LL", "PI (%)", "Sample", "P80 (um)", "D60", "Depth (m)", "Gravel %", "Cu", "P", "%"]

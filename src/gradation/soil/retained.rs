@@ -3,7 +3,7 @@
 use super::extent::Below;
 use super::grid::Grid;
 use super::heading::{Retained, words};
-use super::size::{Entry, Opening};
+use super::size::{Entry, Opening, is_washed};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 use crate::gradation::table::Row;
@@ -77,7 +77,12 @@ pub(super) fn percents_finer(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Row>, TableError> {
     let mut sieves: Vec<(usize, f64, f64)> = Vec::new();
-    let (mut pan, mut total) = (None, None);
+    if let Some((line, text)) = weighed.grid.commented.first() {
+        let allowed = "every row of what is retained, as each is a part of the whole: take away this row or \
+                       the # before it";
+        return Err(weighed.grid.refused(*line, 0, FIELDS[0], text, allowed));
+    }
+    let (mut pans, mut total) = (Vec::new(), None);
     for entry in entries {
         match entry.opening {
             Opening::Mm(size) => sieves.push((entry.line, size, entry.value)),
@@ -85,9 +90,17 @@ pub(super) fn percents_finer(
                 return Err(weighed.refused(entry.line, entry.value, "one total"));
             }
             Opening::Total => total = Some(entry.value),
-            _ if pan.is_none() => pan = Some((entry.line, entry.value)),
-            _ => return Err(weighed.refused(entry.line, entry.value, "one row for the pan")),
+            _ => pans.push(entry),
         }
+    }
+    let pan = pans.first().map(|first| (first.line, pans.iter().map(|entry| entry.value).sum::<f64>()));
+    let sum = sieves.iter().map(|sieve| sieve.2).sum::<f64>() + pan.map_or(0.0, |pan| pan.1);
+    let is_whole = total.is_some_and(|total: f64| (sum - total).abs() <= ROUNDED / 100.0 * total);
+    let washed = pans.iter().find(|entry| is_washed(&entry.text));
+    if let Some(part) = washed.or(pans.get(1)).filter(|_| !is_whole) {
+        let allowed = "one row for the pan, the last, with all that was washed out or lost, as it is a part of \
+                       the whole; or a row for the total, to which all of them sum";
+        return Err(weighed.grid.refused(part.line, part.column, FIELDS[0], &part.text, allowed));
     }
     let is_turn = |w: &[(usize, f64, f64)]| (w[0].1 - w[1].1) * (w[1].1 - w[2].1) < 0.0;
     if let Some(turn) = sieves.windows(3).find(|three| is_turn(three)) {

@@ -123,6 +123,29 @@ pub(super) enum Said {
     Inches,
 }
 
+/// Whether a text names what was washed out of a sample before it was sieved.
+pub(super) fn is_washed(text: &str) -> bool {
+    const NAMES: [&str; 6] = [
+        "fines washed out",
+        "washed out",
+        "loss by washing",
+        "loss on washing",
+        "lost by washing",
+        "washing loss",
+    ];
+    let small = text.to_lowercase();
+    let name = small.trim_end_matches([' ', ':', '.']);
+    NAMES.contains(&name.strip_suffix("(g)").unwrap_or(name).trim())
+}
+
+/// `Total`, `Total dry mass before washing`.
+fn is_sum(text: &str) -> bool {
+    const MORE: [&str; 8] = ["mass", "weight", "dry", "sample", "of", "soil", "before", "washing"];
+    let mut words = text.split_whitespace();
+    ["total", "totals", "sum"].contains(&words.next().unwrap_or_default())
+        && words.all(|word| MORE.contains(&word))
+}
+
 /// What a cell says of an opening; `None` for anything else.
 pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     if let Some(value) = number(text) {
@@ -138,7 +161,10 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) {
         return Some((Opening::Pan, Said::Plain));
     }
-    if ["total", "totals", "sum", "total mass"].contains(&plain) || is_total(plain) {
+    if is_washed(text) {
+        return Some((Opening::Pan, Said::Plain));
+    }
+    if is_sum(plain) || is_total(plain) {
         return Some((Opening::Total, Said::Plain));
     }
     if let Some(rest) =
@@ -181,7 +207,7 @@ fn class(text: &str) -> Option<(Opening, Said)> {
     let with_unit = || if said > Said::Plain { sieve(&format!("{first} {unit}")) } else { None };
     let is_bare = |said: Said| said == Said::Plain;
     let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(said)).or_else(with_unit)?;
-    (upper != lower).then_some((Opening::Class(upper, lower), said))
+    (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), said))
 }
 
 /// `9.5 mm`, also within `No. 4 (4.75 mm)`; `75 um`.
