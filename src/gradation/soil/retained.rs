@@ -98,7 +98,8 @@ pub(super) fn percents_finer(
     let is_whole = total.is_some_and(|total: f64| (sum - total).abs() <= ROUNDED / 100.0 * total);
     let washed = pans.iter().find(|entry| is_washed(&entry.text));
     if let Some(part) = washed.or(pans.get(1)).filter(|_| !is_whole) {
-        let allowed = "one row for the pan, the last, with all that was washed out or lost, as it is a part of \
+        let allowed = "one row for the pan, the last, with all that was washed out or lost, as it is a \
+                       part of \
                        the whole; or a row for the total, to which all of them sum";
         return Err(weighed.grid.refused(part.line, part.column, FIELDS[0], &part.text, allowed));
     }
