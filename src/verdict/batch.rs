@@ -99,8 +99,8 @@ impl BatchRow {
     /// ```
     /// use voidwalk::gradation::{Gradation, SoilSample};
     /// use voidwalk::verdict::{BatchRow, PairOptions};
-    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
-    /// let curve = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+    /// let curve = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let sample = SoilSample { name: "S".into(), path: "site.csv#S".into(), curve };
     /// let filter = vec![("F".to_owned(), filter)];
     /// let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());

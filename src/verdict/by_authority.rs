@@ -60,8 +60,8 @@ impl PairRules {
     ///
     /// ```
     /// use voidwalk::{Gradation, outcome::rules::Authority, verdict::PairRules};
-    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
-    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+    /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let stated = PairRules::of(&base, &filter).stated_by(Authority::Nrcs).by_authority.unwrap();
     /// assert!(stated.said.starts_with("NRCS: met: D15F 0.616 mm is within 0.98"), "{}", stated.said);
     /// # Ok::<(), voidwalk::gradation::GradationError>(())

@@ -58,8 +58,8 @@ impl Mistake {
     ///
     /// ```
     /// use voidwalk::{Gradation, verdict::Mistake};
-    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
-    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
+    /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
     /// assert_eq!(Mistake::find(&base, &filter, false), None);
     /// assert!(Mistake::find(&filter, &base, false).unwrap().is_refused());
     /// # Ok::<(), voidwalk::gradation::GradationError>(())

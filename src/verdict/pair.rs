@@ -122,8 +122,8 @@ impl PairRules {
     ///
     /// ```
     /// use voidwalk::{Gradation, verdict::PairRules};
-    /// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
-    /// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+    /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let pair = PairRules::of(&base, &filter);
     /// assert_eq!(pair.base.category, Some(4));
     /// let rule = pair.rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();

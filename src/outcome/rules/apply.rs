@@ -38,8 +38,8 @@ pub(crate) fn authority_in_brief(rule: &AppliedRule) -> &str {
 /// ```
 /// use voidwalk::Gradation;
 /// use voidwalk::outcome::rules::{Authority, RuleInputs, apply, is_stated_by};
-/// let filter = Gradation::from_points(&[(0.5, 0.0), (2.0, 100.0)], None)?;
-/// let base = Gradation::from_points(&[(0.08, 0.0), (0.3, 100.0)], None)?;
+/// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+/// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
 /// let rules = apply(&RuleInputs::of_soils(&base, &filter));
 /// let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
 /// let is_of_nrcs = |id: &str| is_stated_by(find(id), Authority::Nrcs);

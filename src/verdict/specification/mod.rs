@@ -48,7 +48,7 @@ impl Specification {
     /// use voidwalk::Gradation;
     /// use voidwalk::outcome::design::Specification;
     /// use voidwalk::verdict::SpecificationOptions;
-    /// let clay = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None)?;
+    /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
     /// let of = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
     /// assert_eq!((of.d15f_min_mm, of.d15f_max_mm), (Some(0.1), Some(0.7)));
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
@@ -133,7 +133,7 @@ impl Specification {
     /// use voidwalk::Gradation;
     /// use voidwalk::outcome::design::Specification;
     /// use voidwalk::verdict::SpecificationOptions;
-    /// let clay = Gradation::from_points(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)], None)?;
+    /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
     /// let of = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
     /// assert_eq!(of.band_in_words().as_deref(), Some("D15F from 0.140 to 0.700 mm, Cu from 2 to 6"));
     /// # Ok::<(), voidwalk::gradation::GradationError>(())
