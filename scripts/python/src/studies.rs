@@ -108,6 +108,7 @@ pub fn design(
 /// `specification.json`.
 #[pyfunction]
 #[pyo3(signature = (base, dispersive, finer, sieves, out, overwrite, progress))]
+#[allow(clippy::too_many_arguments)]
 pub fn specification(
     py: Python<'_>,
     base: PathBuf,
