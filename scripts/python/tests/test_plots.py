@@ -97,7 +97,8 @@ def test_studies_are_drawn() -> None:
 
 
 def test_a_specification_is_drawn_with_its_band() -> None:
-    found = vw.specification(([0.002, 0.075, 2.0, 19.0], [0, 60, 90, 100]))
+    sizes = [0.002, 0.005, 0.0125, 0.03, 0.075, 0.15, 0.3, 0.6, 1.2, 2.0, 4.75, 9.5, 19.0]
+    found = vw.specification((sizes, [0, 15, 30, 45, 60, 66, 72, 79, 85, 90, 94, 97, 100]))
     ax = found.plot()
     said = words(ax)
     assert said[:2] == ["Size (mm)", "Percent finer by mass"] and ax.get_xscale() == "log"

@@ -52,11 +52,12 @@ def rules(
     Examples
     --------
     >>> import voidwalk as vw
-    >>> base = vw.Gradation([0.08, 0.3], [0, 100])
-    >>> pair = vw.rules(base, vw.Gradation([0.5, 2.0], [0, 100]))
+    >>> base = vw.Gradation([0.08, 0.155, 0.3], [0, 50, 100])
+    >>> filter = vw.Gradation([0.5, 1.0, 2.0], [0, 50, 100])
+    >>> pair = vw.rules(base, filter)
     >>> [rule["met"] for rule in pair["rules"] if rule["id"] == "sherard-dunnigan"]
     [True]
-    >>> stated = vw.rules(base, vw.Gradation([0.5, 2.0], [0, 100]), authority="nrcs")["by_authority"]
+    >>> stated = vw.rules(base, filter, authority="nrcs")["by_authority"]
     >>> stated["said"].split(" (")[0], stated["rules"]
     ('NRCS: met: D15F 0.616 mm is within 0.984 mm', ['sherard-dunnigan', 'permeability'])
     """

@@ -207,12 +207,12 @@ def specification(
     Examples
     --------
     >>> import voidwalk as vw
-    >>> core = ([0.002, 0.075, 2.0], [0, 60, 100])
+    >>> core = ([0.002, 0.005, 0.0125, 0.03, 0.075, 0.15, 0.3, 0.6, 1.2, 2.0], [0, 15, 30, 45, 60, 68, 77, 85, 94, 100])
     >>> found = vw.specification(core)
     >>> found
     Specification(base: D15F from 0.140 to 0.700 mm)
     >>> found.d15f_min_mm, found.d15f_max_mm, len(found.limits)
-    (0.1, 0.7, 10)
+    (0.1, 0.7, 6)
     """
     with workplace() as place, Following(progress) as callback:
         place_of_results = Path(place.out(out))
