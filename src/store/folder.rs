@@ -33,7 +33,7 @@ const SIGNS_WITHIN: Duration = Duration::from_millis(200);
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    _lock: File,
+    _lock: Lock,
 }
 
 impl Folder {
@@ -94,9 +94,10 @@ impl Folder {
         if !shared {
             let holder = format!("process {} on {}\n", std::process::id(), platform::host_name());
             ask(Call::Sign(&lock_path, holder.as_bytes()), || {
-                lock.set_len(0)?;
-                (&lock).rewind()?;
-                (&lock).write_all(holder.as_bytes())
+                let mut file = &lock.0;
+                file.set_len(0)?;
+                file.rewind()?;
+                file.write_all(holder.as_bytes())
             })
             .map_err(io("write to the folder"))?;
             clear_parts(path).map_err(io("clear up the folder"))?;
@@ -191,8 +192,20 @@ impl Folder {
     }
 }
 
+/// A locked file, unlocked when it is dropped: a process that is just being started has a copy of every open
+/// file, and would keep the lock until it becomes another program.
+#[derive(Debug)]
+struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Where this fails, the system unlocks when the last copy is closed.
+        let _ = self.0.unlock();
+    }
+}
+
 /// Opens a lock file and locks it, for this process alone or `shared`.
-fn lock(path: &Path, shared: bool) -> Result<File, StoreError> {
+fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     let folder = path.parent().unwrap_or(path);
     let failed = |source| StoreError::Io { path: folder.to_owned(), action: "write to the folder", source };
     let mut options = File::options();
@@ -205,7 +218,7 @@ fn lock(path: &Path, shared: bool) -> Result<File, StoreError> {
         return Err(StoreError::NotALock { path: path.to_owned() });
     }
     match platform::try_lock(&file, shared) {
-        Ok(()) => Ok(file),
+        Ok(()) => Ok(Lock(file)),
         Err(TryLockError::WouldBlock) => {
             Err(StoreError::Held { path: folder.to_owned(), holder: holder(path) })
         }
@@ -230,7 +243,7 @@ fn holder(path: &Path) -> String {
 }
 
 /// Opens a lock file and shares it; whoever happens to be alone with it first clears up.
-fn share(path: &Path) -> Result<File, StoreError> {
+fn share(path: &Path) -> Result<Lock, StoreError> {
     if let Ok(alone) = lock(path, false) {
         let folder = path.parent().unwrap_or(path);
         let failed =

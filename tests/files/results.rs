@@ -75,3 +75,27 @@ fn percents_of_a_sample_are_never_openings_whatever_the_headings_say() {
     }
     assert!(read > 400 && refused > 400, "{read} read, {refused} refused");
 }
+
+/// `p4` and `No. 4` are sieves above percents, and names of soils beside a column of sizes.
+#[test]
+fn beside_a_column_of_sizes_headings_are_names() {
+    let sizes = [9.0, 4.0, 2.0, 0.5];
+    for (lead, first) in [("p", 0), ("P", 1), ("Passing ", 1), ("% finer ", 3), ("s", 1), ("P #", 4)] {
+        for size in ["size_mm", "Sieve (mm)", "Korngröße [mm]"] {
+            let names: Vec<String> = (first..first + 6).map(|n| format!("{lead}{n}")).collect();
+            let mut text = format!("{size},{}\n", names.join(","));
+            for (row, size) in sizes.iter().enumerate() {
+                let percents = (0..6).map(|soil| (100 - row * (20 + soil)).to_string());
+                text += &format!("{size},{}\n", percents.collect::<Vec<_>>().join(","));
+            }
+            let soils = Soil::all("a.csv", text.as_bytes()).unwrap_or_else(|e| panic!("{text}{e}"));
+            assert_eq!(soils.len(), 6, "{text}");
+            for (at, (soil, name)) in soils.iter().zip(&names).enumerate() {
+                let curve = soil.gradation(None).unwrap();
+                let finer = curve.percent_finer_by_mass(4.0);
+                assert!((finer - (80 - at) as f64).abs() < 1e-9, "{text}{finer}");
+                assert!(soil.name().contains(name.trim()), "{text}{}", soil.name());
+            }
+        }
+    }
+}

@@ -177,7 +177,13 @@ fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec
         true => of_names(c),
         false => !is_blank(cell),
     };
+    let is_size = |c: &usize| role(heading.cell(*c)) == Role::Size && !openings.contains(c);
+    let sizes: Vec<usize> = heading.filled().filter(is_size).collect();
     let is_soil = |row: &GridRow| {
+        // A size of its own in each row: the headings are names of soils such as p4.
+        if sizes.iter().any(|&c| is_value(row.cell(c)) || is_sieve(row.cell(c))) {
+            return false;
+        }
         let named = (0..openings[0]).any(|c| is_name(c, row.cell(c)));
         let values = openings.iter().filter(|&&c| is_value(row.cell(c))).count();
         let filled = openings.iter().filter(|&&c| !is_blank(row.cell(c))).count();

@@ -79,3 +79,13 @@ fn a_link_is_not_followed() {
     assert!(matches!(Folder::open(&with_slash), Err(StoreError::NotAFolder { .. })));
     assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
 }
+
+/// A process that is being started has a copy of every open file until it becomes another program.
+#[test]
+fn a_folder_that_is_let_go_is_free_though_its_lock_file_is_open_elsewhere() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::open(root.path()).unwrap();
+    let _copy = folder._lock.0.try_clone().unwrap();
+    drop(folder);
+    assert!(Folder::open(root.path()).is_ok());
+}
