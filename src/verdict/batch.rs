@@ -3,16 +3,16 @@
 
 use super::mistake::Mistake;
 use super::pair::{PairOptions, PairRules};
-use super::practice::{DRAINAGE_UNKNOWN, broken};
+use super::practice::{DRAINAGE_UNKNOWN, broken, open_sieves, standing};
 use super::practice_words::MET_UNLESS_DISPERSIVE;
 use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
-use crate::gradation::SoilSample;
+use crate::gradation::{Gradation, SoilSample};
 use crate::outcome::design::band::{retaining, retention};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{AppliedRule, RuleQuantity, RuleRole};
-use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY};
+use crate::outcome::record::{AppliedRule, PracticeClass, RuleNote, RuleQuantity, RuleRole, RuleText};
+use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, sieved_limit};
 use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -40,9 +40,11 @@ pub struct BatchRow {
     pub regraded_at_mm: Option<f64>,
     /// 85 % finer, after regrading.
     pub d85b_mm: Option<f64>,
-    /// 15 % finer of the filter, of its coarsest curve.
+    /// 15 % finer of the filter, of its coarsest curve; `None` where the result hangs on it and its sieves
+    /// leave it open.
     pub d15f_mm: Option<f64>,
-    /// The strictest limit of D15F by which the filter retains the sample.
+    /// The strictest limit of D15F by which the filter retains the sample; the least that it can be where
+    /// sieves of the sample stand far apart.
     pub limit_mm: Option<f64>,
     /// Whether the true limit is not known, and is at most that.
     pub limit_at_most: bool,
@@ -146,8 +148,14 @@ impl BatchRow {
         let rules = &pair.rules;
         // A D15F that lies in a finest tail has the limits in mm all the same.
         let strictest = retention(rules, pair.filter.d15_mm.unwrap_or(1.0));
+        let strictest = strictest.map(|(rule, limit)| (rule, limit, rule.limit_at_most));
+        let least = least_limit(rules, base, options.dispersive).map(|(rule, limit)| (rule, limit, false));
+        let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
-        let unknown = retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
+        let between = open_sieves(rules);
+        // As on the page of the pair: what is left of a filter that may lose its own fines nobody knows.
+        let unknown = standing(rules).class() == PracticeClass::NotKnown
+            || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
         let washout = washout(rules);
         let is_kept = |role| broken(rules, role).is_empty();
         let met = match is_kept(RuleRole::Retention) && is_kept(RuleRole::Continuation) {
@@ -167,22 +175,26 @@ impl BatchRow {
             true => drainage.and_then(|rule| rule.met),
             false => Some(false),
         };
+        let greatest = drainage.and_then(|rule| hanging_limit(rule, base, options.dispersive));
         let open = (drainage.is_some() && drains.is_none()).then_some(DRAINAGE_UNKNOWN);
         let also: Vec<&str> = also.map(|(_, what)| what).chain(open).collect();
         let also = also.join(", ");
         let if_dispersive = pair.if_dispersive.filter(|_| met == Some(true));
         let beyond = if_dispersive.and_then(|of| of.beyond_in_words(rules, pair.filter.d15_mm));
-        let notes = [doubt, beyond.clone(), Some(also).filter(|said| !said.is_empty()), joint(rules)];
+        let between = between.filter(|_| met.is_none());
+        let notes =
+            [doubt, between, beyond.clone(), Some(also).filter(|said| !said.is_empty()), joint(rules)];
         let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
-            limit_mm: strictest.map(|(_, limit)| limit),
-            limit_at_most: strictest.is_some_and(|(rule, _)| rule.limit_at_most),
-            rule: strictest.map_or(String::new(), |(rule, limit)| whose(rules, rule, limit)),
+            d15f_mm: row.d15f_mm.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
+            limit_mm: strictest.map(|(_, limit, _)| limit),
+            limit_at_most: strictest.is_some_and(|(.., at_most)| at_most),
+            rule: strictest.map_or(String::new(), |(rule, limit, _)| whose(rules, rule, limit)),
             met,
             tests: tested_in_brief(rules).into(),
             drains,
-            d15f_min_mm: drainage.and_then(|rule| rule.limit),
-            d15f_min_at_most: drainage.is_some_and(|rule| rule.limit_at_most),
+            d15f_min_mm: greatest.or(drainage.and_then(|rule| rule.limit)),
+            d15f_min_at_most: greatest.is_none() && drainage.is_some_and(|rule| rule.limit_at_most),
             note,
             may_lose_fines: !broken(rules, RuleRole::Stability).is_empty(),
             breaks_if_dispersive: beyond.is_some(),
@@ -199,6 +211,32 @@ impl BatchRow {
             None => "no result",
         }
     }
+}
+
+/// The strictest that a limit can be which hangs on sieves of the base that stand far apart; `None` where it
+/// does not.
+fn hanging_limit(rule: &AppliedRule, base: &Gradation, dispersive: bool) -> Option<f64> {
+    let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
+    let limit = is_open.then(|| sieved_limit(&rule.id, base, dispersive)).flatten()?;
+    limit.hangs_on.map(|_| limit.strictest)
+}
+
+/// The rule with the least limit of retention of those that hang on sieves of the base.
+fn least_limit<'r>(
+    rules: &'r [AppliedRule],
+    base: &Gradation,
+    dispersive: bool,
+) -> Option<(&'r AppliedRule, f64)> {
+    let of_d15f = |rule: &&AppliedRule| rule.applies && rule.quantity == RuleQuantity::D15F;
+    let limits = retaining(rules).filter(of_d15f);
+    let limits = limits.filter_map(|rule| Some((rule, hanging_limit(rule, base, dispersive)?)));
+    limits.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether a rule has no result, as D15F lies between two sieves that stand far apart.
+fn leaves_d15f_open(rule: &AppliedRule) -> bool {
+    let is_between = |note: &RuleNote| matches!(note, RuleNote::D15FBetween(..));
+    rule.met.is_none() && matches!(&rule.needs, RuleText::Of(notes) if notes.iter().any(is_between))
 }
 
 /// The probability of continuing erosion into a joint, where one is asked about.
@@ -412,7 +450,7 @@ mod tests {
     }
 
     /// What is too coarse without its finer part is not met in the table either. What is left of one
-    /// of a tenth of its sizes keeps the limit of a dispersive till too.
+    /// of a tenth of its sizes keeps the limit of a dispersive till too, and has no result: it may lose more.
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
         use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL};
@@ -425,7 +463,7 @@ mod tests {
         assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
         let note = "may lose its finer part, too coarse without its finest 19.4 %";
         assert!(coarse.note.starts_with(note), "{coarse:?}");
-        assert_eq!((fine.met, fine.may_lose_fines), (Some(true), true));
+        assert_eq!((fine.met, fine.may_lose_fines), (None, true));
         assert!(
             fine.note.starts_with("may lose its finer part") && !fine.note.contains("coarse"),
             "{fine:?}"

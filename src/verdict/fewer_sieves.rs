@@ -6,9 +6,9 @@
 //! apart than [`WIDE_STEP`] alone, and a filter hides nothing of its own stability where 5 % pass or less.
 //! Whether a curve is flat enough to be a gap hangs on single sieves, and is not held of bases with fewer.
 
-use super::PairRules;
 use super::practice::{Standing, standing};
-use crate::gradation::{FINES_MM, GAP_PERCENT, Gradation, USUAL_STEP, WIDE_STEP};
+use super::{BatchRow, PairOptions, PairRules};
+use crate::gradation::{FINES_MM, GAP_PERCENT, Gradation, SoilSample, USUAL_STEP, WIDE_STEP};
 use crate::outcome::record::PracticeClass;
 
 /// Pairs of tables that are drawn.
@@ -212,4 +212,29 @@ fn a_curve_is_one_curve_in_every_notation() {
         });
         same_rules([&plain[0], &other[0]], [&plain[1], &other[1]], &(round % 5, &tables));
     }
+}
+
+/// The table of many samples and the page of one pair.
+#[test]
+fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
+    let (mut chance, mut met, mut open) = (Chance(17), 0, 0);
+    for _ in 0..1000 {
+        let [base, filter] = chance.pair(5.5).map(|points| soil(&points));
+        let sample = SoilSample { name: "S".into(), path: "S".into(), curve: base.clone() };
+        let filter = vec![("F".to_owned(), filter)];
+        let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());
+        if row.is_refused {
+            continue;
+        }
+        let at = standing(&PairRules::of(&base, &filter[0].1).rules);
+        let class = at.class();
+        met += usize::from(row.met == Some(true));
+        assert!(row.met != Some(true) || class == PracticeClass::Meets, "{row:?}");
+        assert!(class != PracticeClass::DoesNotMeet || row.met == Some(false), "{row:?} {at:?}");
+        if let Standing::Open(why) = at {
+            open += 1;
+            assert!(row.met.is_some() || row.note.contains(&why), "{row:?}");
+        }
+    }
+    assert!(met > 50 && open > 100, "{met} {open}");
 }

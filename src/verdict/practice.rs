@@ -182,7 +182,7 @@ impl Standing {
 
 /// The sizes between two sieves that stand far apart, on which the limit of design or the stability of the
 /// filter hangs.
-fn open_sieves(rules: &[AppliedRule]) -> Option<String> {
+pub(super) fn open_sieves(rules: &[AppliedRule]) -> Option<String> {
     let counts = |rule: &&AppliedRule| {
         [DESIGN, TESTS_CONTINUING].contains(&&*rule.id) || rule.role == RuleRole::Stability
     };
