@@ -63,19 +63,23 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// This curve with the mass of each of these steps of its own at the coarser sieve, or at the finer one;
-    /// but for a trace, so that a size which a sieve tells stays that sieve.
+    /// This curve with the mass of each of these steps of its own at the coarser sieve, at the finer one or
+    /// half at each; but for a trace, so that a size which a sieve tells stays that sieve.
     pub(crate) fn with_mass_at(&self, ends: &[(Step, End)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
         for &(step, end) in ends.iter().rev() {
             let i = step.segment;
             let trace = TRACE_PERCENT.min((self.percent[i + 1] - self.percent[i]) / 3.0);
-            let (size, at) = match end {
-                End::Coarse => (step.to_mm * (1.0 - 1e-12), self.percent[i] + trace),
-                End::Fine => (step.from_mm * (1.0 + 1e-12), self.percent[i + 1] - trace),
+            let [fine, coarse] = [step.from_mm * (1.0 + 1e-12), step.to_mm * (1.0 - 1e-12)];
+            let half = 0.5 * (self.percent[i] + self.percent[i + 1]);
+            let points = match end {
+                End::Coarse => vec![(coarse, self.percent[i] + trace)],
+                End::Fine => vec![(fine, self.percent[i + 1] - trace)],
+                End::Both => vec![(fine, half - 0.5 * trace), (coarse, half + 0.5 * trace)],
             };
-            size_mm.insert(i + 1, size);
-            percent.insert(i + 1, at);
+            let (sizes, percents): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+            size_mm.splice(i + 1..i + 1, sizes);
+            percent.splice(i + 1..i + 1, percents);
         }
         Gradation::new(size_mm, percent)
     }
@@ -91,13 +95,15 @@ impl Gradation {
     }
 }
 
-/// One of the two sieves of a step.
+/// Where between its two sieves the mass of a step stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The finer one.
+    /// At the finer one.
     Fine,
-    /// The coarser one.
+    /// At the coarser one.
     Coarse,
+    /// Half at each.
+    Both,
 }
 
 #[cfg(test)]

@@ -102,7 +102,7 @@ fn leaving_sieves_out_never_makes_a_filter_meet_practice() {
     assert!(failed > 100 && met > 30, "{failed} {met}");
 }
 
-/// Each step of a sparse table filled at either end, or straight.
+/// Each step of a sparse table filled at either end, straight, or where it is wide with a gap.
 #[test]
 fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
     let (mut chance, mut met, mut compared) = (Chance(11), 0, 0);
@@ -119,12 +119,18 @@ fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
                     let [(from, low), (to, high)] = [step[0], step[1]];
                     let end = chance.next();
                     if to > least * (1.0 + 1e-6) * from && high > low && high > 5.0 {
-                        let inner = if end < 0.5 { (from * 1.001, high) } else { (to / 1.001, low) };
+                        let half =
+                            if to > WIDE_STEP * (1.0 + 1e-6) * from { 0.5 * (low + high) } else { high };
+                        let inner = match end {
+                            ..0.33 => high,
+                            ..0.67 => low,
+                            _ => half,
+                        };
                         let count = libm::ceil(libm::log(to / from) / libm::log(2.0)) as i32;
                         let between =
                             (1..count).map(|i| from * libm::pow(to / from, f64::from(i) / f64::from(count)));
-                        let mut sizes: Points = between.map(|size| (size, inner.1)).collect();
-                        sizes.push(inner);
+                        let mut sizes: Points = between.map(|size| (size, inner)).collect();
+                        sizes.extend([(from * 1.001, inner), (to / 1.001, inner)]);
                         sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
                         full.extend(sizes);
                     }
@@ -135,8 +141,12 @@ fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
             let base = filled(&tables[0], WIDE_STEP, &mut chance);
             let filter = filled(&tables[1], USUAL_STEP, &mut chance);
             compared += usize::from(base != tables[0] || filter != tables[1]);
-            let class = place(&base, &filter).class();
-            assert!(class != PracticeClass::DoesNotMeet, "{tables:?}: {base:?} {filter:?}");
+            let at = place(&base, &filter);
+            let class = at.class();
+            assert!(
+                class != PracticeClass::DoesNotMeet && at != Standing::Unstable,
+                "{tables:?}: {base:?} {filter:?}"
+            );
         }
     }
     assert!(met > 10 && compared > 50, "{met} {compared}");
@@ -236,5 +246,5 @@ fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
             assert!(row.met.is_some() || row.note.contains(&why), "{row:?}");
         }
     }
-    assert!(met > 50 && open > 100, "{met} {open}");
+    assert!(met > 50 && open > 80, "{met} {open}");
 }

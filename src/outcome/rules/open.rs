@@ -99,6 +99,9 @@ pub struct OpenFilter {
     curves: Vec<Gradation>,
     /// The same with straight lines where next to nothing passes.
     stable: Vec<Gradation>,
+    /// With a gap in one of the steps that are wide, which is the other part; none where next to nothing
+    /// passes.
+    gaps: Vec<(Gradation, Step)>,
 }
 
 impl OpenFilter {
@@ -108,7 +111,10 @@ impl OpenFilter {
         let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_, _| true) };
         let passes = |_: usize, step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
         let stable = if curves.is_empty() { Vec::new() } else { spread(filter, &steps, passes) };
-        Self { steps: chosen(&steps), curves, stable }
+        let hides = |step: &&Step| step.is_wide() && passes(0, step);
+        let gap = |step: &Step| (filter.with_mass_at(&[(*step, End::Both)]), *step);
+        let gaps = steps.iter().filter(hides).map(gap).collect();
+        Self { steps: chosen(&steps), curves, stable, gaps }
     }
 }
 
@@ -152,10 +158,40 @@ pub fn judged_over(
         (_, Pairing::EachFilter) => of_filter(rule, inputs, filter),
         (_, Pairing::AllFilters) => of_filters(rule, inputs),
     };
-    Some(match over {
+    let found = match over {
         Some((choices, results)) => combined(rule, inputs, plain, &choices, results),
         None => plain,
+    };
+    Some(match hidden_gap(rule, inputs, &found, filter) {
+        Some(step) => left_open(found, false, Some(RuleNote::FilterBetween(step.from_mm, step.to_mm))),
+        None => found,
     })
+}
+
+/// The widest step in which a gap would break a rule of stability that is kept at both of its ends.
+fn hidden_gap(rule: &FilterRule, inputs: &RuleInputs, found: &Judged, filter: &OpenFilter) -> Option<Step> {
+    if rule.role != RuleRole::Stability || found.met != Some(true) {
+        return None;
+    }
+    let is_broken = |(filter, _): &&(Gradation, Step)| {
+        judged(rule, &RuleInputs { filter, ..inputs.same() }).is_some_and(|of| of.met == Some(false))
+    };
+    let width = |step: &Step| step.to_mm / step.from_mm;
+    let broken = filter.gaps.iter().filter(is_broken).map(|(_, step)| *step);
+    broken.max_by(|a, b| width(a).total_cmp(&width(b)))
+}
+
+/// A result that hangs on a step, which is no result; what is known of a base stays.
+fn left_open(plain: Judged, is_of_base: bool, needs: Option<RuleNote>) -> Judged {
+    Judged {
+        met: None,
+        applies: true,
+        value: plain.value.filter(|_| is_of_base),
+        limit_at_most: is_of_base || plain.limit_at_most,
+        needs,
+        without_finer: None,
+        ..plain
+    }
 }
 
 type Over = Option<(Vec<Choice>, Vec<Judged>)>;
@@ -243,15 +279,7 @@ fn combined(
     let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
     if let Some(flips) = wide.iter().copied().filter(flips).max_by(width) {
         let is_of_base = matches!(choices[flips], Choice::OfBase(_));
-        return Judged {
-            met: None,
-            applies: true,
-            value: plain.value.filter(|_| is_of_base),
-            limit_at_most: is_of_base || plain.limit_at_most,
-            needs: note(rule, inputs, choices[flips], &worst, &results),
-            without_finer: None,
-            ..plain
-        };
+        return left_open(plain, is_of_base, note(rule, inputs, choices[flips], &worst, &results));
     }
     let Some(moves) = (0..choices.len()).filter(moves).max_by(width) else { return plain };
     // Where all agree, numbers between sieves far apart are those of the straight line.

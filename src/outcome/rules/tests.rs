@@ -549,3 +549,23 @@ fn every_rule_says_what_it_is() {
         );
     }
 }
+
+/// Half of what passes between the two sieves of a filter at each of them is a gap, though neither end is.
+#[test]
+fn a_step_that_may_hide_a_gap_leaves_stability_open() {
+    let of_rows = |rows: &[(f64, f64)]| Gradation::from_points(rows, None).unwrap();
+    let silt = base(22.0, 0.7);
+    let two_sieves = of_rows(&[(0.3, 12.0), (38.0, 100.0)]);
+    let open = of("kezdi", &two_sieves, &silt);
+    assert_eq!((open.met, open.value), (None, None), "{open:?}");
+    assert!(open.needs.says(RuleNote::FilterBetween(0.3, 38.0)), "{open:?}");
+    // With sieves between it is stable by Kézdi, and with a gap there it is not.
+    let line =
+        [(0.3, 12.0), (0.75, 28.7), (1.9, 45.5), (4.75, 62.2), (9.5, 74.8), (19.0, 87.4), (38.0, 100.0)];
+    let straight = of_rows(&line);
+    let gap = sieve(&[(0.3, 12.0), (0.31, 56.0), (37.0, 56.1), (38.0, 100.0)]);
+    assert_eq!([&straight, &gap].map(|filter| of("kezdi", filter, &silt).met), [Some(true), Some(false)]);
+    // Where next to nothing passes a wide step hides none.
+    let stone = of_rows(&[(0.3, 0.0), (1.5, 3.0), (3.0, 30.0), (6.0, 70.0), (12.0, 100.0)]);
+    assert_eq!(of("kezdi", &stone, &silt).met, Some(true));
+}
