@@ -68,7 +68,8 @@ def test_judge_is_that_of_the_command_line(program: str, tmp_path: Path) -> None
 
 
 def test_a_specification_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
-    core = ([0.002, 0.075, 2.0, 19.0], [0.0, 60.0, 90.0, 100.0])
+    sizes = [0.002, 0.005, 0.012, 0.03, 0.075, 0.18, 0.425, 0.85, 2.0, 4.75, 9.5, 19.0]
+    core = (sizes, [0.0, 13.0, 28.0, 43.0, 60.0, 68.0, 75.0, 82.0, 90.0, 94.0, 97.0, 100.0])
     table(tmp_path, "base", core)
     words = ["base.csv", "--steps", "--dispersive", "--sieves", "iso", "--quiet", "--json", "--out", "o"]
     done = subprocess.run([program, "design", *words], capture_output=True, text=True, cwd=tmp_path)
