@@ -1,6 +1,6 @@
 //! Sizes that lie between two sieves which stand far apart, where no sieve tells how the mass is spread.
 
-use super::Gradation;
+use super::{FINES_MM, GRAVEL_MM, Gradation};
 
 /// Greatest ratio of two neighbouring sieves between which practice reads a straight line. The openings of
 /// 12.5 and 4.75 mm (2.63) are neighbours among the sieves that ASTM D448 asks for of a No. 57 stone.
@@ -13,8 +13,13 @@ pub const WIDE_STEP: f64 = 4.0;
 /// By how much, relatively, numbers of one curve may differ between two ways of writing it.
 pub(crate) const TIE: f64 = 1e-9;
 
-/// Mass (%) that stays spread over a step whose mass stands at one of its sieves.
-const TRACE_PERCENT: f64 = 1e-6;
+/// How near to a sieve, relatively, mass stands that stands at it, and how near to a size at which a rule
+/// counts fines or gravel it stands beside it.
+const NEXT: f64 = 1e-12;
+const BESIDE: f64 = 1e-6;
+
+/// Single sizes in a wide step are these parts of it, less one.
+const FILLINGS: i32 = 6;
 
 /// Two neighbouring sieves that stand further apart than [`USUAL_STEP`], with mass between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,25 +68,49 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// This curve with the mass of each of these steps of its own at the coarser sieve, at the finer one or
-    /// half at each; but for a trace, so that a size which a sieve tells stays that sieve.
-    pub(crate) fn with_mass_at(&self, ends: &[(Step, End)]) -> Gradation {
+    /// This curve through these points between the sieves of its own steps: size (mm) and percent finer, rising.
+    pub(crate) fn filled(&self, steps: &[(Step, Vec<(f64, f64)>)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
-        for &(step, end) in ends.iter().rev() {
-            let i = step.segment;
-            let trace = TRACE_PERCENT.min((self.percent[i + 1] - self.percent[i]) / 3.0);
-            let [fine, coarse] = [step.from_mm * (1.0 + 1e-12), step.to_mm * (1.0 - 1e-12)];
-            let half = 0.5 * (self.percent[i] + self.percent[i + 1]);
-            let points = match end {
-                End::Coarse => vec![(coarse, self.percent[i] + trace)],
-                End::Fine => vec![(fine, self.percent[i + 1] - trace)],
-                End::Both => vec![(fine, half - 0.5 * trace), (coarse, half + 0.5 * trace)],
-            };
-            let (sizes, percents): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-            size_mm.splice(i + 1..i + 1, sizes);
-            percent.splice(i + 1..i + 1, percents);
+        for (step, points) in steps.iter().rev() {
+            let at = step.segment + 1;
+            size_mm.splice(at..at, points.iter().map(|point| point.0));
+            percent.splice(at..at, points.iter().map(|point| point.1));
         }
         Gradation::new(size_mm, percent)
+    }
+
+    /// Points by which the mass of a step stands at one of its sieves.
+    pub(crate) fn mass_at(&self, step: &Step, end: End) -> Vec<(f64, f64)> {
+        let [low, high] = self.percents(step);
+        match end {
+            End::Fine => vec![(step.from_mm * (1.0 + NEXT), high)],
+            End::Coarse => vec![(step.to_mm * (1.0 - NEXT), low)],
+        }
+    }
+
+    /// Points by which the mass of a wide step stands where neither of its ends is the worst: at single sizes,
+    /// and in two parts with a gap between them.
+    pub(crate) fn fillings(&self, step: &Step) -> Vec<Vec<(f64, f64)>> {
+        let [low, high] = self.percents(step);
+        let ratio = step.to_mm / step.from_mm;
+        let within =
+            (1..FILLINGS).map(|i| step.from_mm * libm::pow(ratio, f64::from(i) / f64::from(FILLINGS)));
+        let beside = |size: f64| [size * (1.0 - 2.0 * BESIDE), size * (1.0 + BESIDE)];
+        let sizes = [FINES_MM, GRAVEL_MM].into_iter().flat_map(beside).chain(within);
+        // A gap reaches over a factor of four.
+        let sizes = sizes.chain([step.from_mm * 3.9, step.to_mm / 3.9]);
+        let at_once = sizes.filter(|size| step.holds(*size) && step.holds(size * (1.0 + BESIDE)));
+        let at_once = at_once.map(|size| vec![(size, low), (size * (1.0 + NEXT), high)]);
+        let parts = [0.1, 0.25, 0.5, 0.75].map(|part| low + part * (high - low));
+        let parts = parts.into_iter().chain([10.0, 20.0, 30.0, 80.0]);
+        let parts = parts.filter(|percent| low < *percent && *percent < high);
+        let ends = [step.from_mm * (1.0 + NEXT), step.to_mm * (1.0 - NEXT)];
+        at_once.chain(parts.map(|percent| ends.map(|end| (end, percent)).to_vec())).collect()
+    }
+
+    /// Percent finer than the two sieves of a step of its own.
+    fn percents(&self, step: &Step) -> [f64; 2] {
+        [self.percent[step.segment], self.percent[step.segment + 1]]
     }
 
     /// D_x as the largest size (mm) that no more than `percent` of the mass is finer than, where
@@ -102,8 +131,6 @@ pub(crate) enum End {
     Fine,
     /// At the coarser one.
     Coarse,
-    /// Half at each.
-    Both,
 }
 
 #[cfg(test)]
@@ -126,12 +153,13 @@ mod tests {
         let sparse = Gradation::from_points(&[(0.3, 12.0), (38.0, 60.0), (75.0, 100.0)], None).unwrap();
         let steps = sparse.open_steps();
         for (end, d15, finer) in [(End::Fine, 0.3, 60.0), (End::Coarse, 38.0, 12.0)] {
-            let curve = sparse.with_mass_at(&[(steps[0], end)]);
+            let curve = sparse.filled(&[(steps[0], sparse.mass_at(&steps[0], end))]);
             assert!((curve.d(15.0).unwrap() / d15 - 1.0).abs() < 1e-11);
             assert!((curve.percent_finer_by_mass(5.0) - finer).abs() < 1e-5);
             assert_eq!(curve.percent_finer_by_mass(0.3), 12.0);
             assert_eq!(curve.d(80.0), sparse.d(80.0));
-            assert_eq!((curve.d(12.0), curve.d(60.0)), (Some(0.3), Some(38.0)));
+            assert_eq!(curve.d(12.0), Some(0.3));
+            assert!((curve.coarse_d(60.0).unwrap() / 38.0 - 1.0).abs() < 1e-11);
         }
     }
 

@@ -1,5 +1,6 @@
 //! A sieve curve: how it is made, checked and read.
 
+use super::between::TIE;
 use super::curve_point::CurvePoint;
 use super::error::Position;
 use super::error::{GradationError, NumberError, TableError};
@@ -135,8 +136,9 @@ impl Gradation {
         if !(0.0..=100.0).contains(&percent) || percent < self.tail_percent() {
             return None;
         }
-        let i = self.percent.partition_point(|&p| p < percent);
-        if i == 0 || self.percent[i] == percent {
+        // Percents that differ by the last digits of a sum are one percent.
+        let i = self.percent.partition_point(|&p| p < percent - 100.0 * TIE);
+        if i == 0 || self.percent[i] <= percent + 100.0 * TIE {
             return Some(self.size_mm[i]);
         }
         let share = (percent - self.percent[i - 1]) / (self.percent[i] - self.percent[i - 1]);

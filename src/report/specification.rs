@@ -245,9 +245,9 @@ mod tests {
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
         // The greatest is not known, and the least alone refuses the finest product.
         let unknown =
-            Specification { d15f_max_mm: None, products: margins((Some(0.2), false), None), ..core.clone() };
+            Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };
         assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
-        let unknown = Specification { products: margins((Some(0.1), false), None), ..unknown };
+        let unknown = Specification { products: margins((Some(0.1), 0.1), None), ..unknown };
         assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
         let page = products(&core, true).into_string();
         assert!(

@@ -75,7 +75,7 @@ impl Band {
         match self.least_at_most {
             true => format!(
                 "D15F up to {greatest} {unit}, by {set_by}; the minimum that drains is not known, and at \
-                 most {least} {unit}: the base needs a hydrometer test"
+                 most {least} {unit}: D15B must be tested"
             ),
             false => format!("D15F from {least} to {greatest} {unit}, the coarse side by {set_by}"),
         }

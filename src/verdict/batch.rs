@@ -12,7 +12,7 @@ use crate::gradation::{Gradation, SoilSample};
 use crate::outcome::design::band::{retaining, retention};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, PracticeClass, RuleNote, RuleQuantity, RuleRole, RuleText};
-use crate::outcome::rules::{CONSTRICTED_EXIT, NamedCurve, PERMEABILITY, sieved_limit};
+use crate::outcome::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, PERMEABILITY, sieved_limit};
 use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -152,6 +152,8 @@ impl BatchRow {
         let least = least_limit(rules, base, options.dispersive).map(|(rule, limit)| (rule, limit, false));
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
+        let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
+        let judged = design.and_then(|rule| rule.value).or(row.d15f_mm);
         let between = open_sieves(rules);
         // As on the page of the pair: what is left of a filter that may lose its own fines nobody knows.
         let unknown = standing(rules).class() == PracticeClass::NotKnown
@@ -186,7 +188,7 @@ impl BatchRow {
             [doubt, between, beyond.clone(), Some(also).filter(|said| !said.is_empty()), joint(rules)];
         let note = notes.into_iter().flatten().collect::<Vec<_>>().join("; ");
         Self {
-            d15f_mm: row.d15f_mm.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
+            d15f_mm: judged.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
             limit_mm: strictest.map(|(_, limit, _)| limit),
             limit_at_most: strictest.is_some_and(|(.., at_most)| at_most),
             rule: strictest.map_or(String::new(), |(rule, limit, _)| whose(rules, rule, limit)),

@@ -13,6 +13,9 @@ pub const FITS: &str = "fits";
 /// Percentage points by which a gradation leaves a limit that is printed in whole percents, and is said to.
 const SEEN: f64 = 0.5;
 
+/// Said of a product of which D15B would tell whether it drains.
+pub const MAY_DRAIN: &str = "may drain: D15B must be tested";
+
 /// Said where no product fits.
 const NONE_FITS: &str = "None of the standard products fits";
 
@@ -32,9 +35,7 @@ impl Specification {
         match of.fits() {
             Some(true) => FITS.into(),
             Some(false) => does_not_fit(&of.not_kept),
-            None if self.d15f_min_at_most && of.drains_by.is_none() => {
-                "may drain: needs a hydrometer test".into()
-            }
+            None if self.d15f_min_at_most && of.drains_by.is_none() => MAY_DRAIN.into(),
             None => "no result".into(),
         }
     }
@@ -51,9 +52,7 @@ impl Specification {
         match self.nearest_product() {
             Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
             None if self.d15f_min_at_most => {
-                "Whether a standard product fits is not known: D15B is finer than the finest sieve. A \
-                 hydrometer test of the base would tell whether it drains"
-                    .into()
+                "Whether a standard product fits is not known: D15B must be tested".into()
             }
             None => format!("No {other} product is known to fit: a limit of D15F is not known"),
         }

@@ -53,7 +53,14 @@ pub struct Band {
 /// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of
 /// the base as it is walked or as practice regrades it, the rule alone knows.
 pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
+    let d15f = judged_d15f(rules, d15f);
     rules.iter().filter_map(|rule| limit(rule, d15f)).collect()
+}
+
+/// D15F by which the filter was judged, the unsafe end where its curve is flat or its sieves stand apart.
+fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
+    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
+    design.and_then(|rule| rule.value).unwrap_or(d15f)
 }
 
 fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
@@ -89,6 +96,7 @@ pub fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
 /// The limits of D15F by which a filter retains its base: no design goes beyond where tests saw continuing
 /// erosion, either.
 pub fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item = (&AppliedRule, f64)> {
+    let d15f = judged_d15f(rules, d15f);
     let continues = rules.iter().filter(|of| of.role == RuleRole::Continuation && !of.limit_at_most);
     retaining(rules).chain(continues).filter_map(move |rule| limit(rule, d15f))
 }

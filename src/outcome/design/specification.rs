@@ -257,8 +257,8 @@ impl SpecificationStep {
     }
 }
 
-/// Every standard product beside the minimum D15F (mm) and whether that is one at most, and the greatest.
-pub fn margins((d15f_min, at_most): (Option<f64>, bool), d15f_max: Option<f64>) -> Vec<ProductMargin> {
+/// Every standard product beside the minimum D15F (mm) with the least that it is for certain, and the greatest.
+pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();
     }
@@ -269,7 +269,7 @@ pub fn margins((d15f_min, at_most): (Option<f64>, bool), d15f_max: Option<f64>) 
             d15_fine_mm: fine,
             d15_coarse_mm: coarse,
             // The true margin may be any greater.
-            drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || !at_most),
+            drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || fine < certain),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
             not_kept: product.not_kept().join("; "),
             source: product.source.into(),
@@ -301,22 +301,22 @@ mod tests {
 
     #[test]
     fn products_have_their_margins_also_where_none_fits() {
-        let sand = &margins((Some(0.1), false), Some(0.7))[0];
+        let sand = &margins((Some(0.1), 0.1), Some(0.7))[0];
         // D15 0.178 to 0.424 mm (see `products`).
         assert!(
             near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),
             "{sand:?}"
         );
         assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
-        let none = margins((Some(0.5), false), Some(0.6));
+        let none = margins((Some(0.5), 0.5), Some(0.6));
         assert!(none.iter().all(|of| of.fits() == Some(false)));
         // What drains may or may not hold where the maximum D15F is not known.
-        let open = margins((Some(0.2), false), None);
+        let open = margins((Some(0.2), 0.2), None);
         assert_eq!((open[0].fits(), open[2].fits()), (Some(false), None));
-        assert!(margins((None, false), None).is_empty());
+        assert!(margins((None, 0.0), None).is_empty());
         // Whether it drains is not known where the least is one at most.
-        let till = &margins((Some(0.375), true), Some(0.7))[0];
+        let till = &margins((Some(0.375), 0.0), Some(0.7))[0];
         assert_eq!((till.drains_by, till.fits()), (None, None));
-        assert_eq!(margins((Some(0.375), true), Some(0.3))[0].fits(), Some(false));
+        assert_eq!(margins((Some(0.375), 0.0), Some(0.3))[0].fits(), Some(false));
     }
 }

@@ -55,13 +55,15 @@ impl Choice {
 pub struct OpenBase {
     choices: Vec<Choice>,
     curves: Vec<(Gradation, BaseSoil)>,
+    /// Those whose worst is at neither end of a wide step, with that step.
+    hidden: Vec<(Gradation, BaseSoil, Step)>,
 }
 
 impl OpenBase {
     /// Of a base; without curves where its table leaves nothing open. Only wide steps hide a gap.
     pub fn of(base: &Gradation, scale_free: bool) -> Self {
         if scale_free {
-            return Self { choices: Vec::new(), curves: Vec::new() };
+            return Self { choices: Vec::new(), curves: Vec::new(), hidden: Vec::new() };
         }
         let steps = base.open_steps();
         let wide = spread(base, &steps, |_, step| step.is_wide());
@@ -89,7 +91,12 @@ impl OpenBase {
         if choices.is_empty() {
             all.clear();
         }
-        Self { choices, curves: all }
+        let soils = |(curve, step): (Gradation, Step)| {
+            let (soil, otherwise) = BaseSoil::both(&curve, &curve);
+            [Some(soil), otherwise].into_iter().flatten().map(move |soil| (curve.clone(), soil, step))
+        };
+        let hidden = hidden(base, &steps, |_| true).into_iter().flat_map(soils).collect();
+        Self { choices, curves: all, hidden }
     }
 }
 
@@ -99,9 +106,8 @@ pub struct OpenFilter {
     curves: Vec<Gradation>,
     /// The same with straight lines where next to nothing passes.
     stable: Vec<Gradation>,
-    /// With a gap in one of the steps that are wide, which is the other part; none where next to nothing
-    /// passes.
-    gaps: Vec<(Gradation, Step)>,
+    /// Those whose worst is at neither end of a wide step, with that step.
+    hidden: Vec<(Gradation, Step)>,
 }
 
 impl OpenFilter {
@@ -111,10 +117,8 @@ impl OpenFilter {
         let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_, _| true) };
         let passes = |_: usize, step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
         let stable = if curves.is_empty() { Vec::new() } else { spread(filter, &steps, passes) };
-        let hides = |step: &&Step| step.is_wide() && passes(0, step);
-        let gap = |step: &Step| (filter.with_mass_at(&[(*step, End::Both)]), *step);
-        let gaps = steps.iter().filter(hides).map(gap).collect();
-        Self { steps: chosen(&steps), curves, stable, gaps }
+        let hidden = hidden(filter, &steps, |step| passes(0, step));
+        Self { steps: chosen(&steps), curves, stable, hidden }
     }
 }
 
@@ -127,6 +131,33 @@ fn chosen(steps: &[Step]) -> Vec<Step> {
     widest
 }
 
+/// A curve with the mass of one wide step anywhere but at one of its ends, and of the others straight, at
+/// their finer and at their coarser sieves.
+fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> Vec<(Gradation, Step)> {
+    let others = |step: Step| {
+        let at = |end| {
+            let others = steps.iter().filter(move |other| **other != step);
+            others.map(|other| (*other, curve.mass_at(other, end))).collect::<Vec<_>>()
+        };
+        match steps.len() {
+            1 => vec![Vec::new()],
+            _ => vec![Vec::new(), at(End::Fine), at(End::Coarse)],
+        }
+    };
+    let filled = |step: &Step| {
+        let all = curve.fillings(step).into_iter();
+        let all =
+            all.flat_map(|points| others(*step).into_iter().map(move |others| (others, points.clone())));
+        let all = all.map(|(mut steps, points)| {
+            steps.push((*step, points));
+            steps.sort_by(|(a, _), (b, _)| a.from_mm.total_cmp(&b.from_mm));
+            (curve.filled(&steps), *step)
+        });
+        all.collect::<Vec<_>>()
+    };
+    steps.iter().filter(|step| step.is_wide() && counts(step)).flat_map(filled).collect()
+}
+
 /// A curve with the mass of each step at either end: bit `i` of a place is set where step `i` has it at its
 /// coarser sieve. Steps that are not looked at one by one go with the last of those that are; of those that
 /// are not read by their ends the curve is the straight line.
@@ -137,9 +168,9 @@ fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> b
         if place >> at & 1 == 1 { End::Coarse } else { End::Fine }
     };
     let at = |place: usize| {
-        let ends: Vec<(Step, End)> =
-            steps.iter().filter(|step| by_ends(place, step)).map(|step| (*step, end(place, step))).collect();
-        curve.with_mass_at(&ends)
+        let by_ends = steps.iter().filter(|step| by_ends(place, step));
+        let points = |step: &Step| (*step, curve.mass_at(step, end(place, step)));
+        curve.filled(&by_ends.map(points).collect::<Vec<_>>())
     };
     (0..1usize << chosen.len()).map(at).collect()
 }
@@ -162,23 +193,76 @@ pub fn judged_over(
         Some((choices, results)) => combined(rule, inputs, plain, &choices, results),
         None => plain,
     };
-    Some(match hidden_gap(rule, inputs, &found, filter) {
-        Some(step) => left_open(found, false, Some(RuleNote::FilterBetween(step.from_mm, step.to_mm))),
+    let hidden = match rule.pairing {
+        Pairing::EachPair => breaks_in_base(rule, inputs, &found, base, filter).map(Choice::OfBase),
+        _ => breaks_in_filter(rule, inputs, &found, filter).map(Choice::OfFilter),
+    };
+    Some(match hidden {
+        Some(choice) => {
+            let needs = note(rule, inputs, choice, &found, &[]);
+            left_open(found, matches!(choice, Choice::OfBase(_)), needs)
+        }
         None => found,
     })
 }
 
-/// The widest step in which a gap would break a rule of stability that is kept at both of its ends.
-fn hidden_gap(rule: &FilterRule, inputs: &RuleInputs, found: &Judged, filter: &OpenFilter) -> Option<Step> {
-    if rule.role != RuleRole::Stability || found.met != Some(true) {
+fn widest(steps: impl Iterator<Item = Step>) -> Option<Step> {
+    let width = |step: &Step| step.to_mm / step.from_mm;
+    steps.max_by(|a, b| width(a).total_cmp(&width(b)))
+}
+
+fn is_kept(rule: &FilterRule, found: &Judged) -> bool {
+    margin(rule, found).0 >= MET
+}
+
+fn is_broken(judged: Option<Judged>) -> bool {
+    judged.is_some_and(|of| of.met == Some(false))
+}
+
+/// The widest step of a filter within which mass may stand so that it breaks a rule which is kept at both of
+/// its ends.
+fn breaks_in_filter(
+    rule: &FilterRule,
+    inputs: &RuleInputs,
+    found: &Judged,
+    filter: &OpenFilter,
+) -> Option<Step> {
+    let is_of_shape = matches!(rule.role, RuleRole::Stability | RuleRole::Placing);
+    if !is_of_shape || rule.pairing != Pairing::EachFilter || !is_kept(rule, found) {
         return None;
     }
-    let is_broken = |(filter, _): &&(Gradation, Step)| {
-        judged(rule, &RuleInputs { filter, ..inputs.same() }).is_some_and(|of| of.met == Some(false))
+    let breaks =
+        |(filter, _): &&(Gradation, Step)| is_broken(judged(rule, &RuleInputs { filter, ..inputs.same() }));
+    widest(filter.hidden.iter().filter(breaks).map(|(_, step)| *step))
+}
+
+/// The same of a base.
+fn breaks_in_base(
+    rule: &FilterRule,
+    inputs: &RuleInputs,
+    found: &Judged,
+    base: &OpenBase,
+    filter: &OpenFilter,
+) -> Option<Step> {
+    if !is_kept(rule, found) {
+        return None;
+    }
+    let ends =
+        open_d15f(inputs.filter, filter).and_then(|_| Some([filter.curves.first()?, filter.curves.last()?]));
+    let filters = ends.map_or(vec![inputs.filter], |ends| ends.to_vec());
+    let breaks = |(base, soil, _): &&(Gradation, BaseSoil, Step)| {
+        let of = |filter: &&Gradation| {
+            is_broken(judged(rule, &RuleInputs { filter, base, base_soil: soil.clone(), ..inputs.same() }))
+        };
+        filters.iter().any(of)
     };
-    let width = |step: &Step| step.to_mm / step.from_mm;
-    let broken = filter.gaps.iter().filter(is_broken).map(|(_, step)| *step);
-    broken.max_by(|a, b| width(a).total_cmp(&width(b)))
+    widest(base.hidden.iter().filter(breaks).map(|(.., step)| *step))
+}
+
+/// The step in which D15F lies, which is open.
+fn open_d15f(filter: &Gradation, open: &OpenFilter) -> Option<Step> {
+    let d15f = filter.d(15.0)?;
+    widest(open.steps.iter().copied().filter(|step| step.encloses(d15f)))
 }
 
 /// A result that hangs on a step, which is no result; what is known of a base stays.
@@ -198,14 +282,13 @@ type Over = Option<(Vec<Choice>, Vec<Judged>)>;
 
 /// Rules that read no more of the filter than D15F.
 fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &OpenFilter) -> Over {
-    let d15f = inputs.filter.d(15.0);
-    let step = filter.steps.iter().find(|step| d15f.is_some_and(|d15f| step.encloses(d15f)));
+    let step = open_d15f(inputs.filter, filter);
     let filters: Vec<&Gradation> = match step {
         Some(_) => vec![filter.curves.first()?, filter.curves.last()?],
         None => vec![inputs.filter],
     };
     let choices: Vec<Choice> =
-        step.map(|step| Choice::OfFilter(*step)).into_iter().chain(base.choices.iter().copied()).collect();
+        step.map(Choice::OfFilter).into_iter().chain(base.choices.iter().copied()).collect();
     if choices.is_empty() {
         return None;
     }
@@ -291,7 +374,13 @@ fn combined(
     // Where one reading leaves the limit open, it is no more than another's.
     let least = results.iter().filter_map(|judged| judged.limit).reduce(f64::min);
     let is_open = judged.met.is_none() && judged.limit_at_most && !rule.at_least && !is_plain;
-    let limit = if is_open { least } else { judged.limit };
+    // A limit that is kept whatever it is, is stated by its strict end.
+    let greatest = results.iter().filter_map(|judged| judged.limit).reduce(f64::max);
+    let limit = match judged.met {
+        Some(true) if is_plain => if rule.at_least { greatest } else { least }.or(judged.limit),
+        _ if is_open => least,
+        _ => judged.limit,
+    };
     let without_finer = lost.filter(|_| judged.met == Some(false)).or(judged.without_finer);
     Judged { without_finer, limit, ..judged }.noted(note)
 }
@@ -309,6 +398,8 @@ fn is_moved(here: &Judged, there: &Judged) -> bool {
 pub struct SievedLimit {
     /// The strictest.
     pub strictest: f64,
+    /// The mildest.
+    pub mildest: f64,
     /// The sieves far apart on which it hangs, where it does.
     pub hangs_on: Option<RuleNote>,
 }
@@ -322,16 +413,26 @@ pub fn sieved_limit(id: &str, base: &Gradation, dispersive: bool) -> Option<Siev
     let plain = judged(rule, &inputs)?;
     let over = of_pair(rule, &inputs, &open, &OpenFilter::of(&filter, false));
     let (choices, results) = over.unwrap_or_default();
-    let strictest = results.iter().chain([&plain]).filter_map(|judged| judged.limit);
-    let strictest = strictest.reduce(if rule.at_least { f64::max } else { f64::min })?;
+    let of_hidden = |(base, soil, step): &(Gradation, BaseSoil, Step)| {
+        let inputs = RuleInputs { base, base_soil: soil.clone(), ..inputs.same() };
+        Some((judged(rule, &inputs)?, *step))
+    };
+    let hidden: Vec<(Judged, Step)> = open.hidden.iter().filter_map(of_hidden).collect();
+    let all = results.iter().chain([&plain]).chain(hidden.iter().map(|(judged, _)| judged));
+    let limits: Vec<f64> = all.filter_map(|judged| judged.limit).collect();
+    let least = limits.iter().copied().reduce(f64::min)?;
+    let most = limits.into_iter().fold(least, f64::max);
+    let (strictest, mildest) = if rule.at_least { (most, least) } else { (least, most) };
     let moves = |i: &usize| {
         let places = 0..results.len();
         choices[*i].is_wide() && places.into_iter().any(|at| is_moved(&results[at], &results[at ^ 1 << i]))
     };
     let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
-    let moves = (0..choices.len()).filter(moves).max_by(width);
-    let hangs_on = moves.and_then(|i| note(rule, &inputs, choices[i], &plain, &results));
-    Some(SievedLimit { strictest, hangs_on })
+    let moves = (0..choices.len()).filter(moves).max_by(width).map(|i| choices[i]);
+    let hidden = hidden.iter().filter(|(judged, _)| is_moved(judged, &plain)).map(|(_, step)| *step);
+    let moves = moves.or_else(|| widest(hidden).map(Choice::OfBase));
+    let hangs_on = moves.and_then(|choice| note(rule, &inputs, choice, &plain, &results));
+    Some(SievedLimit { strictest, mildest, hangs_on })
 }
 
 /// What a result says of a choice that it hangs on, among all results.

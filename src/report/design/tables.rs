@@ -13,7 +13,7 @@ use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, t
 use crate::report::rules;
 use crate::report::shell::{clean, fact, unbroken};
 use crate::report::table::Table;
-use crate::verdict::fitting::FITS;
+use crate::verdict::fitting::{FITS, MAY_DRAIN};
 use crate::verdict::words::capital;
 
 /// The boundaries of the walk alone, a row a density and thickness.
@@ -163,7 +163,7 @@ pub(super) fn products(design: &Design) -> Markup {
                     format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
                 })
                 .text("Drains", |fit| match fit.may_drain {
-                    true => html! { "may drain: needs a hydrometer test" },
+                    true => html! { (MAY_DRAIN) },
                     false => yes(fit.drains),
                 })
                 .text("Holds (walk and practice)", |fit| yes(fit.holds))

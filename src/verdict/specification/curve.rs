@@ -32,6 +32,8 @@ pub(super) struct ReadCurve {
     pub design: Option<AppliedRule>,
     pub retention: Option<AppliedRule>,
     pub drainage: Option<AppliedRule>,
+    /// The mildest minimum D15F (mm) that its sieves leave possible; 0 where none of them tells.
+    drains_from: f64,
     /// Why its maximum D15F is not known.
     pub unknown: Option<String>,
 }
@@ -49,6 +51,8 @@ impl ReadCurve {
             unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
+        let drains = sieved_limit(PERMEABILITY, base, dispersive);
+        let between = drains.as_ref().filter(|limit| limit.hangs_on.is_some());
         Self {
             base: base.clone(),
             dispersive,
@@ -64,13 +68,14 @@ impl ReadCurve {
                 d15f_max_mm: strictest.filter(|_| unknown.is_none()).map(|(_, limit)| limit),
                 d15f_max_rule: strictest.map_or_else(String::new, |(rule, _)| cited_rule(rule)),
                 without_margin: has_no_margin(&rules),
-                d15f_min_mm: sieved_limit(PERMEABILITY, base, dispersive).map(|limit| limit.strictest),
+                d15f_min_mm: drains.as_ref().map(|limit| limit.strictest),
             },
             percent_no_4: base.percent_finer_by_mass(GRAVEL_MM),
             flattest: base.flattest(FINES_MM),
             design: rules.iter().find(|rule| rule.id == DESIGN && rule.applies).cloned(),
             retention: strictest.map(|(rule, _)| rule.clone()),
             drainage: drainage.cloned(),
+            drains_from: between.map_or(0.0, |limit| limit.mildest),
             unknown,
             soil,
         }
@@ -115,6 +120,11 @@ impl ReadCurve {
     /// Whether the true minimum D15F is not known, and is at most the one that is given.
     pub fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
+    }
+
+    /// What the minimum D15F is for certain, or more.
+    pub fn certain_least(&self) -> f64 {
+        if self.least_at_most() { self.drains_from } else { self.least() }
     }
 
     pub fn least(&self) -> f64 {

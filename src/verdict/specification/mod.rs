@@ -65,6 +65,7 @@ impl Specification {
         let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max, options.finer));
         let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
+        let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
         let if_dispersive = if options.dispersive.is_none() { curve::if_dispersive(bases) } else { None };
         let found = Found {
@@ -96,7 +97,7 @@ impl Specification {
             finer: options.finer,
             if_dispersive,
             limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
-            products: margins((d15f_min, at_most), d15f_max),
+            products: margins((d15f_min, certain), d15f_max),
             no_band,
             band,
         }
@@ -143,9 +144,7 @@ impl Specification {
         let [lower, upper] = [rounded_up(least), rounded_down(greatest)];
         let is_open = self.d15f_min_at_most && self.d15f_min_mm.is_some_and(|drains| drains >= least);
         let open = match is_open {
-            true => {
-                " (what drains the base is not known and at most the lower D15F: a hydrometer test tells)"
-            }
+            true => " (what drains the base is not known and at most the lower D15F)",
             false => "",
         };
         Some(format!("D15F from {lower} to {upper} mm{open}, Cu from {LEAST_CU} to {MOST_CU}"))
@@ -264,7 +263,7 @@ fn no_band(
         _ if has_band => None,
         (Some(min), Some(max)) if min > max && at_most => Some(format!(
             "The minimum D15F that drains this base is not known. It is at most {} mm, and D15F must be at \
-             most {} mm to retain the base: a hydrometer test of the base is needed.",
+             most {} mm to retain the base: D15B must be tested.",
             rounded_up(min),
             rounded_down(max)
         )),
