@@ -13,6 +13,9 @@ pub const WIDE_STEP: f64 = 4.0;
 /// By how much, relatively, numbers of one curve may differ between two ways of writing it.
 pub(crate) const TIE: f64 = 1e-9;
 
+/// Mass (%) that stays spread over a step that is not wide and whose mass stands at one of its sieves.
+pub(super) const TRACE_PERCENT: f64 = 1e-6;
+
 /// How near to a sieve, relatively, mass stands that stands at it, and how near to a size at which a rule
 /// counts fines or gravel it stands beside it.
 const NEXT: f64 = 1e-12;
@@ -82,9 +85,11 @@ impl Gradation {
     /// Points by which the mass of a step stands at one of its sieves.
     pub(crate) fn mass_at(&self, step: &Step, end: End) -> Vec<(f64, f64)> {
         let [low, high] = self.percents(step);
+        // Of sieves not far apart, each tells the size of its own percent.
+        let trace = if step.is_wide() { 0.0 } else { TRACE_PERCENT.min((high - low) / 3.0) };
         match end {
-            End::Fine => vec![(step.from_mm * (1.0 + NEXT), high)],
-            End::Coarse => vec![(step.to_mm * (1.0 - NEXT), low)],
+            End::Fine => vec![(step.from_mm * (1.0 + NEXT), high - trace)],
+            End::Coarse => vec![(step.to_mm * (1.0 - NEXT), low + trace)],
         }
     }
 

@@ -1,7 +1,7 @@
 //! What practice reads from a sieve curve besides its sizes: curvature, a gap, the part that passes a sieve.
 
 use super::Gradation;
-use super::between::TIE;
+use super::between::TRACE_PERCENT;
 
 /// Sizes are missing where less of the mass than this (%) lies between D and 4 D.
 pub(crate) const GAP_PERCENT: f64 = 5.0;
@@ -11,6 +11,9 @@ pub(crate) const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
 /// A gap is looked for where this much of the mass is finer, and no more than the second (%).
 const GAP_RANGE: [f64; 2] = [10.0, 80.0];
+
+/// Percents that differ by less are one, however a step of the curve is read.
+const SAME_PERCENT: f64 = 10.0 * TRACE_PERCENT;
 
 /// Sizes that are missing from a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +50,7 @@ impl Gradation {
             Gap { from_mm: d, percent, within: self.percent_finer_by_mass(4.0 * d) - percent }
         };
         let range = self.smallest_mm().max(least_mm)..=self.largest_mm();
-        let [low, high] = [GAP_RANGE[0] - 100.0 * TIE, GAP_RANGE[1] + 100.0 * TIE];
+        let [low, high] = [GAP_RANGE[0] - SAME_PERCENT, GAP_RANGE[1] + SAME_PERCENT];
         // On a straight stretch every D has as much between itself and 4 D: the finest counts.
         let [first, last] = GAP_RANGE.map(|percent| self.d(percent));
         let ends = [first, last, Some(least_mm)].into_iter().flatten();
@@ -55,7 +58,7 @@ impl Gradation {
         let flat = candidates.filter(|d| range.contains(d)).map(at);
         let flat: Vec<Gap> = flat.filter(|gap| (low..=high).contains(&gap.percent)).collect();
         let least = flat.iter().map(|gap| gap.within).fold(f64::INFINITY, f64::min);
-        let ties = flat.into_iter().filter(|gap| gap.within <= least + 100.0 * TIE);
+        let ties = flat.into_iter().filter(|gap| gap.within <= least + SAME_PERCENT);
         ties.min_by(|a, b| a.from_mm.total_cmp(&b.from_mm))
     }
 
