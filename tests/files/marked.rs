@@ -45,7 +45,8 @@ fn xlsx(formats: &str, strings: &str, heading: &str, rows: &[(&str, &str)]) -> V
         sheet += &format!("<row>{size}{value}</row>");
     }
     let styles = format!(
-        "<styleSheet><numFmts>{formats}</numFmts><cellXfs><xf numFmtId=\"0\"/><xf numFmtId=\"170\"/></cellXfs></styleSheet>"
+        "<styleSheet><numFmts>{formats}</numFmts><cellXfs><xf numFmtId=\"0\"/>\
+         <xf numFmtId=\"170\"/></cellXfs></styleSheet>"
     );
     zipped(&[
         ("xl/workbook.xml", "<workbook><sheets><sheet name=\"A\" id=\"r1\"/></sheets></workbook>".into()),
@@ -132,7 +133,8 @@ fn a_unit_in_the_format_of_a_number_is_read_as_one() {
     assert_eq!(curve("0\" in\""), Ok(425.0 * 25.4));
     assert!(curve("0\" furlongs\"").is_err());
     assert_eq!(curve("0.0_D_M\" mm\""), Ok(425.0));
-    let cell = "<table:table-cell office:value-type=\"float\" office:value=\"8\"><text:p>8 mm</text:p></table:table-cell>";
+    let cell = "<table:table-cell office:value-type=\"float\" office:value=\"8\"><text:p>8 mm</text:p>\
+                </table:table-cell>";
     assert!(read(&ods("", cell)).is_err());
     assert_eq!(read(&ods("", &cell.replace("mm", "g"))).unwrap()[1], (2.0, 8.0));
 }

@@ -12,6 +12,9 @@ use super::size::Unit;
 use crate::gradation::error::{TableError, shortened};
 use crate::gradation::table::number;
 
+/// The columns of size and percent of a group, and the unit of its sizes.
+type Written = ([usize; 2], Option<Unit>);
+
 /// What tells one specimen from another.
 const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
 
@@ -67,7 +70,7 @@ fn soils_of_rows(
         allowed: allowed.into(),
     };
     let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), None);
-    let mut soils: Vec<(String, Grid, BTreeSet<String>, ([usize; 2], Option<Unit>))> = Vec::new();
+    let mut soils: Vec<(String, Grid, BTreeSet<String>, Written)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
     for (line, cells, open) in rows {
