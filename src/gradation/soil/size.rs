@@ -1,6 +1,5 @@
 //! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
 
-use super::agreement::near;
 use super::languages::{is_pan, is_total};
 use super::marks::unmarked;
 use crate::gradation::table::number;
@@ -209,6 +208,14 @@ fn class(text: &str) -> Option<(Opening, Said)> {
     let is_bare = |said: Said| said == Said::Plain;
     let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(said)).or_else(with_unit)?;
     (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), said))
+}
+
+/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
+const NEAR: f64 = 0.07;
+
+/// Whether two openings (mm) are those of one sieve.
+pub(super) fn near(one: f64, other: f64) -> bool {
+    (one - other).abs() <= NEAR * one.max(other)
 }
 
 /// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
