@@ -5,6 +5,7 @@ mod bad_tables;
 mod damaged;
 mod forged_checkpoints;
 mod golden;
+mod marked;
 #[path = "../readers/mod.rs"]
 mod readers;
 mod results;

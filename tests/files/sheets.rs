@@ -329,7 +329,7 @@ fn csv(grid: &Grid, separator: char) -> Vec<u8> {
     grid.iter().map(line).collect::<String>().into_bytes()
 }
 
-fn zipped(parts: &[(&str, String)]) -> Vec<u8> {
+pub(super) fn zipped(parts: &[(&str, String)]) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, content) in parts {
         zip.start_file(*name, SimpleFileOptions::default()).unwrap();

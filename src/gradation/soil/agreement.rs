@@ -3,10 +3,8 @@
 use super::grid::Grid;
 use super::heading::unit;
 use super::layout::Headings;
+pub(super) use super::size::near;
 use super::size::{Opening, Unit, opening};
-
-/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
-const NEAR: f64 = 0.07;
 
 /// Whether the openings in columns `a` and `b` are the same in every row, and any are given in both.
 pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
@@ -21,11 +19,6 @@ pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
         }
     }
     both > 0
-}
-
-/// Whether two openings (mm) are those of one sieve.
-pub(super) fn near(one: f64, other: f64) -> bool {
-    (one - other).abs() <= NEAR * one.max(other)
 }
 
 /// Openings in mm, where headings say their unit and where they do not.

@@ -8,16 +8,23 @@ use super::grid::{Grid, GridRow};
 use super::heading::{Role, unit};
 use super::layout::{Layout, SoilColumn};
 use super::lines::listed;
+use super::size::Unit;
 use crate::gradation::error::{TableError, shortened};
 use crate::gradation::table::number;
+
+/// The columns of size and percent of a group, and the unit of its sizes.
+type Written = ([usize; 2], Option<Unit>);
 
 /// What tells one specimen from another.
 const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
 
-/// Whether a text is AGS4, as it is written or as a spreadsheet saves it.
+/// Whether a text is AGS4, as it is written or as a spreadsheet saves it; `group` may head a column too.
 pub(super) fn is_ags(text: &str) -> bool {
-    let start = text.trim_start().to_uppercase();
-    start.starts_with("\"GROUP\",") || start.starts_with("GROUP,")
+    let kind =
+        |line: &str| line.split(',').next().unwrap_or_default().trim_matches([' ', '"']).to_uppercase();
+    let text = text.trim_start();
+    text.lines().next().is_some_and(|line| line.contains(',') && kind(line) == "GROUP")
+        && text.lines().any(|line| ["HEADING", "DATA"].contains(&kind(line).as_str()))
 }
 
 /// Whether a sheet of a workbook holds groups of AGS4.
@@ -63,7 +70,7 @@ fn soils_of_rows(
         allowed: allowed.into(),
     };
     let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), None);
-    let mut soils: Vec<(String, Grid, BTreeSet<String>, [usize; 2])> = Vec::new();
+    let mut soils: Vec<(String, Grid, BTreeSet<String>, Written)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
     for (line, cells, open) in rows {
@@ -73,11 +80,21 @@ fn soils_of_rows(
         if kind == "GROUP" {
             group = cells.get(1).cloned().unwrap_or_default();
             headings.clear();
+            size_unit = None;
         }
         if group == "GRAG" && kind == "DATA" {
             summary = summary.or(Some(line));
         }
         if group != "GRAT" {
+            match kind.as_str() {
+                "HEADING" => headings.clone_from(&cells),
+                // It may be a row of GRAT, amid which another group was put.
+                "DATA" if cells.len() != headings.len() && !open => {
+                    let allowed = format!("a row of {group} with a cell for each of its headings");
+                    return Err(refused(line, &shortened(&cells.join(",")), &allowed));
+                }
+                _ => {}
+            }
             continue;
         }
         let place = |name: &str| headings.iter().position(|heading| heading == name);
@@ -112,11 +129,16 @@ fn soils_of_rows(
                 let name = keys.join(" ");
                 let row = GridRow { line, cells: cells.clone(), text: None, open: false };
                 let at = *places.entry(name.clone()).or_insert(soils.len());
+                let columns = ["GRAT_SIZE", "GRAT_PERP"].map(|name| place(name).unwrap_or(0));
                 if at == soils.len() {
-                    let [size, percent] = ["GRAT_SIZE", "GRAT_PERP"].map(|name| place(name).unwrap_or(0));
-                    soils.push((name, empty(), BTreeSet::new(), [size, percent]));
+                    soils.push((name, empty(), BTreeSet::new(), (columns, size_unit)));
                 }
-                let (_, grid, types, _) = &mut soils[at];
+                let (_, grid, types, written) = &mut soils[at];
+                if *written != (columns, size_unit) {
+                    let allowed = "sizes and percents of this specimen in the unit and the columns of its \
+                                   first rows";
+                    return Err(refused(line, &shortened(&cells.join(",")), allowed));
+                }
                 grid.rows.push(row);
                 types.extend(Some(cell("GRAT_TYPE").to_owned()).filter(|kind| !kind.is_empty()));
             }
@@ -135,7 +157,7 @@ fn soils_of_rows(
             is: "AGS4 without a row in its group GRAT (gradings)".into(),
         });
     }
-    let soils = soils.into_iter().map(|(name, mut grid, types, columns)| {
+    let soils = soils.into_iter().map(|(name, mut grid, types, (columns, unit))| {
         let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         in_order(&mut grid, columns);
         if types.len() > 1 {
@@ -153,7 +175,7 @@ fn soils_of_rows(
         let layout = Layout {
             size: columns[0],
             other_size: None,
-            unit: size_unit,
+            unit,
             soils: vec![soil],
             at: 0,
             first: 0,

@@ -3,7 +3,7 @@
 use super::content::percentage;
 use super::extent::Extent;
 use super::grid::Grid;
-use super::heading::Role;
+use super::heading::{Retained, Role};
 use super::layout::{Layout, SoilColumn};
 use super::size::Unit;
 use crate::gradation::comma::{Comma, comma};
@@ -18,6 +18,7 @@ pub(super) fn check(
     column: &SoilColumn,
     notes: &mut Vec<String>,
 ) -> Result<(), TableError> {
+    refuse_points_of_thousands(grid, layout, extent, column)?;
     let (mut point, mut other, mut decimal, mut either) = (None, None, false, None);
     for row in extent.rows(grid, layout) {
         let at = extent.column_of_size(layout, row);
@@ -60,4 +61,46 @@ pub(super) fn check(
     }
     notes.push(format!("commas within numbers, as in {cell}, read as decimal signs"));
     Ok(())
+}
+
+/// Refuses `1.100` among whole masses of hundreds of grams: the point may separate thousands.
+fn refuse_points_of_thousands(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    column: &SoilColumn,
+) -> Result<(), TableError> {
+    const LEAST: f64 = 100.0;
+    if !matches!(column.role, Role::Retained(Retained { percent: false, .. })) {
+        return Ok(());
+    }
+    let may_be_thousands = |cell: &str| {
+        let (whole, rest) = cell.split_once('.').unwrap_or_default();
+        let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+        (1..=3).contains(&whole.len())
+            && !whole.starts_with('0')
+            && rest.len() == 3
+            && is_digits(whole)
+            && is_digits(rest)
+    };
+    let (mut found, mut largest) = (None, 0.0f64);
+    for row in extent.rows(grid, layout) {
+        let cell = row.cell(column.column);
+        match percentage(cell) {
+            Some(_) if may_be_thousands(cell) => found = found.or(Some((row.line, cell))),
+            Some(mass) if mass.fract() != 0.0 => return Ok(()),
+            Some(mass) => largest = largest.max(mass),
+            None => {}
+        }
+    }
+    match found.filter(|_| largest >= LEAST) {
+        Some((line, cell)) => {
+            let allowed = format!(
+                "{cell} or {}, as a number: here the point may be a decimal sign or separate thousands",
+                cell.replace('.', "")
+            );
+            Err(grid.refused(line, column.column, "number", cell, allowed))
+        }
+        None => Ok(()),
+    }
 }

@@ -1,6 +1,9 @@
 //! What the heading of a column says it holds.
 
-use super::languages::{say_cumulative, say_finer, say_individual, say_retained, say_size};
+use super::languages::{
+    say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres, say_retained,
+    say_size,
+};
 use super::size::Unit;
 
 /// What a column holds, by its heading.
@@ -120,9 +123,6 @@ const MASS: [&str; 11] =
 const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
 const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
 const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
-const MICROMETRE: [&str; 10] =
-    ["um", "µm", "μm", "мкм", "micron", "microns", "micrometre", "micrometer", "micrometres", "micrometers"];
-
 /// The words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
@@ -153,6 +153,33 @@ fn is_characteristic(words: &[String]) -> bool {
         [first, second, ..] => first == "d" && is_number(second),
         _ => false,
     }
+}
+
+/// The words of a heading without the letter that is a sample's name.
+fn words_of_column(name: &str) -> Vec<String> {
+    let mut words = words(name);
+    for letter in ["d", "g"] {
+        if is_letter_of_sample(name, &words, letter) {
+            words.retain(|word| word != letter);
+        }
+    }
+    words
+}
+
+/// `Sample D`, `Zone G (%)`: a letter behind a name, neither that of diameters nor that of grams.
+fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
+    let is_bracketed = ['(', '['].iter().any(|sign| name.to_lowercase().contains(&format!("{sign}{letter}")));
+    let others = || words.iter().filter(|word| *word != letter);
+    let is_alone = others().next().is_none() || words[0] == letter && is_length(name);
+    let is_weighed = others().any(|word| MASS.contains(&word.as_str()) || RETAINED.contains(&word.as_str()))
+        || say_retained(words)
+        || name.contains(", g");
+    !(is_bracketed || is_alone || letter == "g" && is_weighed)
+}
+
+/// Whether a heading names a unit of length.
+fn is_length(name: &str) -> bool {
+    matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)))
 }
 
 /// Whether a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
@@ -285,7 +312,7 @@ pub(super) fn is_weighing(name: &str) -> bool {
         "solo",
         "retained",
     ];
-    let words = words(name);
+    let words = words_of_column(name);
     let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
     let (size, mass) = (any(&words, &SIZE) || say_size(&words), any(&words, &MASS));
     let both = name.contains(['+', '&']) || any(&words, &AND);
@@ -297,7 +324,7 @@ pub(super) fn is_weighing(name: &str) -> bool {
 
 /// What a column of this name holds.
 pub(super) fn role(name: &str) -> Role {
-    let words = words(name);
+    let words = words_of_column(name);
     if is_characteristic(&words) {
         return Role::Other;
     }
@@ -312,10 +339,9 @@ pub(super) fn role(name: &str) -> Role {
         (false, true) => Some(false),
         (false, false) => None,
     };
-    let is_length = matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)));
     let has_digit = name.contains(|c: char| c.is_ascii_digit());
     let is_bound = ["passing", "pass", "passed", "retained", "oversize", "undersize"];
-    if is_length && any(&words, &is_bound) && !percent && !mass && !has_digit {
+    if is_length(name) && any(&words, &is_bound) && !percent && !mass && !has_digit {
         // `Passing (mm)`, `Retained on (mm)`: the bounds of a class.
         return Role::Size;
     }
@@ -338,25 +364,52 @@ pub(super) fn role(name: &str) -> Role {
 
 /// The unit that the heading of a column of openings names; an error where it is none that is understood.
 pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
-    let words = words(name);
+    // `SizeUm`
+    let mut parted = String::new();
+    for c in name.chars() {
+        if c.is_uppercase() && parted.ends_with(char::is_lowercase) {
+            parted.push(' ');
+        }
+        parted.push(c);
+    }
+    let words = [words(name), words(&parted)].concat();
     let last_is_in = words.last().is_some_and(|word| word == "in") || name.contains("(in");
-    Ok(Some(if any(&words, &["mm", "мм", "millimetre", "millimeter", "millimetres", "millimeters"]) {
-        Unit::Mm
-    } else if any(&words, &MICROMETRE) {
+    Ok(Some(if say_micrometres(name, &words) {
         Unit::Micrometre
-    } else if any(&words, &["inch", "inches", "zoll"]) || last_is_in || name.contains('"') {
+    } else if say_millimetres(&words) {
+        Unit::Mm
+    } else if say_inches(&words) || last_is_in || name.contains('"') {
         Unit::Inch
     } else if any(&words, &["phi", "φ", "ϕ", "krumbein"]) {
         Unit::Phi
     } else if any(&words, &["cm"]) {
         Unit::Cm
-    } else if any(&words, &["m", "nm"]) {
+    } else if any(&words, &["m", "nm", "ø"]) {
+        // `Ø` is phi and a diameter.
         return Err(());
     } else if any(&words, &["no", "number", "nr", "mesh"]) || name.contains('#') {
         Unit::SieveNumber
+    } else if is_unknown(name) {
+        return Err(());
     } else {
         return Ok(None);
     }))
+}
+
+/// Whether a heading of openings ends in a word in brackets that is neither a unit nor one of sieves.
+fn is_unknown(name: &str) -> bool {
+    const OTHER: [&str; 14] = [
+        "us", "uss", "astm", "aashto", "iso", "din", "en", "standard", "nominal", "square", "round", "x",
+        "a", "b",
+    ];
+    let Some((_, bracketed)) = name.rsplit_once(['(', '[']) else { return false };
+    let (all, bracketed) = (words(name), words(bracketed));
+    let [word] = &bracketed[..] else { return false };
+    (any(&all, &SIZE) || say_size(&all))
+        && word.chars().all(char::is_alphabetic)
+        && !any(&bracketed, &SIZE)
+        && !any(&bracketed, &OTHER)
+        && !say_size(&bracketed)
 }
 
 #[cfg(test)]
@@ -393,6 +446,14 @@ mod tests {
             ("D 60, mm", Role::Other),
             ("D (mm)", Role::Size),
             ("Mass of sieve (g)", Role::Other),
+            ("Soil D (g)", retained(false, None)),
+            ("Sample D", Role::Other),
+            ("Zone G", Role::Other),
+            ("Filter D (%)", Role::Finer),
+            ("D, mm", Role::Size),
+            ("D", Role::Size),
+            ("Individual, g", retained(false, Some(false))),
+            ("Weight g", retained(false, None)),
         ] {
             assert_eq!(role(name), expected, "{name}");
         }

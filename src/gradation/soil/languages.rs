@@ -175,6 +175,42 @@ const TOTAL: [&str; 22] = [
     "합계",
 ];
 
+const MILLIMETRE: [&str; 6] = ["mm", "мм", "millimetre", "millimeter", "millimetres", "millimeters"];
+const MICROMETRE: [&str; 10] = ["um", "µm", "μm", "мкм", "µ", "μ", "mcm", "mic", "mu", "micro"];
+/// Stems of its words.
+const MICROMETRES: [&str; 12] = [
+    "micron",
+    "micrón",
+    "mícron",
+    "micra",
+    "micromet",
+    "micromèt",
+    "micrómet",
+    "micrômet",
+    "mikron",
+    "mikrom",
+    "микрон",
+    "микром",
+];
+const MICROMETRE_WITHIN: [&str; 8] =
+    ["微米", "㎛", "1/1000 mm", "1/1000mm", "10^-3 mm", "10-3 mm", "10⁻³ mm", "0.001 mm"];
+const INCH: [&str; 14] = [
+    "inch",
+    "inches",
+    "ins",
+    "zoll",
+    "pulg",
+    "pulgada",
+    "pulgadas",
+    "pol",
+    "polegada",
+    "polegadas",
+    "pouce",
+    "pouces",
+    "pollici",
+    "duim",
+];
+
 fn any(words: &[String], list: &[&str]) -> bool {
     words.iter().any(|word| list.contains(&word.as_str()))
 }
@@ -201,6 +237,21 @@ pub(super) fn say_cumulative(words: &[String]) -> bool {
 
 pub(super) fn say_individual(words: &[String]) -> bool {
     within(words, &INDIVIDUAL_WITHIN)
+}
+
+pub(super) fn say_millimetres(words: &[String]) -> bool {
+    any(words, &MILLIMETRE)
+}
+
+/// Whether a name, or the words of it, says micrometres, and not mm.
+pub(super) fn say_micrometres(name: &str, words: &[String]) -> bool {
+    let begins = |word: &String| MICROMETRES.iter().any(|stem| word.starts_with(stem));
+    MICROMETRE_WITHIN.iter().any(|part| name.contains(part))
+        || !say_millimetres(words) && (any(words, &MICROMETRE) || words.iter().any(begins))
+}
+
+pub(super) fn say_inches(words: &[String]) -> bool {
+    any(words, &INCH)
 }
 
 /// Whether a text, in small letters, names the pan.

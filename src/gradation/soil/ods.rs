@@ -1,12 +1,14 @@
 //! Sheets of OpenDocument: `content.xml`.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::cells::{Budget, Cells, tidy};
 use super::grid::Grid;
+use super::literals::{around, as_shown};
+use super::runs::{Kind, Runs};
 use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
 use crate::gradation::error::TableError;
 
@@ -21,6 +23,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
     // Styles stand before the sheets; one that is not shown hides the sheets that have it.
     let (mut hidden, mut style) = (HashSet::new(), String::new());
+    let mut kinds = HashMap::new();
     loop {
         match reader.read_event().map_err(|_| broken(file))? {
             Event::Start(e) if e.name().as_ref() == "style:style" => {
@@ -32,11 +35,14 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
             {
                 hidden.insert(style.clone());
             }
+            Event::Start(e) if e.name().as_ref() == "style:text-properties" => {
+                kinds.extend(kind_of(&e).map(|kind| (style.clone(), kind)));
+            }
             Event::Start(e) if e.name().as_ref() == "table:table" => {
                 let name = attribute(&e, "table:name").unwrap_or_default();
                 let is_hidden =
                     attribute(&e, "table:style-name").is_some_and(|style| hidden.contains(&style));
-                sheets.push(sheet(file, &name, is_hidden, &mut reader, &mut budget)?);
+                sheets.push(sheet(file, &name, is_hidden, &kinds, &mut reader, &mut budget)?);
             }
             Event::Eof => return Ok(sheets),
             _ => {}
@@ -48,6 +54,21 @@ fn broken(file: &str) -> TableError {
     unreadable(file, "its content.xml is broken")
 }
 
+/// Kind of the text that has these properties, where it is no ordinary one.
+fn kind_of(properties: &BytesStart) -> Option<Kind> {
+    let has = |name: &str| attribute(properties, name).is_some_and(|value| value != "none");
+    let position = attribute(properties, "style:text-position").unwrap_or_default();
+    match () {
+        () if has("style:text-line-through-style") || has("style:text-line-through-type") => {
+            Some(Kind::Struck)
+        }
+        () if position.starts_with("super") || position.starts_with(|c: char| ('1'..='9').contains(&c)) => {
+            Some(Kind::Raised)
+        }
+        () => None,
+    }
+}
+
 fn repeats(element: &BytesStart, name: &str) -> usize {
     attribute(element, name).and_then(|n| n.parse().ok()).unwrap_or(1).max(1)
 }
@@ -56,6 +77,7 @@ fn sheet(
     file: &str,
     name: &str,
     hidden: bool,
+    kinds: &HashMap<String, Kind>,
     reader: &mut Reader<&[u8]>,
     budget: &mut Budget,
 ) -> Result<Grid, TableError> {
@@ -75,7 +97,7 @@ fn sheet(
             Event::Start(e) if e.name().as_ref() == "table:table-row" => {
                 let times = repeats(&e, "table:number-rows-repeated");
                 let collapsed = is_collapsed(&e);
-                let filled = read_row(file, reader)?;
+                let filled = read_row(file, kinds, reader)?;
                 if !filled.is_empty() && times > MOST_REPEATS {
                     return Err(too_large(file, &format!("a row that is repeated {times} times")));
                 }
@@ -98,7 +120,11 @@ fn sheet(
 }
 
 /// The filled cells of a row, with their columns.
-fn read_row(file: &str, reader: &mut Reader<&[u8]>) -> Result<Vec<(usize, String)>, TableError> {
+fn read_row(
+    file: &str,
+    kinds: &HashMap<String, Kind>,
+    reader: &mut Reader<&[u8]>,
+) -> Result<Vec<(usize, String)>, TableError> {
     let mut filled = Vec::new();
     let mut column = 0usize;
     loop {
@@ -111,10 +137,18 @@ fn read_row(file: &str, reader: &mut Reader<&[u8]>) -> Result<Vec<(usize, String
                 let kind = attribute(&e, "office:value-type").unwrap_or_default();
                 let value = attribute(&e, "office:value");
                 let formula = attribute(&e, "table:formula").is_some();
-                let shown = paragraphs(file, reader, &end)?;
+                let is_error = attribute(&e, "calcext:value-type").is_some_and(|kind| kind == "error");
+                let shown = paragraphs(file, kinds, reader, &end)?;
+                // Of a formula that failed, the value is 0.
+                let failed = is_error || shown.starts_with('#') || shown.starts_with("Err:");
                 let text = match (kind.as_str(), value) {
+                    ("percentage" | "float" | "currency", Some(_)) if failed => shown,
                     ("percentage", Some(value)) => percents(&value).unwrap_or(value),
-                    ("float" | "currency", Some(value)) => value,
+                    ("float", Some(value)) => {
+                        let (before, after) = around(&shown);
+                        as_shown(before, &value, after)
+                    }
+                    ("currency", Some(value)) => value,
                     ("date" | "time", _) => format!("{shown} (a date)"),
                     ("", _) if formula && shown.is_empty() => "a formula without its value".to_owned(),
                     _ => shown,
@@ -145,8 +179,14 @@ fn percents(value: &str) -> Option<String> {
 }
 
 /// The text of a cell, without its comments.
-fn paragraphs(file: &str, reader: &mut Reader<&[u8]>, end: &str) -> Result<String, TableError> {
-    let mut text = String::new();
+fn paragraphs(
+    file: &str,
+    kinds: &HashMap<String, Kind>,
+    reader: &mut Reader<&[u8]>,
+    end: &str,
+) -> Result<String, TableError> {
+    const SPACES: [&str; 4] = ["text:p", "text:s", "text:tab", "text:line-break"];
+    let (mut runs, mut spans) = (Runs::default(), Vec::new());
     let mut within_comment = 0u32;
     loop {
         let event = reader.read_event().map_err(|_| broken(file))?;
@@ -155,14 +195,17 @@ fn paragraphs(file: &str, reader: &mut Reader<&[u8]>, end: &str) -> Result<Strin
             Event::End(e) if e.name().as_ref() == "office:annotation" => {
                 within_comment = within_comment.saturating_sub(1);
             }
-            Event::Start(e) if ["text:p", "text:s"].contains(&e.name().as_ref()) && !text.is_empty() => {
-                text.push(' ');
+            Event::Start(e) if e.name().as_ref() == "text:span" => {
+                spans.push(attribute(e, "text:style-name").unwrap_or_default());
             }
-            Event::End(e) if e.name().as_ref() == end => return Ok(text),
+            Event::End(e) if e.name().as_ref() == "text:span" => drop(spans.pop()),
+            Event::Start(e) if SPACES.contains(&e.name().as_ref()) => runs.push(" ", Kind::Plain, ""),
+            Event::End(e) if e.name().as_ref() == end => return Ok(runs.text().trim().to_owned()),
             Event::Eof => return Err(broken(file)),
             _ => {
                 if let Some(more) = characters(&event).filter(|_| within_comment == 0) {
-                    text.push_str(&more);
+                    let kind = spans.iter().filter_map(|style| kinds.get(style)).max();
+                    runs.push(&more, kind.copied().unwrap_or(Kind::Plain), &spans.join(" "));
                 }
             }
         }

@@ -9,8 +9,11 @@ use super::heading::{Role, says_mean};
 use super::joined::Read;
 use super::layout::{Layout, SoilColumn};
 use super::lines::names_listed;
+use super::stated::states_unit;
 use super::summary::SoilSummary;
 use super::table::Soil;
+use super::torn::whole_row;
+use super::units::TAKEN_AS_MM;
 use super::{ags, blocks, bounds, csv, joined, names, points, text, workbook};
 use crate::gradation::error::{GradationError, TableError, letters, shortened};
 use crate::gradation::sieve::Gradation;
@@ -97,12 +100,32 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
         }
         // What the first separator cannot make a table of may be one by another.
         match soils_of(grid) {
-            Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => return Ok(soils),
+            Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => {
+                refuse_commented_unit(file, &text, &soils)?;
+                return Ok(soils);
+            }
             Ok(mut soils) => refusal = refusal.or(soils.pop().and_then(|(_, soil)| soil.err())),
             Err(error) => refusal = refusal.or(Some(error)),
         }
     }
     Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
+}
+
+/// Refuses openings that were taken as mm where a comment names another unit.
+fn refuse_commented_unit(file: &str, text: &str, soils: &[Named]) -> Result<(), TableError> {
+    let is_taken = |soil: &Soil| soil.notes.iter().any(|note| note == TAKEN_AS_MM);
+    if !soils.iter().any(|(_, soil)| soil.as_ref().is_ok_and(is_taken)) {
+        return Ok(());
+    }
+    let mut comments = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with('#'));
+    match comments.find(|(_, line)| states_unit(line)) {
+        Some((index, line)) => {
+            let allowed = "openings whose heading names their unit, as Size (mm) or Size (um)".into();
+            let (file, line, value) = (file.to_owned(), index + 1, shortened(line));
+            Err(TableError::Header { file, line, value, allowed })
+        }
+        None => Ok(()),
+    }
 }
 
 fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError> {
@@ -123,7 +146,9 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
     }
     for grid in sheets {
         let sheet = grid.sheet.clone().unwrap_or_default();
-        let (place, has_table) = (grid.place(), blocks::has_table(&grid));
+        // Rows that are each in one cell are those of a table, too.
+        let torn = grid.rows.iter().filter(|row| whole_row(row, false).is_some()).count();
+        let (place, has_table) = (grid.place(), blocks::has_table(&grid) || torn > 1);
         let read = match ags::is_ags_sheet(&grid) {
             true => ags::soils_of_sheet(&grid).and_then(of_ags),
             false => soils_of(grid),

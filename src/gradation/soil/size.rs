@@ -210,7 +210,18 @@ fn class(text: &str) -> Option<(Opening, Said)> {
     (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), said))
 }
 
-/// `9.5 mm`, also within `No. 4 (4.75 mm)`; `75 um`.
+/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
+const NEAR: f64 = 0.07;
+
+/// Whether two openings (mm) are those of one sieve.
+pub(super) fn near(one: f64, other: f64) -> bool {
+    (one - other).abs() <= NEAR * one.max(other)
+}
+
+/// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
+const LONGEST_NAME: usize = 32;
+
+/// `9.5 mm`, also within `No. 4 (4.75 mm)`, where both names are those of one sieve; `75 um`.
 fn metric(text: &str) -> Option<f64> {
     const UNITS: [(&str, f64); 14] = [
         ("mm", 1.0),
@@ -239,7 +250,13 @@ fn metric(text: &str) -> Option<f64> {
         if !good_lead || !good_rest {
             return None;
         }
-        number(before[from..].trim()).map(|value| value / per_mm)
+        let mm = number(before[from..].trim())? / per_mm;
+        let others = [lead, rest].map(|other| other.trim_matches(['(', ')', '=', '/', ' ']));
+        let disagrees = |other: &str| {
+            other.len() > LONGEST_NAME
+                || matches!(opening(other), Some((Opening::Mm(named), _)) if !near(named, mm))
+        };
+        (!others.into_iter().any(disagrees)).then_some(mm)
     })
 }
 
@@ -327,6 +344,11 @@ fn of_inches(inches: f64) -> f64 {
     standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
 }
 
+/// Whether an opening (mm) is that of a US sieve.
+pub(super) fn is_us_sieve(mm: f64) -> bool {
+    us_sieve(mm).is_some()
+}
+
 /// Whether an opening (mm) that was given in inches is that of a US sieve.
 pub(super) fn is_us_sieve_of_inches(mm: f64) -> bool {
     BY_INCHES.iter().any(|(_, opening)| *opening == mm)
@@ -377,6 +399,9 @@ mod tests {
             ("63 microns", 0.063),
             ("No. 4 (4.75 mm)", 4.75),
             ("4.75 mm (No. 4)", 4.75),
+            ("No. 4 (4.76 mm)", 4.76),
+            ("No. 40 (0.42 mm)", 0.42),
+            ("425 um (0.425 mm)", 0.425),
             ("3/4 in. (19.0 mm)", 19.0),
             ("2 cm", 20.0),
             ("US 4", 4.75),
@@ -419,6 +444,11 @@ mod tests {
             "8-Mar",
             "1 3/2\"",
             "x9.5 mm",
+            "No. 40 (0.245 mm)",
+            "No. 30 (0.06 mm)",
+            "0.6 mm (No. 40)",
+            "3/8 in (19 mm)",
+            "425 um (0.245 mm)",
             "",
         ] {
             assert_eq!(opening(text), None, "{text}");

@@ -4,6 +4,7 @@ use super::grid::Grid;
 use super::heading::{Retained, Role};
 use super::layout::Layout;
 use super::size::{Entry, Opening, Said, Unit, is_us_sieve_of_inches};
+use super::stated;
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 
@@ -23,6 +24,9 @@ const ALSO_MM: [f64; 22] = [
     0.003, 0.01, 0.004, 0.002, 0.125,
 ];
 
+/// What is said of bare openings for which no unit is found.
+pub(super) const TAKEN_AS_MM: &str = "openings without a unit taken as mm";
+
 /// The unit of openings that are bare numbers: the heading's; mm where nothing else has inches; else the one
 /// in which the openings go one way.
 pub(super) fn of_bare(
@@ -32,14 +36,17 @@ pub(super) fn of_bare(
     entries: &[Entry],
     notes: &mut Vec<String>,
 ) -> Result<Unit, TableError> {
-    if matches!(layout.unit, None | Some(Unit::Mm)) {
+    stated::refuse_other_series(grid, layout, entries)?;
+    let stated = stated::beside(grid, layout, entries)?;
+    if matches!(stated, None | Some(Unit::Mm)) {
         refuse_micrometres(grid, entries)?;
     }
     let is_no_sieve = |entry: &Entry| match entry.opening {
         Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
         _ => false,
     };
-    match layout.unit {
+    stated::refuse_other_unit(grid, layout, entries, stated)?;
+    match stated {
         // Headings say `Sieve no.` of openings in mm too.
         Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
         Some(unit) => return Ok(unit),
@@ -91,7 +98,7 @@ pub(super) fn of_bare(
              write the unit in the heading, as Sieve (in) or Sieve (mm)"
         ));
     }
-    notes.push("openings without a unit taken as mm".into());
+    notes.push(TAKEN_AS_MM.into());
     Ok(Unit::Mm)
 }
 

@@ -7,6 +7,8 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::cells::{Budget, Cells};
 use super::grid::Grid;
+use super::literals::{as_shown, parts_of};
+use super::runs::{Kind, Runs};
 use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
 use crate::gradation::error::{Position, TableError};
 
@@ -79,32 +81,60 @@ fn each(
 fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
     let mut reader = Reader::from_str(text);
     reader.config_mut().expand_empty_elements = true;
-    let (mut strings, mut current, mut phonetic) = (Vec::new(), String::new(), false);
+    let (mut strings, mut rich, mut phonetic) = (Vec::new(), Rich::default(), false);
     loop {
         let event = reader.read_event().map_err(|_| broken(file))?;
         match &event {
             Event::Start(e) if e.local_name().as_ref() == "rPh" => phonetic = true,
             Event::End(e) if e.local_name().as_ref() == "rPh" => phonetic = false,
             Event::End(e) if e.local_name().as_ref() == "si" => {
-                strings.push(std::mem::take(&mut current));
+                strings.push(rich.runs.text());
                 if strings.len() > MOST_STRINGS {
                     return Err(too_large(file, &format!("more than {MOST_STRINGS} texts")));
                 }
             }
             Event::Eof => return Ok(strings),
+            Event::Start(e) => rich.start(e),
             _ => {
                 if let Some(more) = characters(&event).filter(|_| !phonetic) {
-                    current.push_str(&more);
+                    rich.push(&more);
                 }
             }
         }
     }
 }
 
+/// A text in runs of different formats.
+#[derive(Default)]
+struct Rich {
+    runs: Runs,
+    kind: Kind,
+    format: String,
+}
+
+impl Rich {
+    /// Takes an element: a run, its text, or one of the properties between them.
+    fn start(&mut self, element: &BytesStart) {
+        let value = attribute(element, "val").unwrap_or_default();
+        match element.local_name().as_ref() {
+            "r" | "si" | "is" => (self.kind, self.format) = (Kind::Plain, String::new()),
+            "t" => {}
+            "strike" if !["0", "false"].contains(&value.as_str()) => self.kind = Kind::Struck,
+            "vertAlign" if value == "superscript" => self.kind = self.kind.max(Kind::Raised),
+            _ => self.format.push_str(element),
+        }
+    }
+
+    fn push(&mut self, more: &str) {
+        self.runs.push(more, self.kind, &self.format);
+    }
+}
+
 /// How a number is shown.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Style {
-    Number,
+    /// With what stands before it and behind it.
+    Number(String, String),
     Percent,
     Date,
 }
@@ -128,7 +158,7 @@ fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
                 styles.push(match id {
                     9 | 10 => Style::Percent,
                     14..=22 | 45..=47 => Style::Date,
-                    id => formats.get(&id).copied().unwrap_or(Style::Number),
+                    id => formats.get(&id).cloned().unwrap_or_else(|| of_format("")),
                 });
             }
             Event::Eof => return Ok(styles),
@@ -137,23 +167,14 @@ fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     }
 }
 
-/// What a format's code shows; quoted text and conditions in brackets say nothing.
+/// What a format's code shows; quoted text and conditions in brackets say nothing of dates.
 fn of_format(code: &str) -> Style {
-    let (mut plain, mut quoted, mut bracketed) = (String::new(), false, false);
-    for c in code.chars() {
-        match c {
-            '"' => quoted = !quoted,
-            '[' => bracketed = true,
-            ']' => bracketed = false,
-            c if !quoted && !bracketed => plain.push(c),
-            _ => {}
-        }
-    }
+    let (before, after, plain) = parts_of(code);
     let plain = plain.to_lowercase().replace("general", "");
     match () {
         () if plain.contains('%') => Style::Percent,
         () if plain.contains(['d', 'y']) || plain.contains("mm") || plain.contains("h:") => Style::Date,
-        () => Style::Number,
+        () => Style::Number(before, after),
     }
 }
 
@@ -219,7 +240,7 @@ impl Context<'_> {
         row: usize,
         column: usize,
     ) -> Result<String, TableError> {
-        let (mut value, mut inline, mut formula) = (String::new(), String::new(), false);
+        let (mut value, mut inline, mut formula) = (String::new(), Rich::default(), false);
         let mut within = String::new();
         loop {
             let event = reader.read_event().map_err(|_| broken(self.file))?;
@@ -227,6 +248,7 @@ impl Context<'_> {
                 Event::Start(e) => {
                     within = e.local_name().as_ref().to_owned();
                     formula |= within == "f";
+                    inline.start(e);
                 }
                 Event::End(e) if e.local_name().as_ref() == "c" => break,
                 Event::End(_) => within.clear(),
@@ -235,7 +257,7 @@ impl Context<'_> {
                     if let Some(more) = characters(&event) {
                         match within.as_str() {
                             "v" => value.push_str(&more),
-                            "t" => inline.push_str(&more),
+                            "t" => inline.push(&more),
                             _ => {}
                         }
                     }
@@ -257,7 +279,7 @@ impl Context<'_> {
                 let text = value.parse().ok().and_then(|n: usize| self.strings.get(n)).cloned();
                 text.ok_or_else(|| unreadable(self.file, "a cell names a text that is not there"))?
             }
-            "inlineStr" => inline,
+            "inlineStr" => inline.runs.text(),
             "str" | "e" => value,
             "d" => format!("{value} (a date)"),
             "b" => if value == "1" { "TRUE" } else { "FALSE" }.to_owned(),
@@ -268,13 +290,13 @@ impl Context<'_> {
     /// A number as the sheet shows it: with its percent sign, or as a date.
     fn number(&self, value: &str, style: usize) -> String {
         let Ok(number) = value.parse::<f64>() else { return value.to_owned() };
-        match self.styles.get(style).copied().unwrap_or(Style::Number) {
-            Style::Percent => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),
-            Style::Date => format!("day {number} (a date)"),
-            // Fifteen digits are what a spreadsheet shows of a number that was summed up.
-            Style::Number => {
-                format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string())
-            }
+        // Fifteen digits are what a spreadsheet shows of a number that was summed up.
+        let rounded = format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
+        match self.styles.get(style) {
+            Some(Style::Percent) => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),
+            Some(Style::Date) => format!("day {number} (a date)"),
+            Some(Style::Number(before, after)) => as_shown(before, &rounded, after),
+            None => rounded,
         }
     }
 }
@@ -304,6 +326,8 @@ mod tests {
         );
         assert_eq!([place_of("7"), place_of("A0"), place_of("AAAA1"), place_of("")], [None; 4]);
         assert!(of_format("0.0%") == Style::Percent && of_format("dd\\-mmm") == Style::Date);
-        assert!(of_format("0.00\" mm\"") == Style::Number && of_format("[Red]0.0;General") == Style::Number);
+        for code in ["0.00\" mm\"", "[Red]0.0;General", "0.0_D_M", "0.0\\d", "0*d"] {
+            assert!(matches!(of_format(code), Style::Number(..)), "{code}");
+        }
     }
 }
