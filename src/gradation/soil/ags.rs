@@ -69,7 +69,7 @@ fn soils_of_rows(
         value: value.into(),
         allowed: allowed.into(),
     };
-    let (mut group, mut headings, mut size_unit) = (String::new(), Vec::new(), None);
+    let (mut group, mut headings, mut of_grat, mut size_unit) = (String::new(), Vec::new(), 0, None);
     let mut soils: Vec<(String, Grid, BTreeSet<String>, Written)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     let mut summary = None;
@@ -89,7 +89,7 @@ fn soils_of_rows(
             match kind.as_str() {
                 "HEADING" => headings.clone_from(&cells),
                 // It may be a row of GRAT, amid which another group was put.
-                "DATA" if cells.len() != headings.len() && !open => {
+                "DATA" if cells.len() != headings.len() && cells.len() == of_grat => {
                     let allowed = format!("a row of {group} with a cell for each of its headings");
                     return Err(refused(line, &shortened(&cells.join(",")), &allowed));
                 }
@@ -100,7 +100,10 @@ fn soils_of_rows(
         let place = |name: &str| headings.iter().position(|heading| heading == name);
         let cell = |name: &str| place(name).and_then(|at| cells.get(at)).map_or("", String::as_str);
         match kind.as_str() {
-            "HEADING" => headings.clone_from(&cells),
+            "HEADING" => {
+                headings.clone_from(&cells);
+                of_grat = cells.len();
+            }
             "UNIT" => {
                 size_unit = match cell("GRAT_SIZE") {
                     "" => None,
