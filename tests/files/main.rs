@@ -11,3 +11,4 @@ mod results;
 mod sheets;
 mod soils;
 mod torn_checkpoints;
+mod vanished;
