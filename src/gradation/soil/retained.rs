@@ -114,7 +114,9 @@ impl Weighed<'_> {
                                lost: it is a part of the whole";
                 return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
             }
-            let of_soil = self.grid.rows.iter().find(|other| other.line == row.line);
+            // A row of masses has one for each column of masses behind its words.
+            let is_before = row.column < self.column;
+            let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
             let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
             let (column, value) = in_column.map_or((first, value), |value| (self.column, value));
             let is_all = any(&ALL) && !any(&TARE) && !any(&PART);
