@@ -12,3 +12,4 @@ mod results;
 mod sheets;
 mod soils;
 mod torn_checkpoints;
+mod vanished;

@@ -3,12 +3,13 @@
 use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, unit};
-use super::heads::{Head, head, is_broken, is_of_names};
+use super::heads::{Head, head, is_broken, is_misspelt, is_of_names};
 use super::labels::Labels;
 use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
 use super::size::{Opening, Unit, opening};
 use super::torn;
 use crate::gradation::error::{TableError, shortened};
+use crate::gradation::table::percent_is_allowed;
 
 /// Fewer bare numbers in a row may be anything, and fewer named openings are no curve.
 const LEAST_OPENINGS: usize = 3;
@@ -46,7 +47,7 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
         };
     }
     refuse_second(grid, at, &soils, &openings.columns)?;
-    refuse_other_openings(grid, at, &openings.columns)?;
+    refuse_other_openings(grid, at, &soils, &openings.columns)?;
     refuse_lost(grid, at, &soils, &openings.columns)?;
     Ok(Some(upright(grid, at, &openings, &soils)))
 }
@@ -153,11 +154,24 @@ fn is_between(columns: &[usize], c: usize) -> bool {
 }
 
 /// Headings beside the openings that name more of them, or seem to.
-fn refuse_other_openings(grid: &Grid, at: usize, columns: &[usize]) -> Result<(), TableError> {
+fn refuse_other_openings(
+    grid: &Grid,
+    at: usize,
+    soils: &[usize],
+    columns: &[usize],
+) -> Result<(), TableError> {
     let row = &grid.rows[at];
+    let is_beside =
+        |c: usize| columns.first() == Some(&(c + 1)) || columns.last() == c.checked_sub(1).as_ref();
+    let is_percents = |c: usize| {
+        let cells = soils.iter().map(|&soil| grid.rows[at + 1 + soil].cell(c)).filter(|cell| !is_blank(cell));
+        let mut percents = cells.map(|cell| percentage(cell).is_some_and(percent_is_allowed)).peekable();
+        percents.peek().is_some() && percents.all(|is_percent| is_percent)
+    };
     let is_other = |c: &usize| {
         let cell = row.cell(*c);
-        !is_between(columns, *c) && (is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some()))
+        let is_named = is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some());
+        !is_between(columns, *c) && (is_named || is_beside(*c) && is_misspelt(cell) && is_percents(*c))
     };
     match row.filled().find(is_other) {
         Some(c) => {
@@ -241,16 +255,17 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
     if let Some(c) = (last + 1..heading.cells.len()).find(|&c| is_opening(heading, c)) {
         return refused(heading, c, "openings side by side");
     }
-    let amid = |row: &&GridRow| is_text(row) && row.filled().any(|c| torn::holds_several(row.cell(c)));
     let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
     let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
-    match grid.rows[at + 1..end.max(at + 1)].iter().find(amid) {
-        Some(row) => {
-            let column = row.filled().find(|&c| torn::holds_several(row.cell(c))).unwrap_or(0);
-            Err(torn::refused(grid, row, column))
+    for (index, row) in grid.rows.iter().enumerate().skip(at + 1).filter(|(_, row)| is_text(row)) {
+        let is_near = index < end || row.line == grid.rows[end].line + 1;
+        let several = || row.filled().find(|&c| torn::holds_several(row.cell(c)));
+        let column = several().or_else(|| torn::row_below(row)).filter(|_| is_near);
+        if let Some(column) = column {
+            return Err(torn::refused(grid, row, column));
         }
-        None => Ok(()),
     }
+    Ok(())
 }
 
 fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Grid, Layout) {

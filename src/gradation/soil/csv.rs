@@ -41,7 +41,13 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
         let mut content = lines[at].to_owned();
         at += 1;
         if is_comment(&content) {
-            if marked(&content) == Some(Marked::Numbers) {
+            let is_amid = || grid.rows.iter().any(|row| row.filled().take(2).count() == 2);
+            let is_row = match marked(&content, delimiter) {
+                Some(Marked::Numbers) => true,
+                Some(Marked::Number) => is_amid(),
+                _ => false,
+            };
+            if is_row {
                 comments.push(line);
                 grid.commented.push((line, content.trim().to_owned()));
             }
@@ -82,30 +88,37 @@ enum Marked {
     Sieve,
     /// Another number and numbers, such as a row that is commented out.
     Numbers,
+    /// A number beside words: amid a table a row that is commented out.
+    Number,
     Comment,
 }
 
-/// What a line holds that begins with `#`; nothing for any other.
-fn marked(line: &str) -> Option<Marked> {
+/// What a line holds that begins with `#`, of a text with this separator; nothing for any other.
+fn marked(line: &str, delimiter: char) -> Option<Marked> {
     let rest = line.trim_start().strip_prefix('#')?;
-    let signs = [',', ';', '\t'].into_iter().filter(|&sign| rest.contains(sign));
-    let read = |sign: char| {
-        let cells = split(rest, sign).0;
-        let mut values = cells.iter().skip(1).filter(|cell| !is_blank(cell)).peekable();
-        let is_row = values.peek().is_some() && values.all(|cell| is_value(cell));
-        is_row.then(|| cells.into_iter().next()).flatten()
-    };
-    let sizes: Vec<String> = signs.filter_map(read).collect();
-    Some(match () {
-        () if sizes.iter().any(|size| us_sieve_number(size).is_some()) => Marked::Sieve,
-        () if sizes.iter().any(|size| opening(size).is_some()) => Marked::Numbers,
-        () => Marked::Comment,
-    })
+    let mut holds = Marked::Comment;
+    for sign in [',', ';', '\t'].into_iter().filter(|&sign| rest.contains(sign)) {
+        let cells = all_cells(rest, sign).0;
+        let others: Vec<&String> = cells.iter().skip(1).filter(|cell| !is_blank(cell)).collect();
+        let values = others.iter().filter(|cell| is_value(cell)).count();
+        let is_sieve = us_sieve_number(&cells[0]).is_some() && (values > 0 || others.is_empty());
+        let is_opening = opening(&cells[0]).is_some();
+        let is_number = values > 0 || sign == delimiter && is_value(&cells[0]);
+        holds = match () {
+            () if is_sieve => return Some(Marked::Sieve),
+            () if is_opening && values > 0 && values == others.len() => Marked::Numbers,
+            () if holds == Marked::Comment && is_number && (is_opening || sign == delimiter) => {
+                Marked::Number
+            }
+            () => holds,
+        };
+    }
+    Some(holds)
 }
 
 /// Whether a line is none of a table.
 fn is_comment(line: &str) -> bool {
-    marked(line).is_some_and(|marked| marked != Marked::Sieve)
+    marked(line, ',').is_some_and(|marked| marked != Marked::Sieve)
 }
 
 fn is_open(line: &str, delimiter: char) -> bool {

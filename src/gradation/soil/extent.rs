@@ -46,7 +46,9 @@ impl Extent {
             rows[..end].iter().rposition(|row| row.filled().any(|c| is_value(row.cell(c)))).unwrap_or(0);
         let mut remarks = Vec::new();
         for (index, row) in rows[..end].iter().enumerate() {
-            if let Some(column) = torn::whole_row(row, index < last) {
+            let is_next = || index > last && row.line == rows[last].line + 1;
+            let below = || is_next().then(|| torn::row_below(row)).flatten();
+            if let Some(column) = torn::whole_row(row, index < last).or_else(below) {
                 return Err(torn::refused(grid, row, column));
             }
             match () {

@@ -1,5 +1,6 @@
 //! Openings within the headings of percents, as tables of results have them: `P#200`, `Passing 19 mm`.
 
+use super::content::is_words;
 use super::heading::{Retained, Role, role, says_finer, says_sample, words};
 use super::size::{Opening, opening};
 
@@ -110,6 +111,13 @@ pub(super) fn is_broken(heading: &str) -> bool {
     role.is_some() && text.contains(|c: char| c.is_ascii_digit()) && !is_size(&text)
 }
 
+/// Whether a heading may be an opening with a slip of the pen: `#2OO`, `0..075`, `PO.O75`; not `LL`, `D60`.
+pub(super) fn is_misspelt(heading: &str) -> bool {
+    let mended = heading.replace(['O', 'o'], "0").replace(['l', 'I'], "1");
+    let has_digit = heading.contains(|c: char| c.is_ascii_digit() || c == '#');
+    has_digit && (!is_words(heading) || head(&mended).is_some())
+}
+
 /// Whether a heading says that names stand below it, and is no name itself: `Sample no.`, `Hole`.
 pub(super) fn is_of_names(heading: &str) -> bool {
     const BESIDE: [&str; 18] = [
@@ -176,6 +184,12 @@ mod tests {
             assert!(head(heading).is_none(), "{heading}");
         }
         assert!(["P#4x", "% pass 3//4", "Passing No. 201"].into_iter().all(is_broken));
+        assert!(
+            ["#2OO", "0..075", "PO.O75", "#200x", "#lOO", "No. 2OO", "O.O75"].into_iter().all(is_misspelt)
+        );
+        for other in ["LL", "PI", "Cu", "D60", "Moisture (%)", "P80 (um)", "CaCO3 (%)", "USCS", "LL1"] {
+            assert!(!is_misspelt(other), "{other}");
+        }
         assert!(!["LL (%)", "P#4", "Depth 2", "D60", "Cu"].into_iter().any(is_broken));
     }
 }

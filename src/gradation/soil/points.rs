@@ -9,7 +9,7 @@ use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
 use super::lines::listed;
 use super::marks::unmarked;
-use super::retained::{Weighed, percents_finer};
+use super::retained::{Weighed, percents_finer, says_fraction, says_percent};
 use super::size::{Entry, Opening, Said, Unit, opening};
 use super::table::{Kind, Soil};
 use super::{account, commas, contradiction, roles, torn, units};
@@ -88,7 +88,10 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     let mut rows = match role {
         Role::Retained(retained) => {
             let below = &extent.below;
-            let weighed = Weighed { grid, column: column.column, retained, below, missing: &missing };
+            let heading = &column.heading;
+            let at = column.column;
+            let weighed = Weighed { grid, column: at, heading, retained, below, missing: &missing };
+            weighed.scale_fractions(&mut entries, &mut notes)?;
             percents_finer(&weighed, &entries, &mut notes)?
         }
         _ => finer(grid, column, &entries, &mut notes)?,
@@ -133,6 +136,7 @@ fn entries(
     let retained = matches!(column.role, Role::Retained(_));
     let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     let mut marked: Option<String> = None;
+    let (mut with_sign, mut plain) = (false, None);
     for row in extent.rows(grid, layout) {
         let line = row.line;
         let value = row.cell(column.column);
@@ -189,8 +193,17 @@ fn entries(
         let Some(number) = number else {
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         };
+        match value.contains('%') {
+            true => with_sign = true,
+            false if number > 0.0 && number < 1.0 => plain = plain.or(Some((line, value))),
+            false => {}
+        }
         let text = size.to_owned();
         entries.push(Entry { line, column: at, opening, text, said, value: number + 0.0 });
+    }
+    if let Some((line, value)) = plain.filter(|_| with_sign) {
+        let allowed = "a number with %, as other cells of the column have: this may be a fraction of 1";
+        return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
     }
     if !without.is_empty() {
         let have = if without.len() == 1 { "has" } else { "have" };
@@ -286,13 +299,23 @@ fn fractions(
 ) -> Result<f64, TableError> {
     let of_sieves = || entries.iter().filter(|entry| !matches!(entry.opening, Opening::Total));
     let Some(top) = of_sieves().max_by(|a, b| a.value.total_cmp(&b.value)) else { return Ok(1.0) };
-    let broken = of_sieves().filter(|entry| entry.value > 0.0 && entry.value < 1.0).count();
+    let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
+    let broken = of_sieves().filter(is_broken).count();
+    let rest_is_below_1 = || of_sieves().all(|entry| entry.value <= 1.0 || entry.value == 100.0);
+    if top.value == 100.0
+        && broken > 1
+        && rest_is_below_1()
+        && let Some(entry) = of_sieves().find(is_broken)
+    {
+        let allowed = "percents from 0 to 100; these look like fractions from 0 to 1 below a 100: write them \
+                       in percent, or 1 for 100";
+        let value = entry.value.to_string();
+        return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
+    }
     if top.value > 1.0 || broken == 0 {
         return Ok(1.0);
     }
-    let heading = column.heading.to_lowercase();
-    let says_percent = heading.contains('%') || heading.contains("percent") || heading.contains("pct");
-    let says_fraction = heading.contains("fraction") || heading.contains("ratio");
+    let (says_percent, says_fraction) = (says_percent(&column.heading), says_fraction(&column.heading));
     if top.value == 1.0 && (says_fraction || !says_percent || grid.sheet.is_some()) {
         notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
         return Ok(100.0);

@@ -1,9 +1,10 @@
 //! What stays on the sieves, by mass or in percent, turned into percent finer.
 
+use super::content::{is_words, percentage};
 use super::extent::Below;
 use super::grid::Grid;
-use super::heading::{Retained, words};
-use super::size::{Entry, Opening, is_washed};
+use super::heading::{Retained, Role, role, words};
+use super::size::{Entry, Opening, is_washed, opening};
 use crate::gradation::error::TableError;
 use crate::gradation::sieve::FIELDS;
 use crate::gradation::table::Row;
@@ -11,10 +12,26 @@ use crate::gradation::table::Row;
 /// Percents that are weighed one by one sum to 100 within this.
 const ROUNDED: f64 = 0.6;
 
+/// Percents retained that end below this, under a heading that does not say percent, may be grams.
+const NEARLY_ALL: f64 = 95.0;
+
+/// Whether a heading says percent.
+pub(super) fn says_percent(heading: &str) -> bool {
+    let small = heading.to_lowercase();
+    ["%", "percent", "pct", "prozent"].iter().any(|word| small.contains(word))
+}
+
+/// Whether a heading says that its values are fractions of 1.
+pub(super) fn says_fraction(heading: &str) -> bool {
+    let small = heading.to_lowercase();
+    small.contains("fraction") || small.contains("ratio")
+}
+
 /// A column of what is retained.
 pub(super) struct Weighed<'a> {
     pub(super) grid: &'a Grid,
     pub(super) column: usize,
+    pub(super) heading: &'a str,
     pub(super) retained: Retained,
     /// The rows below the table.
     pub(super) below: &'a [Below],
@@ -27,42 +44,133 @@ impl Weighed<'_> {
         self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
     }
 
-    /// What was washed out or lost is a part of the whole; a mass below the table that is more than all that
-    /// is in it is said.
-    fn check_below(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
+    /// Brings fractions of 1 to percents where the heading says that they are.
+    pub(super) fn scale_fractions(
+        &self,
+        entries: &mut [Entry],
+        notes: &mut Vec<String>,
+    ) -> Result<(), TableError> {
+        let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
+        let (true, Some(broken)) = (self.retained.percent, entries.iter().find(is_broken)) else {
+            return Ok(());
+        };
+        if entries.iter().any(|entry| entry.value > 1.0) {
+            return Ok(());
+        }
+        if !says_fraction(self.heading) || says_percent(self.heading) {
+            let allowed = "percents up to 100, with the pan; these look like fractions from 0 to 1: write \
+                           percents, or `fraction` in the heading";
+            return Err(self.refused(broken.line, broken.value, allowed));
+        }
+        notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
+        entries.iter_mut().for_each(|entry| entry.value = tidy(100.0 * entry.value));
+        Ok(())
+    }
+
+    /// Refuses values without a pan that end far below 100 under `Retained` alone: they may be grams.
+    fn refuse_unsaid(&self, line: usize, end: f64) -> Result<(), TableError> {
+        let is_said = |cell: &str| says_percent(cell) || says_fraction(cell);
+        let any_cell = || self.grid.rows.iter().any(|row| is_said(row.cell(self.column)));
+        let is_retained = matches!(role(self.heading), Role::Retained(_));
+        if !self.retained.percent || end >= NEARLY_ALL || !is_retained || any_cell() {
+            return Ok(());
+        }
+        let allowed = "% or g in the heading, or what is retained in the pan: these may be percents or grams";
+        Err(self.refused(line, end, allowed))
+    }
+
+    /// What was washed out or lost is a part of the whole; a mass above, beside or below the table that is
+    /// another than that of all in it is refused or said.
+    fn check_stated(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
         const LOST: [&str; 12] = [
             "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
             "silt", "clay",
         ];
         const MASS: [&str; 6] = ["mass", "weight", "masse", "gewicht", "wt", "total"];
-        for row in self.below {
-            let Some((column, value)) = row.value.filter(|found| found.1 > 0.0) else { continue };
+        const ALL: [&str; 8] =
+            ["total", "initial", "dry", "sample", "specimen", "start", "original", "before"];
+        const TARE: [&str; 7] = ["tare", "container", "dish", "can", "pan", "wet", "with"];
+        const PART: [&str; 12] = [
+            "after",
+            "washed",
+            "retained",
+            "water",
+            "sieve",
+            "unit",
+            "density",
+            "subsample",
+            "passing",
+            "fines",
+            "minimum",
+            "required",
+        ];
+        for row in self.below.iter().chain(&self.stated()) {
+            let Some((first, value)) = row.value else { continue };
             let of_row = words(&row.words);
             let any = |list: &[&str]| of_row.iter().any(|word| list.contains(&word.as_str()));
-            if any(&LOST) {
+            let is_below = self.below.iter().any(|below| below.line == row.line);
+            if is_below && value > 0.0 && any(&LOST) {
                 let allowed = "the pan as the last row of what is retained, with all that was washed out or \
                                lost: it is a part of the whole";
                 return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
             }
-            if self.retained.percent || !any(&MASS) || value <= 1.01 * whole {
+            // A row of masses has one for each column of masses behind its words.
+            let is_before = row.column < self.column;
+            let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
+            let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
+            let (column, value) = in_column.map_or((first, value), |value| (self.column, value));
+            let is_all = any(&ALL) && !any(&TARE) && !any(&PART);
+            let is_near = |value: f64| (value - whole).abs() <= 0.01 * whole;
+            let is_same = [value, 1000.0 * value, value / 1000.0].into_iter().any(is_near);
+            let is_mass = any(&MASS[..if is_below { 6 } else { 5 }]);
+            if self.retained.percent || value <= 0.0 || !is_mass || is_same {
+                continue;
+            }
+            if !is_all && (value < whole || !is_below) {
                 continue;
             }
             let sum = tidy(whole);
-            if any(&["dry"]) && !any(&["tare", "container", "dish", "can", "pan", "wet", "with"]) {
-                let allowed = format!(
-                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
-                     washed out"
-                );
+            if any(&["dry"]) && !any(&TARE) {
+                let allowed = match value > whole {
+                    true => format!(
+                        "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
+                         washed out"
+                    ),
+                    false => format!("at least the {sum} to which the masses of the table come"),
+                };
                 return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
             }
+            let place = if is_below { "below it" } else { "beside it" };
             notes.push(format!(
-                "the masses of the table come to {sum}, and \"{}\" below it is {value}: was anything washed \
+                "the masses of the table come to {sum}, and \"{}\" {place} is {value}: was anything washed \
                      out or lost?",
                 row.words
             ));
         }
         Ok(())
     }
+
+    /// Words and the number behind them, above the table or beside it.
+    fn stated(&self) -> Vec<Below> {
+        let mut stated = Vec::new();
+        for row in self.grid.rows.iter().filter(|row| self.below.iter().all(|below| below.line != row.line)) {
+            let says = |cell: &str| is_words(cell) || matches!(opening(cell), Some((Opening::Total, _)));
+            for column in row.filled().filter(|&c| says(row.cell(c))) {
+                let cell = row.cell(column);
+                let (words, inside) = cell.rsplit_once([':', '=']).unwrap_or((cell, ""));
+                let next = || row.filled().find(|&c| c > column);
+                let behind = || next().and_then(|c| Some((c, mass(row.cell(c))?)));
+                let value = mass(inside).map(|value| (column, value)).or_else(behind);
+                stated.push(Below { line: row.line, column, words: words.trim().to_owned(), value });
+            }
+        }
+        stated
+    }
+}
+
+/// A mass with its unit or without.
+fn mass(cell: &str) -> Option<f64> {
+    percentage(cell.trim_end_matches("kg").trim_end_matches('g').trim())
 }
 
 /// A sum of decimals as it was meant to be.
@@ -190,7 +298,11 @@ pub(super) fn percents_finer(
     if whole <= 0.0 {
         return Err(weighed.refused(first_line, first, "masses of which any is above 0"));
     }
-    weighed.check_below(whole, notes)?;
+    weighed.check_stated(whole, notes)?;
+    if pan.is_none() && total.is_none() {
+        let end = if cumulative { last } else { all };
+        weighed.refuse_unsaid(sieves[sieves.len() - 1].0, end)?;
+    }
     let mut coarser = 0.0;
     let mut rows = Vec::new();
     for (line, size, value) in sieves {

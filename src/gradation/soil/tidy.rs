@@ -65,12 +65,13 @@ pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableErro
     if samples.is_empty() || keys.len() < 2 {
         return Ok(Vec::new());
     }
-    if keys.len() == rows.len() && samples.iter().any(|&c| !heads(c).any(may_be_of_fractions)) {
+    let of_fractions = samples.iter().all(|&c| heads(c).any(may_be_of_fractions));
+    if keys.len() == rows.len() && !of_fractions {
         let allowed = "a row for each opening of a sample, or openings in the headings above a row for each \
                        sample";
         return Err(grid.refused(rows[0].2.line, samples[0], "row", keys[0].0, allowed));
     }
-    if goes_one_way(rows.iter().map(|row| row.2.cell(layout.size))) {
+    if of_fractions && goes_one_way(rows.iter().map(|row| row.2.cell(layout.size))) {
         return Ok(Vec::new());
     }
     if keys.len().saturating_mul(width) > MOST_PLACES {
