@@ -13,7 +13,7 @@ use super::report::page;
 use crate::case::PackingPlan;
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
-use crate::run::{Callbacks, Event, Exit, RunError};
+use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
 
 /// Plain lines come at most this often.
@@ -48,7 +48,7 @@ pub fn unfollowed() -> Callbacks<'static> {
 /// # Errors
 /// What the system says.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    stop_on_request(Exit::Stopped.code()).map_err(RunError::failed)
+    stop_on_request().map_err(RunError::failed)
 }
 
 /// A bar of this length on a terminal; none elsewhere.

@@ -31,6 +31,9 @@ fn script(shell: Shell) -> String {
     let mut script = Vec::new();
     generate(shell, &mut with_values(shell), "voidwalk", &mut script);
     let mut script = String::from_utf8_lossy(&script).into_owned();
+    if shell == Shell::Bash {
+        script = script.replace(BASH_FILES, "COMPREPLY=()");
+    }
     script.push_str(match shell {
         Shell::Bash => BASH_MORE,
         Shell::Zsh => ZSH_MORE,
@@ -39,6 +42,10 @@ fn script(shell: Shell) -> String {
     });
     script
 }
+
+/// Names of files that bash would insert without quoting them, and run: where nothing is offered, bash itself
+/// completes files, and quotes them.
+const BASH_FILES: &str = r#"COMPREPLY=($(compgen -f "${cur}"))"#;
 
 /// In bash the soils of a file stand behind `FILE#`, and nothing behind `base.cu=`, where its value is still
 /// to come. What bash inserts within quotes is not quoted: names are offered there that no quotes give a
@@ -189,6 +196,7 @@ mod tests {
             assert!(bash.contains(&format!(" {value} ")) || bash.contains(&format!("{value}\"")), "{value}");
         }
         assert!(bash.contains("shire2016-cu1.5-loose") && bash.trim_end().ends_with("default voidwalk"));
+        assert!(!bash.contains("compgen -f") && !bash.contains("compgen -d"));
         let every = [Shell::Zsh, Shell::Fish].map(script);
         assert!(
             every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))

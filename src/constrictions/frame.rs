@@ -81,6 +81,37 @@ impl Frame {
     }
 }
 
+/// Share of its radius by which a grain lies within the hull of all centres that has others all around it.
+const WITHIN: f64 = 0.5;
+
+/// Whether a grain has others all around it, as in a periodic cell every grain has.
+pub(super) fn is_surrounded(t: &Triangulation, positions: &Positions<'_>) -> bool {
+    let planes: Vec<([f64; 3], [f64; 3])> = (0..t.tetrahedra())
+        .flat_map(|i| (0..4).map(move |k| (i, k)))
+        .filter(|&(i, k)| t.across(i, k).is_none())
+        .map(|(i, k)| {
+            let corners = t.at(positions, i, Shift::ZERO);
+            let [a, b, c, inner] = [1, 2, 3, 0]
+                .map(|at| -> [f64; 3] { std::array::from_fn(|axis| corners[(k + at) % 4][axis]) });
+            let normal = cross(&minus(&b, &a), &minus(&c, &a));
+            let length = dot(&normal, &normal).sqrt().copysign(dot(&normal, &minus(&inner, &a)));
+            (a, normal.map(|n| n / length))
+        })
+        .collect();
+    t.spheres().iter().any(|s| {
+        let centre = [s[0], s[1], s[2]];
+        planes.iter().all(|(a, normal)| dot(normal, &minus(&centre, a)) > WITHIN * s[3])
+    })
+}
+
+fn minus(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|axis| a[axis] - b[axis])
+}
+
+fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// Void ratio of the tetrahedra whose centroid lies in a region: their volume, and the sectors that
 /// their grains fill.
 pub(super) fn void_ratio_within(

@@ -245,6 +245,31 @@ fn grains_that_cannot_be_a_packing_are_refused() {
         let error = checked(&again(by)).unwrap_err();
         assert!(matches!(error, ConstrictionsError::Twice { pairs: 1, .. }), "{error}");
     }
+    // Nearer than a quarter of a diameter.
+    let near = |by: f64| {
+        let found = measured(&again(by)).unwrap();
+        (found.check().is_ok(), found.near.len(), found.doubts().len())
+    };
+    assert_eq!([0.002, 0.2].map(near), [(true, 1, 1); 2]);
+    assert_eq!(near(0.3).1, 0);
+    // Two layers, the one on the hollows of the other, level or tilted, smooth or rough, and a third on them.
+    for (layers, tilt, rough) in
+        [(2, 0.0, 0.0), (2, 0.4, 0.0), (2, 0.0, 0.1), (2, 0.4, 0.1), (3, 0.0, 0.1), (3, 0.4, 0.0)]
+    {
+        let found = measured(&|p: &mut Packing| {
+            *p = Packing { cell: Cell::Free, x: vec![], y: vec![], z: vec![], diameter: vec![] };
+            for at in 0..144 * layers {
+                let (i, j, k) = ((at % 12) as f64, (at / 12 % 12) as f64, (at / 144) as f64);
+                let x = i + 0.5 * k;
+                p.x.push(x);
+                p.y.push(0.866 * j + 0.3 * k);
+                p.z.push(0.8 * k + tilt * x + rough * (at * 7 % 5) as f64 / 5.0);
+                p.diameter.push(1.0);
+            }
+        });
+        let refused = matches!(found.unwrap().check(), Err(ConstrictionsError::Outside));
+        assert_eq!(refused, layers == 2, "{layers} {tilt} {rough}");
+    }
     // One layer, tilted, and moved out of its plane by less than a millionth of a diameter.
     for (tilt, off) in [(0.0, 0.0), (0.0, 1e-8), (0.7, 1e-8)] {
         let flat = measured(&|p: &mut Packing| {

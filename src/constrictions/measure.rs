@@ -2,9 +2,9 @@
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::discs::{ConstrictionDisc, disc};
-use super::frame::{Frame, Region, void_ratio_within};
+use super::frame::{Frame, Region, is_surrounded, void_ratio_within};
 use super::triangulation::{GrainPoint, Positions, Shift, Triangulation, TriangulationError};
-use super::twice::duplicates;
+use super::twice::{duplicates, near};
 use super::voids::{Insphere, Voids};
 use crate::packing::Packing;
 use rayon::prelude::*;
@@ -88,6 +88,8 @@ pub struct Constrictions {
     pub hidden: Vec<u32>,
     /// Pairs of grains with the same centre, to a thousandth of the smaller diameter.
     pub duplicates: Vec<[u32; 2]>,
+    /// Pairs of grains nearer than a quarter of the smaller diameter.
+    pub near: Vec<[u32; 2]>,
     /// Volume of voids over volume of grains (overlaps counted twice).
     pub void_ratio: f64,
     /// Smallest grain (mm).
@@ -100,6 +102,8 @@ pub struct Constrictions {
     pub(super) region: Region,
     /// Grains in the region, hidden ones left out.
     pub(super) grains: usize,
+    /// Whether a grain has others all around it.
+    pub(super) is_surrounded: bool,
 }
 
 /// Why a packing's constrictions cannot be measured.
@@ -157,6 +161,12 @@ pub enum ConstrictionsError {
         /// Volume of voids over volume of grains.
         void_ratio: f64,
     },
+    /// Grains of which none has others all around it.
+    #[error(
+        "no grain has others all around it: the grains are a layer, a heap or a row, and their voids are open \
+         outwards. Take a block of at least three grains along each axis, or give its periodic cell"
+    )]
+    Outside,
     /// A merge overlap that is none.
     #[error("merge_overlap = {value} is not allowed; allowed: a finite number from 0")]
     MergeOverlap {
@@ -356,6 +366,8 @@ impl Constrictions {
             tetrahedra: t.tetrahedra(),
             hidden: t.hidden().to_vec(),
             duplicates: duplicates(t, &positions),
+            near: near(t, &positions),
+            is_surrounded: is_surrounded(t, &positions),
             void_ratio,
             d0_mm: 2.0 * smallest * frame.unit_mm,
             merge_overlap: 0.0,

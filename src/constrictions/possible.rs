@@ -9,10 +9,10 @@ const LOOSEST: f64 = 1.5;
 
 impl Constrictions {
     /// Refuses grains that cannot be a packing: in a periodic cell those that lie inside others, whose cell
-    /// is not the one given; those that stand twice; those that leave no voids.
+    /// is not the one given; those that stand twice; those that leave no voids; those that enclose no grain.
     ///
     /// # Errors
-    /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`] or [`ConstrictionsError::Full`].
+    /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or [`ConstrictionsError::Full`].
     pub fn check(&self) -> Result<(), ConstrictionsError> {
         match (self.hidden.first(), self.duplicates.first()) {
             (Some(&first), _) if self.region == Region::Everything => Err(ConstrictionsError::Hidden {
@@ -21,6 +21,7 @@ impl Constrictions {
                 first,
             }),
             (_, Some(&first)) => Err(ConstrictionsError::Twice { pairs: self.duplicates.len(), first }),
+            _ if !self.is_surrounded => Err(ConstrictionsError::Outside),
             // It is no number where the region holds no tetrahedron.
             _ if self.void_ratio <= 0.0 => Err(ConstrictionsError::Full { void_ratio: self.void_ratio }),
             _ => Ok(()),
@@ -44,6 +45,13 @@ impl Constrictions {
             doubts.push(format!(
                 "the void ratio is {ratio:.4}, and {rest} less than {DENSEST}: they overlap, or diameters \
                  are in another unit than {other}"
+            ));
+        }
+        if let Some([one, other]) = self.near.first() {
+            doubts.push(format!(
+                "{} pairs of grains lie nearer than a quarter of the smaller diameter, the first of them \
+                 grains {one} and {other} (counted from 0): they may be one that stands twice",
+                self.near.len()
             ));
         }
         if let Some(first) = self.hidden.first() {

@@ -121,12 +121,31 @@ impl NetworkColumns<'_> {
                 }
             }
         }
+        let mut joined = vec![false; self.voids];
+        for &end in self.conns.iter().flatten().filter(|&&end| end >= 0) {
+            joined[end as usize] = true;
+        }
+        for (name, voids) in [("inlet", self.inlets), ("outlet", self.outlets)] {
+            if let Some(void) = voids.iter().find(|&&void| !joined[void as usize]) {
+                return Err(wrong(format!(
+                    "void {void} is made an {name}, but no constriction joins it; leave it out, and number \
+                     the voids of conns, inlets and outlets from 0"
+                )));
+            }
+        }
+        let mut is_inlet = vec![false; self.voids];
+        self.inlets.iter().for_each(|&void| is_inlet[void as usize] = true);
+        if let Some(void) = self.outlets.iter().find(|&&void| is_inlet[void as usize]) {
+            return Err(wrong(format!(
+                "void {void} is made an inlet and an outlet: particles would leave it without a constriction"
+            )));
+        }
         let (d, g) = (self.diameter_mm, self.conductance);
         let rows = (0..count).map(|c| (self.conns[c], [d[c], g.map_or(0.0, |g| g[c])]));
-        if let Some([row, again]) = listed_twice(rows) {
+        if let Some([row, again]) = listed_twice(rows, false) {
             return Err(wrong(format!(
-                "constrictions {row} and {again} (counted from 0), and half of all or more, are one listed \
-                 twice, there and back; keep one row of each"
+                "constrictions {row} and {again} (counted from 0), and others, are one listed twice, there \
+                 and back or again; keep one row of each"
             )));
         }
         let unit = |(constriction, &mm): (usize, &f64)| {
@@ -340,7 +359,28 @@ mod tests {
         }
         // Two constrictions side by side.
         assert!(!refused(&[there, there].concat(), &[alike, alike].concat(), ExitRule::Flux));
-        assert!(!refused(&[there, back].concat(), &[d, [0.5, 0.6, 0.7]].concat(), ExitRule::Flux));
+        // There and back they are one, whatever the sizes.
+        for factor in [1.0 + 1e-12, 1.001, 2.0] {
+            let (sizes, rows) = ([d, d.map(|d| d * factor)].concat(), [there, back].concat());
+            assert!(refused(&rows, &sizes, ExitRule::Flux) && refused(&rows, &sizes, ExitRule::Area));
+        }
+        assert!(refused(
+            &[there, there].concat(),
+            &[d, d.map(|d| d * (1.0 + 1e-12))].concat(),
+            ExitRule::Flux
+        ));
+        // A fifth of a long chain.
+        let long: Vec<[i64; 2]> = (0..40).map(|void| [void, void + 1]).collect();
+        let part = |factor: f64| {
+            let back = long.iter().take(10).map(|&[a, b]| [b, a]);
+            let size = |at: usize| 0.1 + 0.01 * at as f64;
+            let sizes: Vec<f64> = (0..40).map(size).chain((0..10).map(|at| factor * size(at))).collect();
+            let conns: Vec<[i64; 2]> = long.iter().copied().chain(back).collect();
+            let columns =
+                NetworkColumns { voids: 41, conns: &conns, diameter_mm: &sizes, outlets: &[40], ..CHAIN };
+            Network::from_columns(&columns).is_err()
+        };
+        assert_eq!([1.0, 1.001, 1.5].map(part), [true, true, false]);
         let few = [&there[..], &there, &back[..1]].concat();
         assert!(!refused(&few, &[0.3, 0.2, 0.4, 0.5, 0.6, 0.7, 0.3], ExitRule::Flux));
     }
@@ -368,6 +408,19 @@ mod tests {
             (NetworkColumns { diameter_mm: &[0.0, 1.0, 1.0], ..CHAIN }, "no open way"),
             (NetworkColumns { rule: ExitRule::Height, ..CHAIN }, "by height"),
             (NetworkColumns { rho: 1.0, ..CHAIN }, "rho = 1"),
+            (
+                NetworkColumns { voids: 5, outlets: &[4], ..CHAIN },
+                "void 4 is made an outlet, but no constriction",
+            ),
+            (
+                NetworkColumns {
+                    voids: 5,
+                    conns: &CHAIN.conns.iter().map(|c| c.map(|v| v + 1)).collect::<Vec<_>>(),
+                    ..CHAIN
+                },
+                "void 0 is made an inlet, but no constriction",
+            ),
+            (NetworkColumns { outlets: &[3, 0], ..CHAIN }, "void 0 is made an inlet and an outlet"),
             (NetworkColumns { unit_mm: 0.0, ..CHAIN }, "the unit of length is 0 mm"),
             (NetworkColumns { inlets: &[], ..area }, "no inlet"),
             (NetworkColumns { outlets: &[], ..area }, "no outlet"),

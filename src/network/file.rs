@@ -8,6 +8,7 @@
 
 use std::io::Write;
 
+use super::listed::listed_twice;
 use super::{END, Network};
 
 /// What one void of a cubic lattice takes while it is walked: three constrictions, tables and tallies.
@@ -239,6 +240,18 @@ impl Rows {
                 return Err(whole(format!("void {id} is made a start node twice")));
             }
         }
+        let ends = |(&from, &to)| [i64::from(from), if to == END { -1 } else { i64::from(to) }];
+        let rows = self.from.iter().zip(&self.to).map(ends).zip(&self.diameter_mm);
+        let is_lattice = self.shape.is_some();
+        if let Some(rows) =
+            listed_twice(rows.map(|(ends, &mm)| (ends, [mm, 0.0])), true).filter(|_| !is_lattice)
+        {
+            let [row, again] = rows.map(|row| format!("{} to {}", self.from[row], self.to[row]));
+            return Err(whole(format!(
+                "the rows from {row} and from {again}, and others, are one constriction listed twice, there \
+                 and back or again; keep one row of each"
+            )));
+        }
         let (exit_begin, slots) = in_order_of_voids(voids, &self.from);
         let mut target = vec![END; self.from.len()];
         let mut diameter = vec![0f32; self.from.len()];
@@ -343,6 +356,29 @@ mod tests {
         ] {
             let error = read(text).unwrap_err().to_string();
             assert!(error.starts_with("net.csv") && error.contains(message), "{text:?} gave {error}");
+        }
+    }
+
+    #[test]
+    fn rows_that_are_listed_twice_are_refused() {
+        let rows = |turned: bool| -> String {
+            let row = |void: usize| {
+                let (a, b) = if turned { (void + 1, void) } else { (void, void + 1) };
+                format!("{a},{b},{}\n", 0.1 + 0.01 * void as f64)
+            };
+            (0..12).map(row).collect()
+        };
+        let with = |more: &str| {
+            read(&format!("from,to,diameter_mm\nstart,0,\n{}{more}12,end,1\n", rows(false)))
+                .map(|n| n.voids())
+        };
+        assert_eq!(with("").unwrap(), 13);
+        for twice in [rows(true), rows(false)] {
+            let error = with(&twice).unwrap_err().to_string();
+            assert!(
+                error.starts_with("net.csv: the rows from 0 to 1") && error.contains("listed twice"),
+                "{error}"
+            );
         }
     }
 

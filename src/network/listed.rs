@@ -1,24 +1,54 @@
 //! Constrictions that a file lists twice.
 
-/// Two rows that are one constriction, where at least half of all rows are listed twice: there and back, as
-/// in lists of neighbours, or the same row again. One constriction would be two, of which one stays open when
-/// the other is blocked. Some voids may well be joined by several constrictions of one size.
-pub(super) fn listed_twice(rows: impl Iterator<Item = ([i64; 2], [f64; 2])>) -> Option<[usize; 2]> {
-    let key = |(row, ([a, b], sizes)): (usize, ([i64; 2], [f64; 2]))| {
-        ((a.min(b), a.max(b), sizes.map(f64::to_bits)), a > b, row)
+/// Part of the larger by which the sizes of one constriction may differ, listed there and back.
+const BACK: f64 = 2e-3;
+/// The same of a row that is listed again.
+const AGAIN: f64 = 1e-9;
+/// Fewer rows may have a partner by chance.
+const FEW: usize = 8;
+
+/// Lower and higher void, sizes, whether the row leads back, and its number.
+type Row = ([i64; 2], [f64; 2], bool, usize);
+
+/// Two rows that are one constriction, where too many rows are listed twice: there and back, as in lists of
+/// neighbours, or the same row again. One constriction would be two, of which one stays open when the other is
+/// blocked. Some voids may well be joined by several constrictions, which can all be passed both ways: half of
+/// all rows there and back, of whatever sizes, are too many, and a twentieth of like sizes. Where each row leads
+/// one way, as `directed` says, only rows of like sizes count.
+pub(super) fn listed_twice(
+    rows: impl Iterator<Item = ([i64; 2], [f64; 2])>,
+    directed: bool,
+) -> Option<[usize; 2]> {
+    let with_key = |(row, ([a, b], sizes)): (usize, ([i64; 2], [f64; 2]))| -> Row {
+        ([a.min(b), a.max(b)], sizes, a > b, row)
     };
-    let mut rows: Vec<_> =
-        rows.enumerate().map(key).filter(|row| row.0.0 >= 0 && row.0.0 < row.0.1).collect();
-    rows.sort_unstable();
-    let are_alike = rows.windows(2).all(|pair| pair[0].0.2 == pair[1].0.2);
-    let (mut twice, mut first) = (0, None);
+    let mut rows: Vec<Row> =
+        rows.enumerate().map(with_key).filter(|row| row.0[0] >= 0 && row.0[0] < row.0[1]).collect();
+    rows.sort_unstable_by(|a, b| {
+        let by_size = a.1[0].total_cmp(&b.1[0]).then(a.1[1].total_cmp(&b.1[1]));
+        a.0.cmp(&b.0).then(by_size).then((a.2, a.3).cmp(&(b.2, b.3)))
+    });
+    let like = |a: [f64; 2], b: [f64; 2], part: f64| {
+        (0..2).all(|k| (a[k] - b[k]).abs() <= part * a[k].abs().max(b[k].abs()))
+    };
+    let are_alike = rows.windows(2).all(|pair| like(pair[0].1, pair[1].1, AGAIN));
+    let (mut twice, mut back, mut first) = (0, 0, None);
     for same in rows.chunk_by(|a, b| a.0 == b.0) {
-        let (one, other) = (&same[0], &same[same.len() - 1]);
-        // Where all constrictions are alike, those of one direction may be several.
-        if same.len() > 1 && (one.1 != other.1 || !are_alike) {
-            twice += same.len();
-            first = first.or(Some([one.2.min(other.2), one.2.max(other.2)]));
+        let pairs = |turned: bool, part: f64| {
+            let is_pair =
+                |pair: &&[Row]| (pair[0].2 != pair[1].2) == turned && like(pair[0].1, pair[1].1, part);
+            (2 * same.windows(2).filter(is_pair).count()).min(same.len())
+        };
+        let both_ways = same.iter().any(|row| row.2 != same[0].2);
+        let (of_back, of_again) = (pairs(true, BACK), if are_alike { 0 } else { pairs(false, AGAIN) });
+        let count = if both_ways && !directed { same.len() } else { (of_back + of_again).min(same.len()) };
+        twice += count;
+        back += of_back;
+        if count > 0 && first.is_none() {
+            let (one, other) = (&same[0], same.iter().find(|row| row.2 != same[0].2).unwrap_or(&same[1]));
+            first = Some([one.3.min(other.3), one.3.max(other.3)]);
         }
     }
-    first.filter(|_| 2 * twice >= rows.len())
+    let too_many = 2 * twice >= rows.len() && (!directed || twice >= FEW);
+    first.filter(|_| too_many || !are_alike && back >= FEW && 20 * back >= rows.len())
 }

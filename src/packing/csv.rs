@@ -56,6 +56,9 @@ pub(super) const DIAMETER: &[&str] = &["diameter", "diam"];
 /// What a column of radii may be called.
 pub(super) const RADIUS: &[&str] = &["radius", "radii", "r"];
 
+/// Part of a diameter by which twice the radius beside it may differ: both are rounded.
+const SAME_SIZE: f64 = 0.01;
+
 /// A name in a header, and the unit at its end.
 pub(super) struct Named {
     pub name: String,
@@ -83,6 +86,8 @@ struct Header {
     places: [usize; 4],
     unit: Option<LengthUnit>,
     factor: f64,
+    /// Columns of radii beside the diameters, and what makes them diameters in their unit.
+    radii: Vec<(usize, f64)>,
 }
 
 impl Header {
@@ -118,7 +123,14 @@ impl Header {
             let allowed = "the same unit at the end of all four names, as x_mm, y_mm, z_mm and diameter_mm";
             return Err(refused(file, line, "header", text, allowed));
         }
-        Ok(Some(Self { places, unit, factor }))
+        // `r` may be a colour there.
+        let beside = all[4].iter().filter(|&&at| size == 3 && names[at].name != "r");
+        let factor_of = |&at: &usize| {
+            let units = names[at].unit.zip(unit).map_or(1.0, |(radius, all)| radius.mm() / all.mm());
+            (at, 2.0 * units)
+        };
+        let radii = beside.map(factor_of).collect();
+        Ok(Some(Self { places, unit, factor, radii }))
     }
 }
 
@@ -145,7 +157,8 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
         return Err(ended(1, "the header x_mm,y_mm,z_mm,diameter_mm"));
     };
     let delimiter = [',', ';', '\t'].into_iter().max_by_key(|&d| header.matches(d).count()).unwrap_or(',');
-    let Some(Header { places, unit, factor }) = Header::read(file, (header_line, header), delimiter)? else {
+    let Some(Header { places, unit, factor, radii }) = Header::read(file, (header_line, header), delimiter)?
+    else {
         return Err(ImportError::Unknown {
             file: file.into(),
             looks_like: format!("line {header_line} is \"{}\"", crate::gradation::shortened(header.trim())),
@@ -160,7 +173,16 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
             let allowed = format!("{width} fields, as in the header");
             return Err(refused(file, line, super::found::NAMES[missing], row, allowed));
         }
-        grains.push(grain(file, line, &fields, places, factor)?);
+        let read = grain(file, line, &fields, places, factor)?;
+        for &(at, factor) in &radii {
+            let text = fields.get(at).copied().unwrap_or_default().trim();
+            let is_other = |radius: f64| (factor * radius - read[3]).abs() > SAME_SIZE * read[3];
+            if text.parse().is_ok_and(is_other) {
+                let allowed = "half the diameter in the same row; leave out the column that is wrong";
+                return Err(refused(file, line, "radius", text, allowed));
+            }
+        }
+        grains.push(read);
     }
     if grains.is_empty() {
         return Err(ended(last, "at least one grain"));

@@ -355,3 +355,17 @@ fn grains_wider_than_a_cell_given_by_hand_are_refused() {
     // What a program wrote itself may lie outside its own cell.
     assert!(parsed(&CSV.replace("1.5,2.5", "3.5,2.5")).is_ok());
 }
+
+#[test]
+fn a_radius_that_contradicts_the_diameter_is_refused() {
+    let read = |head: &str, sizes: &str| {
+        let text = format!("# cell = none\nx_mm,y_mm,z_mm,diameter_mm,{head}\n0,0,0,{sizes}\n2,0,0,1,0.5\n");
+        Packing::parse("g.csv", text.as_bytes()).map(|packing| packing.diameter).map_err(|e| e.to_string())
+    };
+    for (head, sizes) in [("radius_mm", "1.003,0.5"), ("radius_um", "0.001,0.5"), ("r", "1,255")] {
+        let text = read(head, sizes);
+        assert_eq!(text.is_ok(), head != "radius_um", "{text:?}");
+    }
+    let error = read("radius_mm", "1,1").unwrap_err();
+    assert!(error.contains("line 3") && error.contains("radius"), "{error}");
+}

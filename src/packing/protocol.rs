@@ -218,7 +218,19 @@ impl Compression {
         &mut self,
         progress: impl FnMut(&CompressionProgress) -> bool,
     ) -> Result<PackReport, PackingError> {
-        self.run_reporting(1000, progress)
+        self.run_until(|| false, progress)
+    }
+
+    /// The same to the same bits, asking whether to stop every million steps of a grain.
+    ///
+    /// # Errors
+    /// As [`Compression::run`].
+    pub fn run_until(
+        &mut self,
+        is_stopped: impl Fn() -> bool,
+        progress: impl FnMut(&CompressionProgress) -> bool,
+    ) -> Result<PackReport, PackingError> {
+        self.run_asking(1000, is_stopped, progress)
     }
 
     /// The same to the same bits, reporting every `every` steps: how soon it can be stopped.
@@ -228,10 +240,27 @@ impl Compression {
     pub fn run_reporting(
         &mut self,
         every: u64,
+        progress: impl FnMut(&CompressionProgress) -> bool,
+    ) -> Result<PackReport, PackingError> {
+        self.run_asking(every.max(1), || false, progress)
+    }
+
+    fn run_asking(
+        &mut self,
+        every: u64,
+        is_stopped: impl Fn() -> bool,
         mut progress: impl FnMut(&CompressionProgress) -> bool,
     ) -> Result<PackReport, PackingError> {
+        let at_once = (1_000_000 / self.position.len().max(1) as u64).max(1);
         while self.stage != Stage::Done {
-            self.advance(every.max(1))?;
+            // One that was stopped between two reports goes on to the next.
+            let report = (self.steps / every + 1) * every;
+            while self.stage != Stage::Done && self.steps < report {
+                self.advance(at_once.min(report - self.steps))?;
+                if self.stage != Stage::Done && is_stopped() {
+                    return Err(PackingError::Stopped(self.steps));
+                }
+            }
             if !progress(&self.progress()) {
                 return Err(PackingError::Stopped(self.steps));
             }

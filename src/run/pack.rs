@@ -222,10 +222,13 @@ fn compress(
     };
     loop {
         let since = Instant::now();
-        let run = compression.run(|progress| {
-            (callbacks.on_event)(Event::Packing(progress));
-            !callbacks.is_stopped() && since.elapsed() < save_every
-        });
+        let run = compression.run_until(
+            || callbacks.is_stopped(),
+            |progress| {
+                (callbacks.on_event)(Event::Packing(progress));
+                since.elapsed() < save_every
+            },
+        );
         match run {
             Ok(report) => return Ok((compression, report, seconds_before)),
             Err(PackingError::Stopped(steps)) => {

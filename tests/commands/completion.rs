@@ -1,4 +1,4 @@
-//! Completion of the names of soils in the shells that are installed: whatever a soil is called, nothing of its name is run.
+//! Completion of the names of soils and files in the shells that are installed: whatever they are called, nothing of it is run.
 //! A terminal is made by `script` of util-linux.
 
 use std::fmt::Write as _;
@@ -160,8 +160,8 @@ impl Drop for Terminal {
     }
 }
 
-/// The soil that a command was given after `FILE#`, for each soil whose name was completed behind `quote`.
-fn completed(shell: &str, start: &str, setup: &str, quote: &str) -> Option<Vec<(String, String)>> {
+/// A shell that completes the program's words, in a folder; the program keeps its last word in place of doing what it is asked to.
+fn terminal(shell: &str, start: &str, setup: &str) -> Option<(tempfile::TempDir, Terminal)> {
     let found = |program: &str| {
         Command::new(program).arg("--version").stdout(Stdio::null()).status().is_ok_and(|s| s.success())
     };
@@ -171,14 +171,12 @@ fn completed(shell: &str, start: &str, setup: &str, quote: &str) -> Option<Vec<(
     }
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
-    let names = sheets(at);
     fs::create_dir(at.join("bin")).unwrap();
-    // It completes, and keeps what it is asked to do in place of doing it.
     let program = env!("CARGO_BIN_EXE_voidwalk");
     let stub = at.join("bin/voidwalk");
     fs::write(
         &stub,
-        format!("#!/bin/sh\ncase \" $* \" in *' --names '*) exec '{program}' \"$@\" ;; esac\nprintf '%s\\0' \"$2\" >> '{}'\n",
+        format!("#!/bin/sh\ncase \" $* \" in *' --names '*) exec '{program}' \"$@\" ;; esac\nfor last; do :; done\nprintf '%s\\0' \"$last\" >> '{}'\n",
             at.join("asked").display()),
     )
     .unwrap();
@@ -191,33 +189,35 @@ fn completed(shell: &str, start: &str, setup: &str, quote: &str) -> Option<Vec<(
         "{shell}: {}",
         terminal.seen()
     );
+    Some((root, terminal))
+}
+
+/// The last word that the program was given after these keys; none where quotes are open still.
+fn last_word(at: &Path, terminal: &mut Terminal, keys: &str) -> String {
     let asked = || fs::read_to_string(at.join("asked")).unwrap_or_default();
-    let mut all = Vec::new();
-    for (n, name) in names.iter().enumerate() {
-        let before = asked().len();
-        let waits = terminal.seen().matches("MORE>").count();
-        terminal.send(&format!("voidwalk soil {quote}{}\t\n", begun(n)));
-        terminal.until(|seen| asked().len() > before || seen.matches("MORE>").count() > waits, 20.0);
-        match asked()[before..].split('\0').next().filter(|word| !word.is_empty()) {
-            Some(word) => all.push((name.clone(), word.to_owned())),
-            // Quotes are open still: nothing was offered.
-            None => {
-                all.push((name.clone(), String::new()));
-                let prompts = terminal.seen().matches("READY>").count();
-                terminal.send("\u{3}");
-                terminal.until(|seen| seen.matches("READY>").count() > prompts, 2.0);
-            }
-        }
-        let ran: Vec<_> = fs::read_dir(at)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        assert!(
-            !ran.iter().any(|file| file.starts_with("ran-")),
-            "{shell}, {quote}: {name:?} was run: {ran:?}"
-        );
+    let before = asked().len();
+    let waits = terminal.seen().matches("MORE>").count();
+    terminal.send(keys);
+    terminal.until(|seen| asked().len() > before || seen.matches("MORE>").count() > waits, 20.0);
+    let word = asked()[before..].split('\0').next().unwrap_or_default().to_owned();
+    if word.is_empty() {
+        let prompts = terminal.seen().matches("READY>").count();
+        terminal.send("\u{3}");
+        terminal.until(|seen| seen.matches("READY>").count() > prompts, 2.0);
     }
-    Some(all)
+    let ran: Vec<_> =
+        fs::read_dir(at).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    assert!(!ran.iter().any(|file| file.starts_with("ran-")), "{keys:?} ran a name: {ran:?}");
+    word
+}
+
+/// The soil that a command was given after `FILE#`, for each soil whose name was completed behind `quote`.
+fn completed(shell: &str, start: &str, setup: &str, quote: &str) -> Option<Vec<(String, String)>> {
+    let (root, mut terminal) = terminal(shell, start, setup)?;
+    let names = sheets(root.path());
+    let keys = |n| format!("voidwalk soil {quote}{}\t\n", begun(n));
+    let with_word = |(n, name)| (name, last_word(root.path(), &mut terminal, &keys(n)));
+    Some(names.into_iter().enumerate().map(with_word).collect())
 }
 
 /// Nothing is run, and what is completed is the name: every one in a bare word, in quotes at least so many.
@@ -237,14 +237,51 @@ fn check(shell: &str, start: &str, setup: &str, in_quotes: usize) {
     }
 }
 
+const BASH: [&str; 3] = [
+    "bash",
+    "bash --norc --noprofile -i",
+    "PS1='READY>' PS2='MORE>'; bind 'set enable-bracketed-paste off'; source ./completions",
+];
+
 #[test]
 fn bash_runs_nothing_of_a_name() {
-    check(
-        "bash",
-        "bash --norc --noprofile -i",
-        "PS1='READY>' PS2='MORE>'; bind 'set enable-bracketed-paste off'; source ./completions",
-        20,
-    );
+    let [shell, start, setup] = BASH;
+    check(shell, start, setup, 20);
+}
+
+#[test]
+fn bash_runs_nothing_of_the_name_of_a_file() {
+    let [shell, start, setup] = BASH;
+    let Some((root, mut terminal)) = terminal(shell, start, setup) else { return };
+    let files = [
+        "x$(touch${IFS}ran-x).csv",
+        "y`touch${IFS}ran-y`.csv",
+        "z; touch ran-z;.csv",
+        "q\"'$(touch ran-q)'\".csv",
+    ];
+    files.map(|file| fs::write(root.path().join(file), "").unwrap());
+    fs::create_dir(root.path().join("v$(touch ran-v)")).unwrap();
+    for before in [
+        "compare --base",
+        "run --out",
+        "soil --d0-mm",
+        "soil --figure",
+        "rules --set",
+        "pack",
+        "design x --filter",
+    ] {
+        for quote in ["", "\"", "'"] {
+            for file in files {
+                let word = last_word(
+                    root.path(),
+                    &mut terminal,
+                    &format!("voidwalk {before} {quote}{}\t\n", &file[..1]),
+                );
+                assert_eq!(word, file, "{before} {quote}");
+            }
+            last_word(root.path(), &mut terminal, &format!("voidwalk {before} {quote}v\t\n"));
+        }
+    }
 }
 
 #[test]

@@ -134,10 +134,24 @@ pub(super) fn is_before_1970() -> bool {
     SystemTime::now() < UNIX_EPOCH
 }
 
+const NO_THREADS: &str =
+    "the system gives no more threads, and a workbook needs one a sheet: allow more (ulimit -u)";
+
+/// Whether the system gives so many threads at once: the writer of workbooks takes one a sheet, or panics.
+fn has_threads(count: usize) -> bool {
+    let threads: Vec<_> = (0..count).map(|_| std::thread::Builder::new().spawn(std::thread::park)).collect();
+    let all = threads.iter().all(Result::is_ok);
+    for thread in threads.into_iter().flatten() {
+        thread.thread().unpark();
+        let _ = thread.join();
+    }
+    all
+}
+
 /// A workbook of these sheets, as bytes.
 ///
 /// # Errors
-/// A sheet that no workbook holds, such as one of more than a million rows; a clock before 1970.
+/// A sheet that no workbook holds, such as one of more than a million rows; a clock before 1970; no threads.
 pub(super) fn workbook(title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, XlsxError> {
     if is_before_1970() {
         return Err(XlsxError::ParameterError("no workbook before 1970: set this machine's clock".into()));
@@ -150,6 +164,9 @@ pub(super) fn workbook(title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, XlsxErr
     );
     for sheet in sheets {
         sheet.write(book.add_worksheet())?;
+    }
+    if !has_threads(sheets.len()) {
+        return Err(XlsxError::ParameterError(NO_THREADS.into()));
     }
     book.save_to_buffer()
 }

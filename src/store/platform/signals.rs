@@ -19,7 +19,7 @@ pub fn save_first() {
 }
 
 /// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once, and
-/// so does any request after [`end_at_once`], with this exit code.
+/// so does any request after [`end_at_once`], as it ends a program that does not listen.
 ///
 /// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP where the terminal is closed (but on Linux not
 /// under `nohup`), and SIGXCPU where the processor time is used up. SIGTERM may come several times: a
@@ -29,33 +29,33 @@ pub fn save_first() {
 ///
 /// # Errors
 /// What the system says when it takes no handler.
-pub fn stop_on_request(code: u8) -> io::Result<Arc<AtomicBool>> {
+pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
-    listen(&stop, code.into())?;
+    listen(&stop)?;
     Ok(stop)
 }
 
 #[cfg(unix)]
-fn listen(stop: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
+fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
     use signal_hook::consts::SIGINT;
-    use signal_hook::flag::{register, register_conditional_shutdown};
+    use signal_hook::flag::{register, register_conditional_default, register_conditional_shutdown};
 
     register_conditional_shutdown(SIGINT, 1, Arc::clone(stop))?;
     for signal in requests() {
-        register_conditional_shutdown(signal, code, Arc::clone(&AT_ONCE))?;
+        register_conditional_default(signal, Arc::clone(&AT_ONCE))?;
         register(signal, Arc::clone(stop))?;
     }
     Ok(())
 }
 
 #[cfg(windows)]
-fn listen(stop: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
-    super::windows::listen(stop, &AT_ONCE, code)
+fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
+    super::windows::listen(stop, &AT_ONCE)
 }
 
 /// Nothing is known of such a system: whatever ends the program kills it.
 #[cfg(not(any(unix, windows)))]
-fn listen(_stop: &Arc<AtomicBool>, _code: i32) -> io::Result<()> {
+fn listen(_stop: &Arc<AtomicBool>) -> io::Result<()> {
     Ok(())
 }
 

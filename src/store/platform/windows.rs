@@ -198,15 +198,15 @@ pub fn mounts() -> Option<String> {
 #[cfg(feature = "cli")]
 static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 
-/// Whether a request ends the program at once, and with which exit code.
+/// Whether a request ends the program at once.
 #[cfg(feature = "cli")]
-static AT_ONCE: OnceLock<(Arc<AtomicBool>, i32)> = OnceLock::new();
+static AT_ONCE: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// Has requests to end set the flag. Not by `signal` of the C library, which tells of no window that is
 /// closed, and whose ways differ from one such library to the next.
 #[cfg(feature = "cli")]
-pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>, code: i32) -> io::Result<()> {
-    let _ = AT_ONCE.set((Arc::clone(at_once), code));
+pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>) -> io::Result<()> {
+    let _ = AT_ONCE.set(Arc::clone(at_once));
     STOPS.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(stop));
     // SAFETY: the handler is a function of the program itself, of the type that the system calls.
     or_error(unsafe { SetConsoleCtrlHandler(Some(on_request), 1) })
@@ -216,8 +216,9 @@ pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>, code: i32) -> i
 /// so that waits, for as long as the system lets it, until the state is saved and the program ends by itself.
 #[cfg(feature = "cli")]
 unsafe extern "system" fn on_request(kind: u32) -> i32 {
-    if let Some((_, code)) = AT_ONCE.get().filter(|(at_once, _)| at_once.load(Ordering::SeqCst)) {
-        std::process::exit(*code);
+    if AT_ONCE.get().is_some_and(|at_once| at_once.load(Ordering::SeqCst)) {
+        // The system's handler is next, and ends the program.
+        return 0;
     }
     let is_interrupt = matches!(kind, CTRL_C_EVENT | CTRL_BREAK_EVENT);
     if request(&STOPS.lock().unwrap_or_else(PoisonError::into_inner)) && is_interrupt {
