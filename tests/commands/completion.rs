@@ -259,7 +259,7 @@ fn bash_runs_nothing_of_the_name_of_a_file() {
         "z; touch ran-z;.csv",
         "q\"'$(touch ran-q)'\".csv",
     ];
-    files.map(|file| fs::write(root.path().join(file), "").unwrap());
+    files.iter().for_each(|file| fs::write(root.path().join(file), "").unwrap());
     fs::create_dir(root.path().join("v$(touch ran-v)")).unwrap();
     for before in [
         "compare --base",

@@ -302,6 +302,55 @@ fn limits_of_the_system_end_a_run_with_a_word_or_a_checkpoint() {
     }
 }
 
+/// A large network keeps the program in its set-up.
+#[test]
+fn a_signal_before_anything_is_saved_ends_the_program_as_any_other() {
+    use std::os::unix::process::ExitStatusExt;
+    let root = tempfile::tempdir().unwrap();
+    files(root.path());
+    let long =
+        SMALL.replace("nz = 5", "nz = 100").replace("nx = 5", "nx = 200").replace("ny = 5", "ny = 200");
+    fs::write(root.path().join("long.toml"), long).unwrap();
+    for (name, signal) in [("INT", 2), ("TERM", 15)] {
+        let script = format!("exec env --default-signal={name} \"$1\" run long.toml --out late -q");
+        let program = env!("CARGO_BIN_EXE_voidwalk");
+        let mut child = Command::new("bash")
+            .current_dir(root.path())
+            .args(["-c", &script, "bash", program])
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(60));
+        Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).status().unwrap();
+        let status = child.wait().unwrap();
+        let is_claimed = root.path().join("late").exists();
+        assert!(is_claimed || status.signal() == Some(signal), "{name}: {status}");
+        let _ = fs::remove_dir_all(root.path().join("late"));
+    }
+}
+
+/// A workbook needs threads, and so many are not to be had.
+#[test]
+fn without_threads_a_design_says_so() {
+    let root = tempfile::tempdir().unwrap();
+    fs::set_permissions(root.path(), std::os::unix::fs::PermissionsExt::from_mode(0o777)).unwrap();
+    let program = root.path().join("voidwalk");
+    fs::copy(env!("CARGO_BIN_EXE_voidwalk"), &program).unwrap();
+    fs::write(root.path().join("b.csv"), "size_mm,passing\n0.1,0\n0.2,50\n0.4,100\n").unwrap();
+    let limits = ["--reuid", "65534", "--regid", "65534", "--clear-groups", "prlimit", "--nproc=1"];
+    let design = Command::new("setpriv")
+        .args(limits)
+        .arg(&program)
+        .args(["design", "b.csv", "--steps", "--out", "d"])
+        .current_dir(root.path())
+        .output();
+    let Ok(output) = design else { return };
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    if stderr.contains("setpriv:") || stderr.contains("prlimit:") {
+        return;
+    }
+    assert!(output.status.code() == Some(1) && stderr.contains("threads"), "{:?}: {stderr}", output.status);
+}
+
 /// Behind `FILE#` bash offers the soils of that very file, quoted where their names have blanks.
 #[test]
 fn bash_completes_the_soils_of_a_file() {
