@@ -80,7 +80,9 @@ fn percents_of_a_sample_are_never_openings_whatever_the_headings_say() {
 #[test]
 fn beside_a_column_of_sizes_headings_are_names() {
     let sizes = [9.0, 4.0, 2.0, 0.5];
-    for (lead, first) in [("p", 0), ("P", 1), ("Passing ", 1), ("% finer ", 3), ("s", 1), ("P #", 4)] {
+    for (lead, first) in
+        [("p", 0), ("P", 1), ("Passing ", 1), ("% finer ", 3), ("s", 1), ("P #", 4), ("Lime 5% ", 1)]
+    {
         for size in ["size_mm", "Sieve (mm)", "Korngröße [mm]"] {
             let names: Vec<String> = (first..first + 6).map(|n| format!("{lead}{n}")).collect();
             let mut text = format!("{size},{}\n", names.join(","));

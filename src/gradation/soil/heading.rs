@@ -331,7 +331,10 @@ pub(super) fn role(name: &str) -> Role {
     if is_weighing(name) {
         return Role::Other;
     }
-    let percent = name.contains('%') || any(&words, &["percent", "pct", "percentage", "prozent"]);
+    // `Core with 5% lime` is a name.
+    let is_sign = |(at, _): (usize, &str)| !name[..at].trim_end().ends_with(|c: char| c.is_ascii_digit());
+    let percent =
+        name.match_indices('%').any(is_sign) || any(&words, &["percent", "pct", "percentage", "prozent"]);
     let mass = any(&words, &MASS);
     let size = any(&words, &SIZE) || say_size(&words);
     let cumulative = match (is_cumulative(&words), any(&words, &INDIVIDUAL) || say_individual(&words)) {
