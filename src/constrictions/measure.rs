@@ -163,7 +163,8 @@ pub enum ConstrictionsError {
     },
     /// Grains of which none has others all around it.
     #[error(
-        "no grain has others all around it: the grains are a layer, a heap or a row, and their voids are open \
+        "no grain has others all around it: the grains are a layer, a heap or a row, and their voids are \
+         open \
          outwards. Take a block of at least three grains along each axis, or give its periodic cell"
     )]
     Outside,

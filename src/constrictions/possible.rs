@@ -12,7 +12,8 @@ impl Constrictions {
     /// is not the one given; those that stand twice; those that leave no voids; those that enclose no grain.
     ///
     /// # Errors
-    /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or [`ConstrictionsError::Full`].
+    /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or
+    /// [`ConstrictionsError::Full`].
     pub fn check(&self) -> Result<(), ConstrictionsError> {
         match (self.hidden.first(), self.duplicates.first()) {
             (Some(&first), _) if self.region == Region::Everything => Err(ConstrictionsError::Hidden {

@@ -1,5 +1,6 @@
 //! Sizes that lie between two sieves which stand far apart, where no sieve tells how the mass is spread.
 
+use super::curve_point::TIE;
 use super::{FINES_MM, GRAVEL_MM, Gradation};
 
 /// Greatest ratio of two neighbouring sieves between which practice reads a straight line. The openings of
@@ -9,9 +10,6 @@ pub const USUAL_STEP: f64 = 2.65;
 /// Ratio of two neighbouring sieves above which a rule has no result where its answer hangs on the sizes
 /// between them.
 pub const WIDE_STEP: f64 = 4.0;
-
-/// By how much, relatively, numbers of one curve may differ between two ways of writing it.
-pub(crate) const TIE: f64 = 1e-9;
 
 /// Mass (%) that stays spread over a step that is not wide and whose mass stands at one of its sieves.
 pub(super) const TRACE_PERCENT: f64 = 1e-6;
@@ -71,7 +69,8 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// This curve through these points between the sieves of its own steps: size (mm) and percent finer, rising.
+    /// This curve through these points between the sieves of its own steps: size (mm) and percent finer,
+    /// rising.
     pub(crate) fn filled(&self, steps: &[(Step, Vec<(f64, f64)>)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
         for (step, points) in steps.iter().rev() {
@@ -93,8 +92,8 @@ impl Gradation {
         }
     }
 
-    /// Points by which the mass of a wide step stands where neither of its ends is the worst: at single sizes,
-    /// and in two parts with a gap between them.
+    /// Points by which the mass of a wide step stands where neither of its ends is the worst: at single
+    /// sizes, and in two parts with a gap between them.
     pub(crate) fn fillings(&self, step: &Step) -> Vec<Vec<(f64, f64)>> {
         let [low, high] = self.percents(step);
         let ratio = step.to_mm / step.from_mm;

@@ -3,6 +3,9 @@
 
 use serde::Serialize;
 
+/// By how much, relatively, numbers of one curve may differ between two ways of writing it.
+pub(crate) const TIE: f64 = 1e-9;
+
 /// A point of a gradation or of a constriction curve; in JSON a row of size and percent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(into = "[f64; 2]")]

@@ -42,10 +42,11 @@ mod supply;
 mod surface;
 mod table;
 
-pub(crate) use between::{End, TIE};
+pub(crate) use between::End;
 pub use between::{Step, USUAL_STEP, WIDE_STEP};
 pub use burenkova::UniformityFactors;
 pub use curve_point::CurvePoint;
+pub(crate) use curve_point::TIE;
 pub(crate) use error::shortened;
 pub use error::{GradationError, NumberError, Position, TableError};
 pub use group::{FINES_MM, GRAVEL_MM};

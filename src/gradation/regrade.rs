@@ -1,7 +1,7 @@
 //! Regrading: the part of a base soil that filter practice looks at.
 
 use super::Gradation;
-use super::between::TIE;
+use super::curve_point::TIE;
 use super::group::{FINES_MM, GRAVEL_MM};
 use super::shape::{FLAT_PERCENT, GAP_PERCENT, Gap};
 

@@ -1,7 +1,6 @@
 //! A sieve curve: how it is made, checked and read.
 
-use super::between::TIE;
-use super::curve_point::CurvePoint;
+use super::curve_point::{CurvePoint, TIE};
 use super::error::Position;
 use super::error::{GradationError, NumberError, TableError};
 use super::segments::cumulative;

@@ -20,7 +20,7 @@
 //! they are found exactly. A pan fraction is left out: what it would say is not known.
 
 use super::Gradation;
-use super::between::TIE;
+use super::curve_point::TIE;
 
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;

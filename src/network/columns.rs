@@ -121,12 +121,14 @@ impl NetworkColumns<'_> {
                 }
             }
         }
-        // Extracted networks have voids at their faces that nothing joins; of numbers that count from 1 it is the first.
+        // Extracted networks have voids at their faces that nothing joins; of numbers that count from 1 it
+        // is the first.
         let is_joined = self.conns.iter().flatten().any(|&end| end == 0);
         for (name, voids) in [("inlet", self.inlets), ("outlet", self.outlets)] {
             if !is_joined && voids.contains(&0) {
                 return Err(wrong(format!(
-                    "void 0 is made an {name}, but no constriction joins it; leave it out, and number the voids \
+                    "void 0 is made an {name}, but no constriction joins it; leave it out, and number the \
+                     voids \
                      of conns, inlets and outlets from 0"
                 )));
             }

@@ -11,10 +11,10 @@ const FEW: usize = 8;
 type Row = ([i64; 2], [f64; 2], bool, usize);
 
 /// Two rows that are one constriction, where too many rows are listed twice: there and back, as in lists of
-/// neighbours, or the same row again. One constriction would be two, of which one stays open when the other is
-/// blocked. Some voids may well be joined by several constrictions, which can all be passed both ways: half of
-/// all rows there and back, of whatever sizes, are too many, and a twentieth of like sizes. Where each row leads
-/// one way, as `directed` says, only rows of like sizes count.
+/// neighbours, or the same row again. One constriction would be two, of which one stays open when the other
+/// is blocked. Some voids may well be joined by several constrictions, which can all be passed both ways:
+/// half of all rows there and back, of whatever sizes, are too many, and a twentieth of like sizes. Where
+/// each row leads one way, as `directed` says, only nine rows of ten of like sizes are.
 pub(super) fn listed_twice(
     rows: impl Iterator<Item = ([i64; 2], [f64; 2])>,
     directed: bool,
@@ -49,6 +49,10 @@ pub(super) fn listed_twice(
             first = Some([one.3.min(other.3), one.3.max(other.3)]);
         }
     }
-    let too_many = 2 * twice >= rows.len() && (!directed || twice >= FEW);
-    first.filter(|_| too_many || !are_alike && back >= FEW && 20 * back >= rows.len())
+    let too_many = match directed {
+        // Two of them may join the same voids, each its own way.
+        true => twice >= 3 * FEW && 10 * twice >= 9 * rows.len(),
+        false => 2 * twice >= rows.len() || !are_alike && back >= FEW && 20 * back >= rows.len(),
+    };
+    first.filter(|_| too_many)
 }

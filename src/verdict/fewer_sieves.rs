@@ -249,8 +249,8 @@ fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
     assert!(met > 50 && open > 80, "{met} {open}");
 }
 
-/// Each has a filling of its wide step, seen by hand, by which the filter does not meet practice: two parts with
-/// a gap, all of it just above 0.075 mm, a tie of two gaps, and percents that a sieve has exactly.
+/// Each has a filling of its wide step, seen by hand, by which the filter does not meet practice: two parts
+/// with a gap, all of it just above 0.075 mm, a tie of two gaps, and percents that a sieve has exactly.
 #[test]
 fn the_worst_of_a_wide_step_is_at_neither_end() {
     let uniform = |d15f: f64| vec![(0.85 * d15f, 0.0), (d15f, 15.0), (1.4 * d15f, 60.0), (2.0 * d15f, 100.0)];

@@ -287,7 +287,8 @@ fn a_request_before_any_work_ends_a_run_at_once() {
     std::thread::sleep(Duration::from_millis(700));
     let _ = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     let asked = Instant::now();
-    assert_eq!(child.wait().unwrap().code(), Some(3));
+    // Nothing is saved: it ends by the signal.
+    assert_eq!(child.wait().unwrap().code(), None);
     assert!(asked.elapsed() < Duration::from_secs(3) && !root.path().join("run").exists());
 }
 

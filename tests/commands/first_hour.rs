@@ -103,7 +103,7 @@ fn every_mistake_is_answered_with_a_way_out() {
         (
             "constrictions four.csv --out c",
             2,
-            &["four.csv: 4 grains are too few", "least 5 grains", "in one plane"],
+            &["four.csv: no grain has others all around it", "at least three grains along each axis"],
         ),
         ("constrictions flat.csv --out c", 2, &["flat.csv: the centres of all 5 grains lie in one plane"]),
         (

@@ -103,7 +103,7 @@ fn a_base_in_a_table_is_walked_regraded_and_every_d85b_says_which_it_is() {
 #[test]
 fn a_design_never_says_more_than_practice_allows() {
     let (_root, at) = till_and_sand();
-    let till = "size_mm,percent\n19,100\n4.75,92\n2,82\n0.425,60\n0.075,35\n0.06,0\n";
+    let till = "size_mm,percent\n19,100\n9.5,96\n4.75,92\n2,82\n0.85,69.845756\n0.425,60\n0.25,52.352301\n0.15,44.990009\n0.075,35\n0.06,0\n";
     fs::write(at.join("till.csv"), till).unwrap();
     let small = ["--set", "network.nx=3", "--set", "network.ny=3", "--set", "replicates=2"];
     let words = ["design", "till.csv", "--filter", "cu1.5-loose", "--thickness", "60layers"];

@@ -144,7 +144,7 @@ fn a_percent_that_is_empty_is_named_and_a_mass_that_is_empty_refused() {
     let (curve, notes) = read(&with("Sieve (mm),% passing", ',', "2.36,")).unwrap();
     assert!(curve.len() == 5 && notes.contains("line 4 has no percent"), "{notes}");
     assert!(read(&with("Sieve (mm),Mass retained (g)", ',', "2.36,")).is_err());
-    assert!(read(&with("Sieve (mm),Mass retained (g)", ',', "2.36,-")).is_ok());
+    assert!(read(&with("Sieve (mm),Mass retained (g)", ',', "2.36,-")).is_err());
     assert!(read("Sieve (mm),% retained on each\n9.5,0\n4.75,40\n2.36,\n1.18,30\nPan,10\n").is_err());
     assert!(read("Sieve (mm),% retained on each\n9.5,0\n4.75,40\n2.36,\n1.18,50\nPan,10\n").is_ok());
     let (_, notes) = read("Sieve (mm),Cum. % retained\n9.5,0\n4.75,40\n2.36,\n1.18,90\n").unwrap();

@@ -147,7 +147,7 @@ fn entries(
             match read {
                 Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Below(_), _)) => {
                     without.push(line);
-                    missing.extend(value.is_empty().then_some(line));
+                    missing.push(line);
                     continue;
                 }
                 None if is_words(size) => {

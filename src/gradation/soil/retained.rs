@@ -283,7 +283,8 @@ pub(super) fn percents_finer(
         && let Some(&line) = weighed.missing.first()
         && !whole.is_some_and(|whole| near(all, whole))
     {
-        let allowed = "what is retained on every sieve: 0 where nothing is, - where the sieve was not used";
+        let allowed =
+            "what is retained on every sieve, 0 where nothing is; leave out a sieve that was not used";
         return Err(weighed.grid.refused(line, weighed.column, FIELDS[1], "", allowed));
     }
     if percent && let Some(total) = total.filter(|&total| !near(total, 100.0) && !near(total, all)) {

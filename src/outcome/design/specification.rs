@@ -257,7 +257,8 @@ impl SpecificationStep {
     }
 }
 
-/// Every standard product beside the minimum D15F (mm) with the least that it is for certain, and the greatest.
+/// Every standard product beside the minimum D15F (mm) with the least that it is for certain, and the
+/// greatest.
 pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();

@@ -360,7 +360,11 @@ fn combined(
     let moves = |i: &usize| places.clone().any(|place| is_moved(&results[place], &results[place ^ 1 << i]));
     // The widest step is the one to be sieved first.
     let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
-    if let Some(flips) = wide.iter().copied().filter(flips).max_by(width) {
+    // Every end may break what the straight line between them keeps.
+    let breaks = |i: &usize| {
+        choices[*i].is_wide() && class(&plain) == MET && results.iter().all(|judged| class(judged) == 0)
+    };
+    if let Some(flips) = wide.iter().copied().filter(|i| flips(i) || breaks(i)).max_by(width) {
         let is_of_base = matches!(choices[flips], Choice::OfBase(_));
         return left_open(plain, is_of_base, note(rule, inputs, choices[flips], &worst, &results));
     }
