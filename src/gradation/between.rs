@@ -38,6 +38,11 @@ impl Step {
         self.to_mm > self.from_mm * WIDE_STEP * (1.0 + TIE)
     }
 
+    /// Ratio of the two sieves.
+    pub(crate) fn ratio(self) -> f64 {
+        self.to_mm / self.from_mm
+    }
+
     /// Whether a size lies between the two sieves, and on none of them.
     pub(crate) fn holds(self, size_mm: f64) -> bool {
         size_mm > self.from_mm * (1.0 + TIE) && size_mm < self.to_mm * (1.0 - TIE)
@@ -96,9 +101,8 @@ impl Gradation {
     /// sizes, and in two parts with a gap between them.
     pub(crate) fn fillings(&self, step: &Step) -> Vec<Vec<(f64, f64)>> {
         let [low, high] = self.percents(step);
-        let ratio = step.to_mm / step.from_mm;
         let within =
-            (1..FILLINGS).map(|i| step.from_mm * libm::pow(ratio, f64::from(i) / f64::from(FILLINGS)));
+            (1..FILLINGS).map(|i| step.from_mm * libm::pow(step.ratio(), f64::from(i) / f64::from(FILLINGS)));
         let beside = |size: f64| [size * (1.0 - 2.0 * BESIDE), size * (1.0 + BESIDE)];
         let sizes = [FINES_MM, GRAVEL_MM].into_iter().flat_map(beside).chain(within);
         // A gap reaches over a factor of four.

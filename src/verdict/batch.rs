@@ -8,11 +8,11 @@ use super::practice_words::MET_UNLESS_DISPERSIVE;
 use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
-use crate::gradation::{Gradation, SoilSample};
+use crate::gradation::SoilSample;
 use crate::outcome::design::band::{retaining, retention};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, PracticeClass, RuleNote, RuleQuantity, RuleRole, RuleText};
-use crate::outcome::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, PERMEABILITY, sieved_limit};
+use crate::outcome::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, OpenBase, PERMEABILITY, sieved_limit};
 use crate::outcome::table::Columns;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -149,7 +149,16 @@ impl BatchRow {
         // A D15F that lies in a finest tail has the limits in mm all the same.
         let strictest = retention(rules, pair.filter.d15_mm.unwrap_or(1.0));
         let strictest = strictest.map(|(rule, limit)| (rule, limit, rule.limit_at_most));
-        let least = least_limit(rules, base, options.dispersive).map(|(rule, limit)| (rule, limit, false));
+        let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
+        let open_base = is_open.then(|| OpenBase::of(base, false));
+        // The strictest that a limit can be which hangs on sieves of the base that stand far apart.
+        let hanging = |rule: &AppliedRule| {
+            let limit = sieved_limit(&rule.id, base, open_base.as_ref()?, options.dispersive)?;
+            limit.hangs_on.map(|_| limit.strictest)
+        };
+        let of_d15f = |rule: &&AppliedRule| rule.applies && rule.quantity == RuleQuantity::D15F;
+        let least = retaining(rules).filter(of_d15f);
+        let least = least.filter_map(|rule| Some((rule, hanging(rule)?, false)));
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
         let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
@@ -177,7 +186,7 @@ impl BatchRow {
             true => drainage.and_then(|rule| rule.met),
             false => Some(false),
         };
-        let greatest = drainage.and_then(|rule| hanging_limit(rule, base, options.dispersive));
+        let greatest = drainage.and_then(hanging);
         let open = (drainage.is_some() && drains.is_none()).then_some(DRAINAGE_UNKNOWN);
         let also: Vec<&str> = also.map(|(_, what)| what).chain(open).collect();
         let also = also.join(", ");
@@ -213,26 +222,6 @@ impl BatchRow {
             None => "no result",
         }
     }
-}
-
-/// The strictest that a limit can be which hangs on sieves of the base that stand far apart; `None` where it
-/// does not.
-fn hanging_limit(rule: &AppliedRule, base: &Gradation, dispersive: bool) -> Option<f64> {
-    let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
-    let limit = is_open.then(|| sieved_limit(&rule.id, base, dispersive)).flatten()?;
-    limit.hangs_on.map(|_| limit.strictest)
-}
-
-/// The rule with the least limit of retention of those that hang on sieves of the base.
-fn least_limit<'r>(
-    rules: &'r [AppliedRule],
-    base: &Gradation,
-    dispersive: bool,
-) -> Option<(&'r AppliedRule, f64)> {
-    let of_d15f = |rule: &&AppliedRule| rule.applies && rule.quantity == RuleQuantity::D15F;
-    let limits = retaining(rules).filter(of_d15f);
-    let limits = limits.filter_map(|rule| Some((rule, hanging_limit(rule, base, dispersive)?)));
-    limits.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Whether a rule has no result, as D15F lies between two sieves that stand far apart.

@@ -27,7 +27,7 @@ pub use apply::{NamedCurve, apply, apply_and_decide, apply_to_envelopes, authori
 pub use authority::Authority;
 pub use base::BaseSoil;
 pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
-pub(crate) use open::sieved_limit;
+pub(crate) use open::{OpenBase, sieved_limit};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests};
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 

@@ -38,7 +38,7 @@ impl Choice {
     /// Ratio of the two sieves.
     fn width(self) -> f64 {
         match self {
-            Self::OfFilter(step) | Self::OfBase(step) => step.to_mm / step.from_mm,
+            Self::OfFilter(step) | Self::OfBase(step) => step.ratio(),
             Self::Gap => 1.0,
         }
     }
@@ -71,7 +71,10 @@ impl OpenBase {
             let otherwise = curve.regraded_otherwise(curve).and_then(|other| other.at_mm);
             [curve.regraded().at_mm, otherwise]
         };
-        let cuts: Vec<[Option<f64>; 2]> = wide.iter().map(cut).collect();
+        let cuts: Vec<[Option<f64>; 2]> = match steps.iter().all(|step| step.is_wide()) {
+            true => Vec::new(),
+            false => wide.iter().map(cut).collect(),
+        };
         // What passes a cut within a step that is not wide is read on the straight line.
         let is_cut = |place: usize, step: &Step| cuts[place].iter().flatten().any(|at| step.holds(*at));
         let curves = spread(base, &steps, |place, step| step.is_wide() || !is_cut(place, step));
@@ -125,7 +128,7 @@ impl OpenFilter {
 /// The steps that are looked at one by one: the widest.
 fn chosen(steps: &[Step]) -> Vec<Step> {
     let mut widest = steps.to_vec();
-    widest.sort_by(|a, b| (b.to_mm / b.from_mm).total_cmp(&(a.to_mm / a.from_mm)));
+    widest.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
     widest.truncate(MOST_STEPS);
     widest.sort_by(|a, b| a.from_mm.total_cmp(&b.from_mm));
     widest
@@ -207,8 +210,7 @@ pub fn judged_over(
 }
 
 fn widest(steps: impl Iterator<Item = Step>) -> Option<Step> {
-    let width = |step: &Step| step.to_mm / step.from_mm;
-    steps.max_by(|a, b| width(a).total_cmp(&width(b)))
+    steps.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
 fn is_kept(rule: &FilterRule, found: &Judged) -> bool {
@@ -247,9 +249,7 @@ fn breaks_in_base(
     if !is_kept(rule, found) {
         return None;
     }
-    let ends =
-        open_d15f(inputs.filter, filter).and_then(|_| Some([filter.curves.first()?, filter.curves.last()?]));
-    let filters = ends.map_or(vec![inputs.filter], |ends| ends.to_vec());
+    let (_, filters) = d15f_ends(inputs.filter, filter);
     let breaks = |(base, soil, _): &&(Gradation, BaseSoil, Step)| {
         let of = |filter: &&Gradation| {
             is_broken(judged(rule, &RuleInputs { filter, base, base_soil: soil.clone(), ..inputs.same() }))
@@ -259,10 +259,15 @@ fn breaks_in_base(
     widest(base.hidden.iter().filter(breaks).map(|(.., step)| *step))
 }
 
-/// The step in which D15F lies, which is open.
-fn open_d15f(filter: &Gradation, open: &OpenFilter) -> Option<Step> {
-    let d15f = filter.d(15.0)?;
-    widest(open.steps.iter().copied().filter(|step| step.encloses(d15f)))
+/// The open step in which D15F lies, and the filters with D15F at either end of it; the filter itself
+/// without one.
+fn d15f_ends<'a>(filter: &'a Gradation, open: &'a OpenFilter) -> (Option<Step>, Vec<&'a Gradation>) {
+    let encloses = |step: &Step| filter.d(15.0).is_some_and(|d15f| step.encloses(d15f));
+    let step = widest(open.steps.iter().copied().filter(encloses));
+    match (step, &open.curves[..]) {
+        (Some(_), [finest, .., coarsest]) => (step, vec![finest, coarsest]),
+        _ => (None, vec![filter]),
+    }
 }
 
 /// A result that hangs on a step, which is no result; what is known of a base stays.
@@ -282,11 +287,7 @@ type Over = Option<(Vec<Choice>, Vec<Judged>)>;
 
 /// Rules that read no more of the filter than D15F.
 fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &OpenFilter) -> Over {
-    let step = open_d15f(inputs.filter, filter);
-    let filters: Vec<&Gradation> = match step {
-        Some(_) => vec![filter.curves.first()?, filter.curves.last()?],
-        None => vec![inputs.filter],
-    };
+    let (step, filters) = d15f_ends(inputs.filter, filter);
     let choices: Vec<Choice> =
         step.map(Choice::OfFilter).into_iter().chain(base.choices.iter().copied()).collect();
     if choices.is_empty() {
@@ -318,11 +319,7 @@ fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Ove
 fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
     let open: Vec<OpenFilter> =
         inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
-    let step = open
-        .iter()
-        .flat_map(|filter| &filter.steps)
-        .max_by(|a, b| (a.to_mm / a.from_mm).total_cmp(&(b.to_mm / b.from_mm)));
-    let step = Choice::OfFilter(*step?);
+    let step = Choice::OfFilter(widest(open.iter().flat_map(|filter| filter.steps.iter().copied()))?);
     let ends = |(given, open): (&&'_ Gradation, &OpenFilter)| match &open.curves[..] {
         [finest, .., coarsest] => vec![finest.clone(), coarsest.clone()],
         _ => vec![(*given).clone()],
@@ -408,14 +405,14 @@ pub struct SievedLimit {
     pub hangs_on: Option<RuleNote>,
 }
 
-/// The limit of a rule of D15F for a base in mm; `None` where it has none.
-pub fn sieved_limit(id: &str, base: &Gradation, dispersive: bool) -> Option<SievedLimit> {
+/// The limit of a rule of D15F for a base in mm, with all that its table leaves `open`; `None` where it has
+/// none.
+pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: bool) -> Option<SievedLimit> {
     let rule = RULES.iter().find(|rule| rule.id == id)?;
     let filter = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
     let inputs = RuleInputs { dispersive, ..RuleInputs::of_soils(base, &filter) };
-    let open = OpenBase::of(base, false);
     let plain = judged(rule, &inputs)?;
-    let over = of_pair(rule, &inputs, &open, &OpenFilter::of(&filter, false));
+    let over = of_pair(rule, &inputs, open, &OpenFilter::of(&filter, false));
     let (choices, results) = over.unwrap_or_default();
     let of_hidden = |(base, soil, step): &(Gradation, BaseSoil, Step)| {
         let inputs = RuleInputs { base, base_soil: soil.clone(), ..inputs.same() };

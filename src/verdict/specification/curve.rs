@@ -6,7 +6,9 @@ use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::numbers::{rounded_down, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive};
-use crate::outcome::rules::{BaseSoil, DESIGN, NamedCurve, PERMEABILITY, RuleInputs, apply, sieved_limit};
+use crate::outcome::rules::{
+    BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInputs, apply, sieved_limit,
+};
 use crate::verdict::base_cautions::broad_base;
 use crate::verdict::entry::Finding;
 use crate::verdict::finding;
@@ -43,7 +45,8 @@ impl ReadCurve {
         let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
         let soil = BaseSoil::of(base, false);
-        let over_sieves = sieved_limit(DESIGN, base, dispersive).and_then(|limit| limit.hangs_on);
+        let open = OpenBase::of(base, false);
+        let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.hangs_on);
         // A limit that can only be less may be the strictest.
         let unknown = open_retention(&rules).map(|rule| rule.needs.to_string());
         let unknown = over_sieves.map(|note| note.words()).or(unknown);
@@ -51,7 +54,7 @@ impl ReadCurve {
             unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
-        let drains = sieved_limit(PERMEABILITY, base, dispersive);
+        let drains = sieved_limit(PERMEABILITY, base, &open, dispersive);
         let between = drains.as_ref().filter(|limit| limit.hangs_on.is_some());
         Self {
             base: base.clone(),
