@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::gradation::TIE;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleQuantity, RuleRole};
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
 
@@ -104,7 +105,9 @@ pub fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item 
 /// The strictest rule by which a filter retains a base, with its limit of D15F: no more than the most of it
 /// where [`open_retention`] finds a rule.
 pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
-    retaining_limits(rules, d15f).min_by(|a, b| a.1.total_cmp(&b.1))
+    // Of limits that differ by rounding alone the first counts, which is that of design.
+    let stricter = |least: f64, limit: f64| limit < least * (1.0 - TIE);
+    retaining_limits(rules, d15f).reduce(|least, next| if stricter(least.1, next.1) { next } else { least })
 }
 
 impl Band {
@@ -143,6 +146,19 @@ mod tests {
         assert!((limit_of(&all, "foster-fell-no-erosion").unwrap() - 2.8).abs() < 1e-9);
         assert!((limit_of(&all, "paper-no-erosion").unwrap() - 2.0).abs() < 1e-9);
         assert_eq!(limit_of(&all, "filter-uniformity"), None);
+    }
+
+    /// Terzaghi's limit of a ratio may be less than Sherard and Dunnigan's of a size by the last digit.
+    #[test]
+    fn limits_that_differ_by_rounding_are_those_of_design() {
+        let mut all = rules(3.0);
+        let place = all.iter().position(|rule| rule.id == "terzaghi").unwrap();
+        let of_design = limit_of(&all, DESIGN).unwrap();
+        for (factor, id) in [(1.0 - 1e-15, DESIGN), (1.0 + 1e-15, DESIGN), (0.99, "terzaghi")] {
+            all[place].limit = Some(of_design * factor);
+            all[place].value = Some(D15F);
+            assert_eq!(retention(&all, D15F).unwrap().0.id, id, "{factor}");
+        }
     }
 
     /// Practice takes four times the D85B of the part that it regrades the base to: of a gap-graded base, and
