@@ -13,7 +13,6 @@ use crate::run::checkpoints::Checkpoints;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::shown;
 use crate::run::prepare::Draft;
-use crate::store::format::from_json;
 use crate::store::{Folder, StoreError, read_regular, read_whole};
 
 /// A finished case.
@@ -211,7 +210,7 @@ impl<'a> PreparedCase<'a> {
             }
             Err(source) => return Err(StoreError::Io { path, action: "read", source }),
         };
-        let line: Option<LedgerLine> = from_json(&bytes).ok();
+        let line: Option<LedgerLine> = serde_json::from_slice(&bytes).ok();
         Ok(line.filter(|line| line.fingerprint == self.fingerprint && line.case == self.planned.name))
     }
 }

@@ -150,9 +150,7 @@ impl Display {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
             Event::VerdictStands(outcome) => {
-                for (name, words) in outcome.first_lines() {
-                    self.line(&format!("{name}: {}\n", plain(&words)));
-                }
+                self.line(&format!("verdict: {}; the studies beside it follow\n", plain(&outcome.headline())))
             }
             Event::Packing(_)
             | Event::Increment { .. }

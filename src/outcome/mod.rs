@@ -10,7 +10,6 @@
 //! - [`leaves_out`] is what the model does not contain.
 //! - `soil_sizes` are the sizes of a soil that a sheet shows.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
-//! - [`digest`] is one number of all numbers of a record, by which two runs are compared.
 //! - `paper` holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
@@ -32,7 +31,6 @@ mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;
-pub mod digest;
 pub(crate) mod digits;
 pub(crate) mod early_stop;
 mod inches;
@@ -45,6 +43,7 @@ pub mod network_walk;
 pub mod number_rows;
 pub mod numbers;
 pub mod packing;
+mod pan;
 pub(crate) mod paper;
 pub mod percolation;
 pub mod precision;

@@ -22,10 +22,12 @@ pub enum ModelLimit {
     Excessive,
     /// What soils do besides.
     Cohesion,
+    /// The words of a file of an earlier version.
+    Said(String),
 }
 
 impl ModelLimit {
-    /// All of them.
+    /// All but what files say.
     pub const ALL: [Self; 9] = [
         Self::Hydraulics,
         Self::HydraulicsElsewhere,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::network::{Connectivity, ExitRule};
+use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::Leaf;
 use crate::walk::{ArchSize, BlockedAs, Concentration, Engine, LawName, Sampling};
@@ -189,6 +190,7 @@ impl SheetUnits {
 }
 
 impl Leaf for SheetUnits {}
+impl Leaf for Authority {}
 impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}

@@ -91,8 +91,9 @@ impl Live {
             CaseEvent::Done(line) => {
                 self.walking.remove(case);
                 self.cases[0] += 1;
+                let confidence = line.confidence.map(|confidence| confidence.words());
                 let words = line.verdict.words();
-                self.done.push(json!({ "case": case, "verdict": words }));
+                self.done.push(json!({ "case": case, "verdict": words, "confidence": confidence }));
             }
             CaseEvent::Failed(problem) => {
                 self.walking.remove(case);

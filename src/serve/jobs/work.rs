@@ -161,10 +161,15 @@ fn often() -> CheckpointInterval {
 /// What the page shows of an outcome.
 pub fn of_run(outcome: &Outcome) -> Value {
     json!({
-        "lines": outcome.first_lines(),
-        "model": outcome.model.class.words(),
+        "headline": outcome.headline(),
+        "practice": outcome.practice_in_words(),
+        "walk": outcome.walk_in_words(),
+        "next": outcome.next_in_words(),
+        "verdict": outcome.verdict.words(),
         "colour": colour_of(outcome),
-        "findings": outcome.findings.iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
+        "confidence": outcome.confidence.words(),
+        "reasons": outcome.reasons,
+        "findings": outcome.ordered().iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
     })

@@ -45,6 +45,7 @@ use std::time::{Duration, Instant, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::precision::{NetworkRow, Precision};
+use crate::packing::is_wide;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim};
@@ -109,7 +110,11 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
     let kind = FolderKind::Precision;
-    let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
+    let mut work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
+    if is_wide(&case.filter) {
+        // Earlier versions packed such filters otherwise.
+        work += " heavier grains";
+    }
     let study = PrecisionStudy {
         case: &case,
         tiers: &tiers,

@@ -31,6 +31,7 @@ __all__ = [
     "DesignAnswer",
     "DesignFinding",
     "DesignRow",
+    "Evidence",
     "FilterRecord",
     "FilterSizes",
     "Finding",
@@ -41,10 +42,12 @@ __all__ = [
     "InfiltrationSize",
     "InputFile",
     "Inputs",
+    "LimitOfDesign",
     "Manifest",
     "ManyStarts",
+    "Margin",
+    "MarginWalk",
     "Measure",
-    "Model",
     "NetworkBoundaries",
     "NetworkRecord",
     "NetworkSummary",
@@ -54,6 +57,8 @@ __all__ = [
     "PackedPart",
     "PackingRecord",
     "PairRules",
+    "PanBounds",
+    "PanReading",
     "PercolationStudy",
     "Practice",
     "ProductMargin",
@@ -74,6 +79,7 @@ __all__ = [
     "Specification",
     "SpecificationStep",
     "SpecifiedCurve",
+    "StatedByAuthority",
     "Statistic",
     "StepValue",
     "Stopping",
@@ -82,72 +88,33 @@ __all__ = [
 ]
 
 
-_Practice = TypedDict(
-    "_Practice",
-    {
-        "class": Literal["meets", "does not meet", "not known"],
-        "d15f_mm": Optional[List[float]],
-        "limit_mm": Optional[float],
-        "tests": Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"],
-        "range_of_tests_mm": Optional[List[float]],
-    },
-)
-
-
-class Practice(_Practice, total=False):
-    """What filter practice says of a pair, for programs.
-
-    Keys
-    ----
-    class
-        All of it, as the headline has it.
-    d15f_mm
-        D15F (mm), twice; of one that lies between two sieves that stand far apart their openings. `None` where
-        it lies in the filter's finest part.
-    limit_mm
-        The limit of design (mm): the most that D15F may be; `None` where that is not known.
-    limit_at_most
-        Whether the true limit is not known, and is at most `limit_mm`.
-    tests
-        Class of such pairs in tests, by the boundaries of Foster and Fell.
-    range_of_tests_mm
-        D15F (mm) between which tests of bases with such fines began to erode (Fell et al., Table 9.2); `None`
-        of a dispersive base, which had other tests, and where fines or D85B are not known.
-    """
-
-    limit_at_most: bool
-
-
-#: What the walks say together.
-Model = TypedDict(
-    "Model",
-    {
-        "class": Literal["no erosion", "some erosion", "continuing erosion", "undecided"],
-        "eroded_percent": List[List[float]],
-        "replicates": int,
-        "network": Literal["cubic", "connected", "file", "graph"],
-    },
-)
-
-
 class _Finding(TypedDict):
     id: str
     about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
     label: str
+    direction: Literal["safe", "unsafe", "open", "settled"]
+    weight: Literal["decides", "limits", "note"]
+    against: bool
     sentence: str
 
 
 class Finding(_Finding, total=False):
-    """A finding: what it is about, and its sentence.
+    """A finding about a verdict: what it is about, which way it points, and its sentence.
 
     Keys
     ----
     id
-        Its name for programs, as `cohesive_fines`.
+        Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
     about
         What it is about.
     label
         Its name in a word or two.
+    direction
+        Which way the walk errs for it.
+    weight
+        What it can do to the verdict.
+    against
+        Whether it speaks against the verdict beside which it stands.
     numbers
         Its numbers by name, with the unit in the name.
     sentence
@@ -158,6 +125,44 @@ class Finding(_Finding, total=False):
 
     numbers: Dict[str, object]
     to_do: str
+
+
+class _LimitOfDesign(TypedDict):
+    rule: str
+    limit_mm: Optional[float]
+    value_mm: Optional[float]
+    met: Optional[bool]
+
+
+class LimitOfDesign(_LimitOfDesign, total=False):
+    """A limit of D15F, and whether the filter keeps it.
+
+    Keys
+    ----
+    rule
+        The name of its rule for programs.
+    limit_mm
+        The most that D15F may be; `None` where that is not known.
+    limit_at_most
+        Whether the true limit is not known, and is at most `limit_mm`.
+    value_mm
+        D15F.
+    met
+        Whether the filter keeps it; `None` where that is not known.
+    """
+
+    limit_at_most: bool
+
+
+#: What filter practice says of a pair, for programs.
+Practice = TypedDict(
+    "Practice",
+    {
+        "class": Literal["meets", "does not meet", "not known"],
+        "design": LimitOfDesign,
+        "foster_fell": Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"],
+    },
+)
 
 
 class _IfDispersive(TypedDict):
@@ -174,7 +179,7 @@ class IfDispersive(_IfDispersive, total=False):
     at_most
         Whether the true limit is not known, and is at most that.
     lacks
-        Why it is not known; `None` where it is.
+        Why it is not known; `None` where it is, and in files of earlier versions.
     """
 
     at_most: bool
@@ -426,11 +431,71 @@ class Stopping(_Stopping, total=False):
         The verdict at that confidence level, where one was asked for.
     half_width_pp
         Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
+    sentence
+        Why it is not reached, in folders of earlier versions.
     short_of
         Why it is not reached.
     """
 
+    sentence: Optional[str]
     short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
+
+
+class _PanReading(TypedDict):
+    taken_as: Literal["continued", "passive", "finest sieve"]
+    n_base: int
+    replicates: int
+    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
+    runs: List[Statistic]
+
+
+class PanReading(_PanReading, total=False):
+    """One reading of a pan fraction, walked.
+
+    Keys
+    ----
+    taken_as
+        Of what size its particles were walked.
+    n_base
+        Base particles inserted in each run; all readings insert the same mass, where no cap bites.
+    replicates
+        How many replicates were walked.
+    stopped_when_clear
+        Whether it was clear before all replicates of a study were walked: its intervals then take twice the
+        scatter of the scene's own replicates, or its own where that is wider (`crate::outcome::early_stop`).
+    verdict
+        Their class.
+    runs
+        Eroded mass fraction, one per run.
+    stopping
+        Why there are so many replicates, where a rule added them.
+    """
+
+    stopped_when_clear: bool
+    stopping: Optional[Stopping]
+
+
+class PanBounds(TypedDict):
+    """The readings of a pan fraction that need not be passive: its sizes are not known, but they lie between two
+    bounds, and go on in a likely way.
+
+    Keys
+    ----
+    mass_fraction
+        Share of the base's mass that is finer than its finest sieve.
+    finest_sieve_mm
+        The finest sieve.
+    finest_constriction_mm
+        The finest constriction: what is finer is passive.
+    readings
+        The readings; the rest of `outcome.json` is of the first, its verdict of all. Folders of earlier
+        versions have the bounds alone.
+    """
+
+    mass_fraction: float
+    finest_sieve_mm: float
+    finest_constriction_mm: float
+    readings: List[PanReading]
 
 
 class FilterRecord(TypedDict):
@@ -724,9 +789,7 @@ class AppliedRule(_AppliedRule, total=False):
     name
         Whose rule it is, and what it says.
     authority
-        Whose rule it is; empty where nobody is cited.
-    stated_by
-        Authorities whose texts state it besides; may be empty.
+        Whose rule it is; empty where nobody is cited, and in files of earlier versions.
     role
         What it is a rule of.
     applies
@@ -762,7 +825,7 @@ class AppliedRule(_AppliedRule, total=False):
         Where the rule is published.
     without_finer
         What is left of the filter without the greatest part that it may lose by a rule of internal stability;
-        `None` of other rules.
+        `None` of other rules, and in files of earlier versions.
     speaks_against
         Which verdicts it speaks against where it is not kept.
     filter_curve
@@ -772,7 +835,6 @@ class AppliedRule(_AppliedRule, total=False):
     """
 
     authority: str
-    stated_by: List[str]
     value_bound: Optional[Literal["at most", "at least"]]
     limit_at_most: bool
     without_finer: Optional[WithoutFiner]
@@ -887,6 +949,89 @@ class CurveRange(_CurveRange, total=False):
 
     worst_counts: bool
     could_be: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
+
+
+class MarginWalk(TypedDict):
+    """One size of the filter.
+
+    Keys
+    ----
+    factor
+        Times as large as the filter itself.
+    eroded_mass_fraction
+        Eroded part of the base's mass.
+    holds
+        Whether that is less than the threshold.
+    """
+
+    factor: float
+    eroded_mass_fraction: float
+    holds: bool
+
+
+class Margin(TypedDict):
+    """How much coarser the filter could be before the base begins to erode: its first replicate's first run, walked
+    with the filter larger or smaller.
+
+    Keys
+    ----
+    walks
+        What was walked, by rising size.
+    """
+
+    walks: List[MarginWalk]
+
+
+class _Evidence(TypedDict):
+    group: str
+    soils: int
+    soils_without_boundary: int
+    ratio_median: float
+    ratio_low: float
+    ratio_high: float
+    narrow: bool
+    boundary_d15f_mm: Optional[float]
+    probability_no_erosion: Optional[float]
+    probability_by_tests: Optional[float]
+
+
+class Evidence(_Evidence, total=False):
+    """The evidence for a pair.
+
+    Keys
+    ----
+    group
+        Group of soils by fines after regrading and by D85B/D50B, and of filters by Cu.
+    soils
+        Soils that the ratio rests on: those of which the walk has a boundary.
+    soils_without_boundary
+        Soils of the group of which the walk erodes in every filter; they have no ratio.
+    ratio_median
+        Median over these soils of the walk's D15F of no erosion by the centre of the range of tests.
+    ratio_low
+        The ratio below which 5 % of the soils lie.
+    ratio_high
+        The ratio below which 95 % of the soils lie.
+    narrow
+        Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, that is at most
+        1, 95 % do not lie beyond the range of tests, and all this holds with any tenth of the soils left out.
+    range_of_tests_mm
+        The range in which tests of soils with such fines had their boundary, as D15F (mm).
+    boundary_d15f_mm
+        D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so; `None`
+        where the group is not narrow, and it was not looked for.
+    probability_no_erosion
+        The probability that a test of this pair would show no erosion, by the walk; `None` where the group is
+        not narrow.
+    probability_by_tests
+        The same by the range of tests alone: the part of it that lies beyond the filter's D15F, taken as
+        uniform in its logarithm.
+    bound
+        Where the walk's boundary was not found: on which side of its number, and of the probability, it lies.
+    """
+
+    range_of_tests_mm: Optional[List[float]]
+    bound: Optional[Literal["at_least", "at_most"]]
 
 
 class ArchingByVoidRecord(TypedDict):
@@ -1013,9 +1158,11 @@ class OfThickness(_OfThickness, total=False):
 class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
-    model: Model
+    headline: str
+    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
+    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
     findings: List[Finding]
-    constrictions: ConstrictionsRecord
+    reasons: List[str]
     seed: int
     n_base: int
     n_base_eq2: Optional[int]
@@ -1031,7 +1178,6 @@ class _Outcome(TypedDict):
     ratios: Ratios
     rules: List[AppliedRule]
     sensitivity: List[Sensitivity]
-    digest: str
     seconds: float
 
 
@@ -1045,18 +1191,25 @@ class Outcome(_Outcome, total=False):
     voidwalk
         Version of the program that wrote it.
     headline
-        The answer of filter practice; `None` without two sieve curves in mm.
-    practice
-        What filter practice says of the pair, without the walk; `None` likewise.
-    model
-        What the walk says, without practice.
+        Whether the filter holds, in the line with which every face begins; empty in folders of earlier
+        versions.
+    verdict
+        The class that the replicates together support: that of the walk alone.
+    confidence
+        How far it can be relied on; folders of earlier versions do not say, and are outside.
     findings
-        What a reader must know besides, in the order of every face.
+        What was found about the verdict: what speaks against it first, of which the first sets the label.
+    reasons
+        The sentences of those that speak against it, in the same order.
+    notes
+        What folders of earlier versions say besides; now in `findings`.
+    practice
+        What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
     if_dispersive
         What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
         it has few fines.
     constrictions
-        Where the constrictions come from.
+        Where the constrictions come from; folders of earlier versions do not say.
     seed
         The user's seed.
     n_base
@@ -1076,8 +1229,12 @@ class Outcome(_Outcome, total=False):
         One per run, in order: statistics over the replicates.
     stopping
         Why there are so many replicates, where a rule added them.
+    pan_bounds
+        Both readings of a pan fraction that need not be passive.
     threshold
         Eroded mass fraction that divides the classes: 0.075.
+    warnings
+        What folders of earlier versions say of their inputs; now in `findings`.
     left_out
         Parts of the program that this scene did not need.
     model_leaves_out
@@ -1095,6 +1252,12 @@ class Outcome(_Outcome, total=False):
     curve_range
         What comes of the other constriction curves that the filter may have; `None` where its curve was given,
         or measured on the whole filter.
+    margin
+        How much coarser the filter could be before the base begins to erode; `None` where that was not asked
+        for.
+    evidence
+        What soils of its kind say of the walk's boundary; `None` where no margin was asked for, or for a base
+        of no group.
     arching
         The law by which particles arched; `None` where they did not.
     sensitivity
@@ -1104,21 +1267,22 @@ class Outcome(_Outcome, total=False):
         for.
     studies_to_come
         Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
-    digest
-        Digest of its numbers, equal wherever a scene and seed give the same numbers: XXH3 with 128 bits, in
-        hexadecimal, of every number, `true`, `false` and `null` with its place. Left out are text, `seconds`
-        and `studies_to_come`.
     seconds
         Wall time of everything, s; in a campaign beside other cases on the same threads.
     """
 
-    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    notes: List[str]
     practice: Optional[Practice]
     if_dispersive: Optional[IfDispersive]
+    constrictions: Optional[ConstrictionsRecord]
     stopping: Optional[Stopping]
+    pan_bounds: Optional[PanBounds]
+    warnings: List[str]
     network: Optional[NetworkSummary]
     infiltration: Optional[Infiltration]
     curve_range: Optional[CurveRange]
+    margin: Optional[Margin]
+    evidence: Optional[Evidence]
     arching: Optional[ArchingRecord]
     thickness: List[OfThickness]
     studies_to_come: bool
@@ -1151,15 +1315,44 @@ class GivenNetwork(TypedDict):
     diameters: List[List[float]]
 
 
-class WalkOutcome(TypedDict):
+class _WalkOutcome(TypedDict):
+    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
+    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
+    findings: List[Finding]
+    reasons: List[str]
+    seed: int
+    n_base: int
+    n_base_eq2: Optional[int]
+    grains_per_void: Optional[float]
+    mass_ratio: float
+    increments: int
+    engine: str
+    replicates: List[Replicate]
+    summary: List[RunSummary]
+    threshold: float
+    left_out: List[str]
+    model_leaves_out: List[str]
+    base: BaseRecord
+    d15f_mm: Optional[float]
+    network: GivenNetwork
+    version: str
+
+
+class WalkOutcome(_WalkOutcome, total=False):
     """The results of `crate::run::walk_networks`; the names are those of `outcome.json` where both have them.
 
     Keys
     ----
     verdict
         The class that the replicates together support.
+    confidence
+        How far the verdict can be relied on.
     findings
-        What a reader must know besides, in the order of every face.
+        What was found about the verdict: what speaks against it first, of which the first sets the label.
+    reasons
+        The sentences of those that speak against it, in the same order.
+    warnings
+        What records of earlier versions say besides; now in `findings`.
     seed
         The user's seed.
     n_base
@@ -1194,24 +1387,7 @@ class WalkOutcome(TypedDict):
         Version of the program.
     """
 
-    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    findings: List[Finding]
-    seed: int
-    n_base: int
-    n_base_eq2: Optional[int]
-    grains_per_void: Optional[float]
-    mass_ratio: float
-    increments: int
-    engine: str
-    replicates: List[Replicate]
-    summary: List[RunSummary]
-    threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
-    base: BaseRecord
-    d15f_mm: Optional[float]
-    network: GivenNetwork
-    version: str
+    warnings: List[str]
 
 
 class _DesignAnswer(TypedDict):
@@ -1219,7 +1395,6 @@ class _DesignAnswer(TypedDict):
     d15f_over_d85b: Optional[float]
     set_by: Literal["practice", "walk"]
     rule: Optional[str]
-    limit: str
     said: str
 
 
@@ -1240,7 +1415,8 @@ class DesignAnswer(_DesignAnswer, total=False):
     rule
         Name of the rule for programs, where practice set it.
     limit
-        The limit, and what sets it: a sentence without its full stop, as each of the next three.
+        The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in files
+        of earlier versions, whose text is all in `said`.
     washout
         That the filter as given is not internally stable, and too coarse without the finer part that it may
         lose.
@@ -1255,6 +1431,7 @@ class DesignAnswer(_DesignAnswer, total=False):
     """
 
     d85b_min_mm: Optional[float]
+    limit: str
     washout: Optional[str]
     margin: Optional[str]
     walk: Optional[str]
@@ -1331,7 +1508,6 @@ class NetworkBoundaries(TypedDict):
 class _Band(TypedDict):
     least: float
     greatest: float
-    set_by: Literal["practice", "walk"]
     practice: Optional[float]
     practice_rule: str
     unit: str
@@ -1350,15 +1526,15 @@ class Band(_Band, total=False):
         Whether the true least is not known, and is at most that.
     greatest
         Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
-        networks, and practice.
+        networks, and practice. Files of earlier versions hold that of the walk alone.
     set_by
-        Which of the two set it.
+        Which of the two set it; `None` in files of earlier versions.
     practice
         Maximum D15F that the strictest rule of retention allows, which was made for this base.
     practice_rule
         Name of that rule.
     practice_rule_id
-        Its name for programs; `None` without one.
+        Its name for programs; `None` without one, and in files of earlier versions.
     unit
         Unit: `mm`, or `D85B`.
     is_empty
@@ -1368,6 +1544,7 @@ class Band(_Band, total=False):
     """
 
     least_at_most: bool
+    set_by: Optional[Literal["practice", "walk"]]
     practice_rule_id: Optional[str]
 
 
@@ -1470,7 +1647,8 @@ class BaseStated(_BaseStated, total=False):
     d85_as_sampled_mm
         D85 (mm) before regrading, where it was regraded.
     gradation
-        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
+        Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
+        earlier versions.
     regraded
         The same as it was walked after regrading; empty where it was walked as sampled.
     """
@@ -1500,6 +1678,9 @@ class _DesignFinding(TypedDict):
     id: str
     about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
     label: str
+    direction: Literal["safe", "unsafe", "open", "settled"]
+    weight: Literal["decides", "limits", "note"]
+    against: bool
     sentence: str
 
 
@@ -1511,11 +1692,17 @@ class DesignFinding(_DesignFinding, total=False):
     row
         The row or the curve that it is of, in words; `None` where it is of all.
     id
-        Its name for programs, as `cohesive_fines`.
+        Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
     about
         What it is about.
     label
         Its name in a word or two.
+    direction
+        Which way the walk errs for it.
+    weight
+        What it can do to the verdict.
+    against
+        Whether it speaks against the verdict beside which it stands.
     numbers
         Its numbers by name, with the unit in the name.
     sentence
@@ -1635,7 +1822,7 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
         The rule that sets it.
     without_margin
         Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
-        it.
+        it. `false` in files of earlier versions.
     d15f_min_mm
         Minimum D15F (mm) that drains it.
     """
@@ -1801,7 +1988,7 @@ class Specification(_Specification, total=False):
     version
         Version of voidwalk.
     commit
-        The commit that it was built from; `None` where that is not known.
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     base
         Name of the base.
     dispersive
@@ -1809,16 +1996,17 @@ class Specification(_Specification, total=False):
     sieves
         The sieves at which the limits are stated.
     cover
-        What its sheet says of itself; nothing as a part of a design.
+        What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     inputs
-        Every file that was read; empty as a part of a design, which has them itself.
+        Every file that was read; empty as a part of a design, which has them itself, and in files of earlier
+        versions.
     curves
         The curves of the base, in the order of the file.
     findings
         What a reader must know of the base itself, each of its curve where there are several, and of a side of
-        the band that is not stable.
+        the band that is not stable; empty in files of earlier versions.
     steps
         Every step, with its numbers.
     d15f_min_mm
@@ -1857,7 +2045,6 @@ class _Design(TypedDict):
     format: Literal["voidwalk-design/1"]
     voidwalk: str
     version: str
-    answer: Optional[DesignAnswer]
     boundaries: List[DesignRow]
     inverse: bool
     base: BaseStated
@@ -1871,9 +2058,12 @@ class _Design(TypedDict):
     engine: str
     bracket: List[float]
     step: float
+    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
+    reasons: List[str]
     rules: List[AppliedRule]
     rules_at: float
     products: List[Fit]
+    warnings: List[str]
     model_leaves_out: List[str]
     settings: List[str]
     seconds: float
@@ -1891,9 +2081,10 @@ class Design(_Design, total=False):
     version
         Version of voidwalk.
     commit
-        The commit that it was built from; `None` where that is not known.
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     answer
-        How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked out.
+        How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
+        versions, of which `Design::answer()` works it out.
     boundaries
         One per density and thickness, in the order in which they were asked for.
     inverse
@@ -1908,9 +2099,9 @@ class Design(_Design, total=False):
         The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
     filter_gradation
         Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
-        where its sizes are not given.
+        where its sizes are not given, and in files of earlier versions.
     inputs
-        Every file that was read.
+        Every file that was read; empty in files of earlier versions.
     unit
         Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
         own.
@@ -1922,27 +2113,38 @@ class Design(_Design, total=False):
         The user's seed.
     engine
         Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
+        Empty in files of earlier versions.
     bracket
         D15F/D85B between which boundaries were searched.
     step
         Steps of the search, as a part of D15F/D85B.
+    confidence
+        How far "no erosion" at the coarsest filter that holds can be relied on, of the row that can be relied
+        on least; never within the checked range where a row has no such filter, or an empty band.
     findings
-        What a reader must know besides, the weightiest first.
+        What was found about "no erosion" there, the weightiest first; empty in files of earlier versions.
+    reasons
+        The sentences of those that speak against it, in order.
     rules
         Every rule of practice, of the coarsest filter that holds; of another where none is known.
     rules_at
         D15F/D85B that the rules are read at.
     products
         Standard products beside the narrowest band.
+    products_confidence
+        How far it can be relied on that a product fits: as `confidence`, but at the maximum D15F that walk and
+        practice both allow; `None` without products.
+    warnings
+        The sentences of all others.
     specification
         The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-        mm.
+        mm, and in files of earlier versions.
     model_leaves_out
         What the model does not contain.
     settings
         Settings that were given, as on the command line.
     cover
-        What the sheet says of itself.
+        What the sheet says of itself; without a day in files of earlier versions.
     inches
         Whether inches stand beside mm on its page.
     seconds
@@ -1950,9 +2152,11 @@ class Design(_Design, total=False):
     """
 
     commit: Optional[str]
+    answer: Optional[DesignAnswer]
     filter_gradation: List[List[float]]
     inputs: List[InputFile]
     findings: List[DesignFinding]
+    products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
     cover: SheetCover
     inches: bool
@@ -1972,7 +2176,7 @@ class BaseSize(_BaseSize, total=False):
     regraded_at_mm
         The size that it was regraded on; `None` where it is as it was sampled.
     as_sampled_mm
-        D85 before regrading, where it was regraded and a sieve tells it.
+        D85 before regrading, where it was regraded; `None` where records of earlier versions do not say it.
     """
 
     regraded_at_mm: Optional[float]
@@ -1983,6 +2187,8 @@ class _ComparedCase(TypedDict):
     name: str
     folder: str
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
+    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
+    reasons: List[str]
     rules_not_kept: List[str]
     replicates: int
     thickness_mm: Optional[float]
@@ -2004,16 +2210,31 @@ class ComparedCase(_ComparedCase, total=False):
         Folder of its results, inside the comparison's.
     verdict
         The class that its replicates together support.
+    confidence
+        How far it can be relied on.
+    reasons
+        Why no further: sentences, the weightiest first.
     rules_not_kept
         The rules of practice that were made for these soils and are not kept, by name.
+    practice
+        What filter practice says of the pair, in a line; records of earlier versions do not say.
+    standing
+        Where the filter stands by practice; records of earlier versions do not say.
     by_practice
-        The class as which practice counts.
+        The class as which practice counts; records of earlier versions do not say.
     headline
-        The answer of practice; `None` without two sieve curves in mm.
-    first_lines
-        The lines of practice and model, each with its name.
+        Whether the filter holds, in a line; records of earlier versions do not say.
+    walk
+        What the walk says, in a line.
+    next
+        What to do next.
+    by_authority
+        What an authority's rules say of the pair and leave out, where one is named; empty for all.
     found
-        What a reader must know besides, the weightiest first.
+        What was found about the verdict, the weightiest first, without the names of settings. Records of
+        earlier versions do not say.
+    beside
+        What else stands beside every verdict, in sentences.
     replicates
         Replicates.
     thickness_mm
@@ -2027,7 +2248,7 @@ class ComparedCase(_ComparedCase, total=False):
     ratios
         D15F over D85B and D95B.
     base
-        D85B and which base it is of; `None` without a unit.
+        D85B and which base it is of; `None` without a unit, and in records of earlier versions.
     runs
         Eroded mass fraction of each run.
     curve_range
@@ -2035,10 +2256,15 @@ class ComparedCase(_ComparedCase, total=False):
         is no range.
     """
 
+    practice: str
+    standing: Optional[Literal["fails", "no_margin", "unstable", "unknown", "met", "no_rules"]]
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
-    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
-    first_lines: List[List[object]]
+    headline: str
+    walk: str
+    next: str
+    by_authority: str
     found: List[str]
+    beside: List[str]
     base: Optional[BaseSize]
     curve_range: List[List[float]]
 
@@ -2105,7 +2331,7 @@ class Comparison(_Comparison, total=False):
     version
         Version of the program.
     commit
-        The commit that it was built from; `None` where that is not known.
+        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
     cases
         The cases, in the order in which they were named.
     pairs
@@ -2113,11 +2339,11 @@ class Comparison(_Comparison, total=False):
     threshold
         Eroded mass fraction that divides the classes: 0.075.
     cover
-        What the sheet says of itself.
+        What the sheet says of itself; without a day in files of earlier versions.
     inches
         Whether inches stand beside mm on page and terminal.
     model_leaves_out
-        What no case contains.
+        What no case contains; records of earlier versions do not say.
     """
 
     commit: Optional[str]
@@ -2352,6 +2578,25 @@ class BaseSizes(_BaseSizes, total=False):
     curves: List[str]
 
 
+class StatedByAuthority(TypedDict):
+    """The rules of one authority on two soils.
+
+    Keys
+    ----
+    authority
+        Its word: nrcs, usbr, usace or foster-fell.
+    rules
+        The `id` of every rule that it states, in the order of `rules`.
+    said
+        Its limit of D15F, and what is left out: stricter limits, rules that are not met, rules without a
+        result.
+    """
+
+    authority: str
+    rules: List[str]
+    said: str
+
+
 class _PairRules(TypedDict):
     format: Literal["voidwalk-rules/1"]
     voidwalk: str
@@ -2386,9 +2631,12 @@ class PairRules(_PairRules, total=False):
         The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     warnings
         What may be wrong with the two tables, and what was taken for what.
+    by_authority
+        What one authority states of them, where one is asked for; `rules` has all of them all the same.
     """
 
     if_dispersive: Optional[IfDispersive]
+    by_authority: Optional[StatedByAuthority]
 
 
 #: What was understood of a soil, and what follows from its curve.
