@@ -10,7 +10,7 @@
 //! let case = Case::new(scene)?;
 //! let outcome = walk_case(&case, &Callbacks::default())?;
 //! let first = &outcome.summary[0].eroded_mass_fraction;
-//! println!("{}: {:.1} % eroded in the first run", outcome.verdict.words(), 100.0 * first.mean);
+//! println!("{}: {:.1} % eroded in the first run", outcome.model.class.words(), 100.0 * first.mean);
 //! # assert!(first.mean > 0.0 && first.mean < 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -160,7 +160,7 @@ def use(person, core, sand, density, settings):
     person.until("document.querySelector('.job')")
     person.step("begun", "Judge")
     person.until("['done', 'failed', 'refused'].includes(document.querySelector('.job').dataset.state)", 1800)
-    person.step("verdict", "the verdict is there")
+    person.step("answer", "the answer is there")
     before = {target["targetId"] for target in person.browser.ask("Target.getTargets")["targetInfos"]}
     # A browser without a window has no dialog to show: that it is asked for is what is seen.
     person.run("""(() => { const real = window.open; window.open = (...how) => {

@@ -313,7 +313,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.printed("12-done")
     page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
     report = Tab(browser, page, pictures)
-    if not report.run("document.querySelector('.verdict .word')?.textContent"):
+    if not report.run("document.querySelector('.verdict .practice')?.textContent"):
         raise SystemExit("the page of the run is not there")
     report.picture("13-its-page")
 

@@ -18,7 +18,7 @@ Left out are
 - times and what is worked out from them (figures of merit): no two calls take the same;
 - names, sentences, warnings and all other text, that of rules too, and pages and figures: their wording may change, and their numbers
   are those that are compared;
-- rules of practice and what they say of a verdict: they read the sieve curves alone, grow in number, and have tests of their own;
+- rules of practice and what they say of a pair: they read the sieve curves alone, grow in number, and have tests of their own;
 - the settings that packing.json repeats: their names may change, and the grains show their values;
 - manifests, fingerprints and ledgers, which say who worked when.
 
@@ -208,8 +208,8 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 """
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
-DROPPED = {"seconds", "settings", "rules", "confidence", "reasons", "notes", "warnings", "findings", "short_of", "sentence", "practice"}
-LABELS = {"confidence", "reason", "rules_not_met", "warnings", "d85b_of"}  # columns of a campaign's table that are no result of a walk
+DROPPED = {"seconds", "settings", "rules", "notes", "warnings", "findings", "short_of", "sentence", "practice", "if_dispersive"}
+LABELS = {"rules_not_met", "warnings", "d85b_of"}  # columns of a campaign's table that are no result of a walk
 ROWS = 12
 
 
@@ -379,11 +379,17 @@ def results(folder, *names):
     for name in map(str, names):
         data = (folder / name).read_bytes()
         if name.endswith(".json"):
-            numbers = numbers_of(json.loads(data))
+            numbers = numbers_of(with_verdict(json.loads(data)))
             found[name] = {"sha256": digest(json.dumps(numbers, sort_keys=True).encode()), "numbers": shortened(numbers)}
         else:
             found[name] = digest(data)
     return found
+
+
+def with_verdict(record):
+    """The class of the model alone, by the name that replicates have for theirs: its other numbers are those of replicates and curve."""
+    model = record.pop("model", None)
+    return record if model is None else record | {"verdict": model["class"]}
 
 
 def numbers_of(value):

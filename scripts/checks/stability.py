@@ -451,8 +451,8 @@ by_tests("Machine", "checkpoint cut, flipped, newer, of another program or scene
 by_tests("Machine", "disk full at the start or in between; read-only disk", "clear error, last checkpoint intact, no SIGBUS; refused",
          ("commands", "full_disk::a_run_on_a_full_disk_ends_with_an_error_and_goes_on_when_there_is_room"),
          ("commands", "full_disk::a_folder_on_a_disk_that_is_read_only_is_refused"))
-by_tests("Machine", "checkpoint of this version, and of an older one", "continued to the same answer; refused with a sentence that says so",
-         ("files", "golden::saved_walks_are_continued_to_the_same_answer"), ("files", "golden::checkpoints_of_earlier_versions_are_refused_by_name"))
+by_tests("Machine", "checkpoint of this version, and of another one", "continued to the same answer; refused with a sentence that says so",
+         ("files", "golden::saved_walks_are_continued_to_the_same_answer"), ("files", "golden::checkpoints_of_another_version_of_the_format_are_refused_by_name"))
 by_tests("Machine", "symlinked folder, hostile names", "refused; inert", ("commands", "hostile_names::no_link_leads_out_of_a_folder"),
          ("commands", "hostile_names::an_error_of_any_reader_says_the_name_and_leaves_the_terminal_alone"))
 

@@ -4,9 +4,8 @@
     scripts/checks/trial.py --binary target/release/voidwalk [--out target/trial-DATE.md] [--pack] [--small]
 
 Writes the sieve sheets, walks every pair with a constriction curve that is guessed from the gradation (`filter.estimate`; with `--pack`
-each filter is packed by `filter.density` instead, which takes minutes to hours), and prints for each: the verdict, its confidence, the
-colour of the headline on the page, the rules of practice that apply and are not met, and the processor time. Where the base's finest part
-was walked with both readings, their verdicts stand beside the common one.
+each filter is packed by `filter.density` instead, which takes minutes to hours), and prints for each: the model's class, the headline of
+practice, its colour on the page, the rules of practice that apply and are not met, and the processor time.
 
 Exit code 1 where a page is green although a rule of practice that applies is not met, or where a run fails; a pair that is refused is
 listed with the reason. `--small` walks a few pairs on small networks, as the tests do. Python 3's standard library only.
@@ -39,7 +38,7 @@ BASES = {
 SMALL = [(0, 0), (0, 3), (1, 0), (2, 3)]
 
 # The colour of a headline, by the class of its box (src/report/page.css).
-COLOURS = {"none": "green", "doubted": "amber", "some": "orange", "continuing": "red", "undecided": "grey"}
+COLOURS = {"none": "green", "doubted": "amber", "some": "orange", "continuing": "red", "neutral": "grey"}
 
 
 def slug(name):
@@ -77,11 +76,8 @@ def trial(folder, filter_name, base_name, options):
     wrong = [f"{name}: no headline"] if not box else []
     if colour == "green" and failed:
         wrong.append(f"{name}: green, although {', '.join(failed)} is not met")
-    verdict = outcome["verdict"]
-    if outcome.get("pan_bounds"):
-        verdict += f" ({' / '.join(reading['verdict'] for reading in outcome['pan_bounds']['readings'])})"
     runs = [f"{100 * run['eroded_mass_fraction']['mean']:.2f}" for run in outcome["summary"]]
-    row = [filter_name, base_name, verdict, ", ".join(runs), f"{outcome['confidence']}; {colour}", ", ".join(failed), f"{seconds:.1f}"]
+    row = [filter_name, base_name, outcome["model"]["class"], ", ".join(runs), f"{outcome['headline']}; {colour}", ", ".join(failed), f"{seconds:.1f}"]
     return row, wrong
 
 
@@ -101,10 +97,9 @@ def main():
         "",
         f"    scripts/checks/trial.py --binary {pathlib.Path('target/release/voidwalk')}{' --pack' * options.pack}{' --small' * options.small}",
         "",
-        "Base eroded: mean percent of the base's mass in the first run and in the second. Verdicts in brackets: with the base's finest part",
-        "finer than every constriction, and with all of it of the finest sieve's size. Time: processor time of one thread.",
+        "Base eroded: mean percent of the base's mass in the first run and in the second. Time: processor time of one thread.",
         "",
-        "| filter | base | verdict | base eroded (%) | confidence; headline | rules that apply and are not met | s |",
+        "| filter | base | model | base eroded (%) | headline; colour | rules that apply and are not met | s |",
         "|---|---|---|---|---|---|---|",
     ]
     print("\n".join(out), flush=True)

@@ -327,7 +327,7 @@ def walk(trial):
         green = box == "none"
         labels = "as sampled" in page or regraded(base) is base
         good = says and not (green and broken) and labels
-        trial.row(name + ", judge", f"{outcome['verdict']}, {outcome['confidence']}, box {box}, {seconds:.0f} s; practice in the first lines: {says}", good)
+        trial.row(name + ", judge", f"{outcome['headline']}; model {outcome['model']['class']}, box {box}, {seconds:.0f} s; practice in the first lines: {says}", good)
     for name, base, words in (("till, C33's shape", TILL, ["--filter", "filter-a2.csv"]), ("silty sand", SILTY_SAND, ["--filter", "cu1.5-loose"])):
         (trial.folder / "design-base.csv").write_bytes(csv([["Opening (mm)", "% passing"], *map(list, base)]))
         (trial.folder / "filter-a2.csv").write_bytes(csv([["Opening (mm)", "% passing"], *map(list, C33_MID)]))

@@ -1,4 +1,4 @@
-"""The built-in scene, smaller: a verdict, its uncertainty, and how the base leaves the filter.
+"""The built-in scene, smaller: the model's class, its uncertainty, and how the base leaves the filter.
 
     python scripts/examples/first_verdict.py [FIGURE.png]
 """
@@ -28,7 +28,7 @@ for replicate in range(1, len(result.replicates) + 1):
         rows = (series["replicate"] == replicate) & (series["run"] == number)
         axes.plot(series["increment"][rows], 100 * series["eroded_mass_fraction"][rows], color=colour, lw=0.8,
                   label=f"run {number}" if replicate == 1 else None)
-axes.set(xlabel="increment", ylabel="base eroded (% of its mass)", title=f"Verdict: {result.verdict}")
+axes.set(xlabel="increment", ylabel="base eroded (% of its mass)", title=f"Model: {result.model['class']}")
 axes.legend()
 path = sys.argv[1] if len(sys.argv) > 1 else "first_verdict.png"
 figure.savefig(path, dpi=150)

@@ -47,7 +47,7 @@ for name, soil in {"filter": filter, "base": base}.items():
 first = (result.eroded["replicate"] == 1) & (result.eroded["run"] == 1)
 end = first & (result.eroded["increment"] == result.eroded["increment"][first].max())
 axes.plot(result.eroded["diameter_mm"][end], result.eroded["percent_finer_by_mass"][end], label="eroded, run 1")
-axes.set(xscale="log", xlabel="size (mm)", ylabel="finer by mass (%)", title=f"Verdict: {result.verdict}")
+axes.set(xscale="log", xlabel="size (mm)", ylabel="finer by mass (%)", title=f"Practice: {result.headline}")
 axes.legend()
 path = sys.argv[1] if len(sys.argv) > 1 else "sieve_curves.png"
 figure.savefig(path, dpi=150)

@@ -20,11 +20,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     ])?;
     let case = Case::new(scene)?;
     let outcome = walk_case(&case, &Callbacks::default())?;
-    println!("{}", outcome.verdict.words());
+    if let Some(headline) = outcome.headline {
+        println!("Practice: {}", headline.words());
+    }
+    println!("Model (research): {}", outcome.model.class.words());
     for run in &outcome.summary {
         println!("run {}: {:.2} % of the mass eroded", run.run, 100.0 * run.eroded_mass_fraction.mean);
     }
-    println!("confidence: {}", outcome.confidence.words());
     outcome.findings.iter().for_each(|finding| println!("- {}", finding.sentence));
     Ok(())
 }

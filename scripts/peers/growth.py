@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-SMALL = ["record.sensitivity=[]", "record.margin=false", "replicates=1", "runs=1"]
+SMALL = ["record.sensitivity=[]", "replicates=1", "runs=1"]
 
 
 def run(settings):
@@ -36,7 +36,7 @@ def cases(number):
     def command(binary, out):
         plan = Path(out).parent / f"plan-{number}.toml"
         plan.write_text(
-            'title = "small cases"\n[set]\nreplicates = 1\nruns = 1\nrecord = { sensitivity = [], margin = false }\n'
+            'title = "small cases"\n[set]\nreplicates = 1\nruns = 1\nrecord = { sensitivity = [] }\n'
             "network = { nx = 8, ny = 8, nz = 10 }\nbase.n_base = 2000\n"
             f'[[factor]]\nname = "seed"\nsetting = "seed"\nvalues = {list(range(1, number + 1))}\n')
         return [binary, "campaign", str(plan), "--quiet", "--threads", "1", "--out", out]

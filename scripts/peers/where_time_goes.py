@@ -13,7 +13,7 @@ instruction set that the machine has (or with VOIDWALK_ISA alone); and how many 
 wait is processor time. With --before the other program in turns with this one.
 parts: of `judge`, one thread, processor time (user and system) of whole processes, median of the turns, in which the calls follow one
 another: start-up is `--version`; the sheets are `rules` less that; the page is `report` of the finished folder less start-up; the studies
-and the margin are what the call takes less when they are left out. A difference that is less than the scatter of the whole call (from its
+are what the call takes less when they are left out. A difference that is less than the scatter of the whole call (from its
 least to its most turn) is told as less than that. What the curve's range takes is not told apart from the replicates.
 kinds: samples of `perf` (no counters needed) by the module that the function is in, one thread; the number of samples stands in the
 heading, and a share below three of them is told as less than that. Without perf that table is left out.
@@ -85,7 +85,6 @@ def parts(binary, pair, out, turns, quick, first):
         "report": [binary, "report", out],
         "start": [binary, "--version"],
         "rules": [binary, "rules", *pair],
-        "no margin": judge("--set", "record.margin=false"),
         "no studies": judge("--set", "record.sensitivity=[]"),
     }
     if quick:
@@ -95,14 +94,13 @@ def parts(binary, pair, out, turns, quick, first):
         for name, words in calls.items():
             found[name].append(spent(words))
     took = {name: median(seconds) for name, seconds in found.items()}
-    margin = took["all"] - took["no margin"]
     studies = took["all"] - took["no studies"] if "no studies" in took else 0.0
     sheets, page = took["rules"] - took["start"], took["report"] - took["start"]
-    walks = took["all"] - took["start"] - sheets - page - max(0, margin) - max(0, studies)
+    walks = took["all"] - took["start"] - sheets - page - max(0, studies)
     return took["all"], max(found["all"]) - min(found["all"]), {
         "start-up": (took["start"], False), "sheets and rules": (sheets, False),
         "networks, replicates and ends of the curve": (walks, False),
-        "margin": (margin, True), "studies": (studies, not quick), "page": (page, False),
+        "studies": (studies, not quick), "page": (page, False),
     }
 
 

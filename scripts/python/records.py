@@ -100,14 +100,12 @@ class Types:
             return self.of(schema, defs)
         required = set(schema.get("required", []))
         groups: Tuple[List[str], List[str]] = ([], [])
-        # A class cannot have a field that is called as a word of the language is.
-        if any(keyword.iskeyword(field) for field in schema["properties"]):
-            if required != set(schema["properties"]):
-                sys.exit(f"{name} has a field that may be missing, and another that is a word of Python")
-            fields = [f'        "{field}": {self.of(of, defs)},\n' for field, of in schema["properties"].items()]
+        # A class cannot have a field that is called as a word of the language is: a call can.
+        if any(keyword.iskeyword(field) and field not in required for field in schema["properties"]):
+            sys.exit(f"{name} has a field that may be missing, and is a word of Python")
+        if any(keyword.iskeyword(field) for field in required) and required == set(schema["properties"]):
             about = comment(schema.get("description", "")).replace("    #:", "#:")
-            text = f'{about}{name} = TypedDict(\n    "{name}",\n    {{\n{"".join(fields)}    }},\n)\n'
-            self.texts.setdefault(name, text)
+            self.texts.setdefault(name, about + self.spelled(name, schema, defs))
             return name
         about = []
         for field, of in schema["properties"].items():
@@ -117,6 +115,8 @@ class Types:
         text = ""
         if groups[1] and groups[0]:
             text = f"class _{name}(TypedDict):\n{''.join(groups[0])}\n\n"
+            if any(keyword.iskeyword(field) for field in required):
+                text = f"{self.spelled(f'_{name}', schema, defs)}\n\n"
             text += f"class {name}(_{name}, total=False):\n{doc}\n{''.join(groups[1])}"
         else:
             total = ", total=False" if groups[1] else ""
@@ -124,6 +124,13 @@ class Types:
         if self.texts.setdefault(name, text) != text:
             sys.exit(f"{name} is two types")
         return name
+
+    def spelled(self, name: str, schema: Any, defs: Dict[str, Any]) -> str:
+        """The type of the fields that are always there, as a call."""
+        required = set(schema.get("required", []))
+        kinds = {field: self.of(of, defs) for field, of in schema["properties"].items() if field in required}
+        fields = "".join(f'        "{field}": {kind},\n' for field, kind in kinds.items())
+        return f'{name} = TypedDict(\n    "{name}",\n    {{\n{fields}    }},\n)\n'
 
 
 def sentence(said: str) -> str:

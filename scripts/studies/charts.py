@@ -179,7 +179,6 @@ def collect(args):
                     **{of: boundary[of] and round(boundary[of], 4) for of in ("median", "low", "high")},
                     "not_monotone": found["not_monotone"],
                     "networks": len(found["networks"]),
-                    "confidence": design["confidence"],
                     "constrictions": SHIPPED.get((cu_f, density), "packed"),
                     "settings": " ".join(said.removeprefix("--set ") for said in design["settings"] if said.startswith("--set ")),
                     "processor_s": round(seconds.get(folder.name, 0.0), 1),
@@ -282,11 +281,7 @@ def told(rows):
     lines = [f"Lines: the lower end of the band (5 %) of {rows[0]['networks']} networks of {first['network.nx']} x {first['network.ny']} voids across, {layers}; "
              "bars: up to 95 %."]
     of_base = f"D85 of the base is {float(first['base.d85_mm']):g} mm. " if rows[0]["thickness"].endswith("mm") else ""
-    cases = {(row["cu_f"], row["cu_b"]): row["confidence"] for row in rows}
-    doubted = [case for case, confidence in cases.items() if confidence != "within checked range"]
-    contradicted = sum(confidence == "contradicted by practice" for confidence in cases.values())
-    lines.append(f"{of_base}By the model alone: no flow, no cohesion. Outside of what was checked: {len(doubted)} of {len(cases)} pairs; "
-                 f"contradicted by practice: {contradicted}. Practice goes first.")
+    lines.append(f"{of_base}By the model alone: no flow, no cohesion. Practice goes first.")
     if any(SHIPPED.get((row["cu_f"], row["density"]), "").startswith("cu6-friction") for row in rows):
         lines.append("The Cu 6 filter is the loosest that was packed: friction 0.7 between its grains.")
     return lines

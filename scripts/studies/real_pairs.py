@@ -29,10 +29,10 @@ FILTERS = {
     "2-4 mm gravel": [(2, 0), (4, 100)],
     "4.75-37.5 mm gravel": [(4.75, 0), (37.5, 100)],
 }
-WITHIN = "within checked range"
+MEETS = "meets practice"
 COLUMNS = [
-    "soil", "filter", "fines_percent", "verdict", "confidence", "origin", "eroded_percent", "design_met",
-    "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "group", "probability", "seconds", "error",
+    "soil", "filter", "fines_percent", "model", "headline", "origin", "eroded_percent", "design_met",
+    "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "seconds", "error",
     "continuing_limit_mm", "dispersion",
 ]
 # Distances from Foster and Fell's boundary of no erosion, as a factor of D15F, in which agreement is counted.
@@ -69,21 +69,18 @@ def judge(binary, soil, name, extra):
     out = json.loads(done.stdout)
     rules = {rule["id"]: rule for rule in out["rules"]}
     tests, design = rules.get("foster-fell-no-erosion", {}), rules.get("sherard-dunnigan", {})
-    findings = out.get("findings", [])
-    against = [finding["id"] for finding in findings if finding["against"]]
+    findings = out["findings"]
     of_dispersion = [finding["id"] for finding in findings if finding["id"].startswith("dispers")]
     return row | {
-        "verdict": out["verdict"],
-        "confidence": out["confidence"],
+        "model": out["model"]["class"],
+        "headline": out.get("headline", ""),
         "origin": out.get("constrictions", {}).get("origin", ""),
-        "eroded_percent": out["eroded_percent"]["mean"] if isinstance(out.get("eroded_percent"), dict) else "",
+        "eroded_percent": 100 * out["summary"][0]["eroded_mass_fraction"]["mean"],
         "design_met": design.get("met"),
         "no_erosion_limit_mm": tests.get("limit"),
         "no_erosion_met": tests.get("met"),
         "d15f_mm": tests.get("value"),
-        "first_finding": against[0] if against else "",
-        "group": (out.get("evidence") or {}).get("group", ""),
-        "probability": (out.get("evidence") or {}).get("probability_no_erosion", ""),
+        "first_finding": findings[0]["id"] if findings else "",
         "continuing_limit_mm": rules.get("foster-fell-continuing", {}).get("limit"),
         "dispersion": of_dispersion[0] if of_dispersion else "",
     }
@@ -92,8 +89,8 @@ def judge(binary, soil, name, extra):
 def by_distance(known):
     """How often walk and Foster and Fell's boundary of no erosion agree, by the distance of D15F from it."""
     far = [(abs(math.log(float(row["d15f_mm"]) / float(row["no_erosion_limit_mm"]))), row) for row in known]
-    is_alike = lambda row: (row["verdict"] == "no erosion") == (row["no_erosion_met"] == "True")
-    is_unsafe = lambda row: row["verdict"] == "no erosion" and row["no_erosion_met"] == "False"
+    is_alike = lambda row: (row["model"] == "no erosion") == (row["no_erosion_met"] == "True")
+    is_unsafe = lambda row: row["model"] == "no erosion" and row["no_erosion_met"] == "False"
 
     def line(what, rows):
         alike = sum(map(is_alike, rows))
@@ -106,13 +103,12 @@ def by_distance(known):
 
 def summary(rows):
     """The table of a CSV, in Markdown."""
-    done = [row for row in rows if row["verdict"]]
-    decided = [row for row in done if row["verdict"] != "undecided"]
-    green = [row for row in done if row["verdict"] == "no erosion" and row["confidence"] == WITHIN]
-    holds = [row for row in decided if row["verdict"] == "no erosion"]
+    done = [row for row in rows if row["model"]]
+    decided = [row for row in done if row["model"] != "undecided"]
+    green = [row for row in done if row["headline"] == MEETS]
+    holds = [row for row in decided if row["model"] == "no erosion"]
     unsafe = [row for row in holds if row["no_erosion_met"] == "False"]
     seconds = sorted(float(row["seconds"]) for row in done)
-    within = [row for row in done if row["confidence"] == WITHIN]
     soils = lambda of: len({row["soil"] for row in of})
     percent = lambda part, of: f"{100 * part / max(1, of):.0f} %"
     lines = [
@@ -121,37 +117,31 @@ def summary(rows):
         ("decided", f"{len(decided)} ({percent(len(decided), len(done))} of those walked, "
          f"{percent(len(decided), len(rows))} of all)"),
         ("no / some / continuing erosion", " / ".join(
-            str(sum(row["verdict"] == f"{name} erosion" for row in decided)) for name in ["no", "some", "continuing"])),
-        ("within the checked range (soils)", f"{len(within)} ({soils(within)})"),
-        ("of these no / some / continuing", " / ".join(
-            str(sum(row["verdict"] == f"{name} erosion" for row in within)) for name in ["no", "some", "continuing"])),
-        ("green (no erosion, within) (soils)", f"{len(green)} ({soils(green)})"),
+            str(sum(row["model"] == f"{name} erosion" for row in decided)) for name in ["no", "some", "continuing"])),
+        ("green (meets practice) (soils)", f"{len(green)} ({soils(green)})"),
         ("pairs that meet the limit of design, of these green",
          f"{sum(row['design_met'] == 'True' for row in done)}, {sum(row['design_met'] == 'True' for row in green)}"),
         ("green beyond Foster and Fell's boundary of no erosion", sum(row["no_erosion_met"] == "False" for row in green)),
-        ("no erosion beyond that boundary, said to be against practice", len(unsafe)),
+        ("no erosion in the model beyond that boundary", len(unsafe)),
         ("seconds: median, most", f"{median(seconds):.1f}, {seconds[-1]:.1f}" if seconds else "-"),
     ]
     print("\n".join(f"| {what} | {value} |" for what, value in lines))
     known = [row for row in decided if row["no_erosion_met"] in ("True", "False")]
-    alike = sum((row["verdict"] == "no erosion") == (row["no_erosion_met"] == "True") for row in known)
+    alike = sum((row["model"] == "no erosion") == (row["no_erosion_met"] == "True") for row in known)
     print(f"| same side of Foster and Fell's boundary of no erosion | {alike} of {len(known)} |")
     for line in by_distance(known):
         print(line)
-    print("within the checked range, by group:", dict(Counter(row["group"] for row in within)))
     for name in FILTERS:
         here = [row for row in done if row["filter"] == name]
-        none = [row for row in here if row["verdict"] == "no erosion"]
-        first = Counter(row["first_finding"] for row in none if row["confidence"] != WITHIN)
-        print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in none)} green;",
+        none = [row for row in here if row["model"] == "no erosion"]
+        first = Counter(row["first_finding"] for row in here if row["headline"] != MEETS)
+        print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in here)} green;",
               "first finding of the others:", first.most_common(4))
-    outside = [row for row in done if row["confidence"] == "outside checked range"]
-    print(f"outside: {len(outside)}, first finding:", Counter(row["first_finding"] for row in outside).most_common(5))
-    print("dispersion:", Counter((row["verdict"], row.get("dispersion", "")) for row in holds).most_common())
+    print("dispersion:", Counter((row["model"], row.get("dispersion", "")) for row in holds).most_common())
     print("origins:", dict(Counter(row["origin"] for row in done)))
-    undecided = Counter(row["first_finding"] for row in done if row["verdict"] == "undecided")
+    undecided = Counter(row["first_finding"] for row in done if row["model"] == "undecided")
     print("undecided by:", undecided.most_common(8))
-    print("confidence:", Counter(row["confidence"] for row in done).most_common())
+    print("practice:", Counter(row["headline"] for row in done).most_common())
 
 
 def refuse_other_columns(path):

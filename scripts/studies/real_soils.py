@@ -318,7 +318,7 @@ def walk_all(vw, options, soils, done):
                         other, other_beyond, more = boundary(lambda d: eroded(d, "coarse"), at, *side)
                         row["d15f_coarse_mm"], row["beyond_coarse"] = other, other_beyond
                         row["walks_coarse"] = more
-                        # As the program did by then: the reading that erodes more counts (now the likely one does).
+                        # As the program did by then: the reading that erodes more counts.
                         rank = {"below": 0.0, "unwalked": 0.0, "above": math.inf}
                         value = lambda d, b: d if d else rank[b]
                         if value(other, other_beyond) < value(d15f, beyond):

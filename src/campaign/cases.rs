@@ -13,6 +13,7 @@ use crate::run::checkpoints::Checkpoints;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::shown;
 use crate::run::prepare::Draft;
+use crate::store::format::from_json;
 use crate::store::{Folder, StoreError, read_regular, read_whole};
 
 /// A finished case.
@@ -210,7 +211,7 @@ impl<'a> PreparedCase<'a> {
             }
             Err(source) => return Err(StoreError::Io { path, action: "read", source }),
         };
-        let line: Option<LedgerLine> = serde_json::from_slice(&bytes).ok();
+        let line: Option<LedgerLine> = from_json(&bytes).ok();
         Ok(line.filter(|line| line.fingerprint == self.fingerprint && line.case == self.planned.name))
     }
 }

@@ -7,6 +7,7 @@ use super::cases::{CASES, LINE, PreparedCase};
 use super::plan::CampaignPlan;
 use crate::outcome::ledger::LedgerLine;
 use crate::run::folder::shown;
+use crate::store::format::from_json;
 use crate::store::{files_in, read_whole};
 
 /// A sentence names no more cases than this.
@@ -26,7 +27,7 @@ pub(super) fn sentences(plan: &CampaignPlan, cases: &[PreparedCase], out: &Path)
     let dropped: Vec<String> = folders
         .iter()
         .filter(|folder| folder.file_name().is_some_and(|name| !of_plan.contains(&*name.to_string_lossy())))
-        .filter_map(|folder| serde_json::from_slice::<LedgerLine>(&read_whole(&folder.join(LINE)).ok()?).ok())
+        .filter_map(|folder| from_json::<LedgerLine>(&read_whole(&folder.join(LINE)).ok()?).ok())
         .map(|line| line.case)
         .collect();
     let dropped: Vec<&str> = dropped.iter().map(String::as_str).collect();

@@ -111,11 +111,10 @@ pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Plan
         match looked {
             Err(problem) => (CaseCheck { problem: problem.to_string(), ..none }, None),
             Ok((case, packing)) => {
-                let bytes = case.readings().map(|of| of.bytes(of.n_base, workers) + of.kept_bytes()).max();
                 let check = CaseCheck {
                     n_base: case.n_base,
                     runs_to_walk: runs_to_walk(&case),
-                    bytes: bytes.unwrap_or(0),
+                    bytes: case.bytes(case.n_base, workers) + case.kept_bytes(),
                     core_seconds: case.core_seconds_here(),
                     ..none
                 };

@@ -257,7 +257,7 @@ impl CaseRunner<'_> {
         let (callbacks, networks) = (&counting, self.networks.as_ref());
         let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
         let walked = OtherWalks::with_case(case, &context).and_then(|(walked, other)| {
-            let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).verdict;
+            let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).model.class;
             Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
         });
         for problem in checkpoints.passed_over() {

@@ -25,17 +25,10 @@ const LOOKED_AT: u64 = 50_000_000;
 impl Case {
     /// What is known of its verdict before the walk, in sentences: what `check` says.
     pub fn warnings(&self) -> Vec<String> {
-        let mut all: Vec<Finding> = self.to_be_walked().into_iter().chain(self.findings()).collect();
+        let mut all = self.findings();
         // Whether these are the right tables at all comes first.
         all.sort_by_key(|finding| (finding.id() != "doubtful_tables", rank(finding)));
         all.iter().map(Finding::with_to_do).collect()
-    }
-
-    /// What is not known before the walk, and what the walk itself will say.
-    pub fn to_be_walked(&self) -> Option<Finding> {
-        self.pan_size?;
-        let (base, finest) = (&self.base, self.finest_mm);
-        Some(finding::pan_readings_walked(100.0 * base.pan_fraction(), base.smallest_mm(), finest))
     }
 
     /// What is known of its verdict before the walk, but for what the walk itself will say.
@@ -77,8 +70,7 @@ impl Case {
         PlannedWalk {
             base: &self.base,
             regraded_from: self.regraded_from.as_ref().map(|(given, _)| given),
-            base_cu: self.cu_of_base(),
-            pan_is_passive: self.pan_size.is_none(),
+            finest_constriction_mm: self.finest_mm,
             filter: Some(&self.filter),
             filter_is_measured: self.filter_is_measured(),
             scale_free: self.is_scale_free(),
@@ -93,15 +85,6 @@ impl Case {
                 false => replicates,
             },
         }
-    }
-
-    /// Cu of the base between its bounds where D10 lies in an open tail.
-    fn cu_of_base(&self) -> Option<[f64; 2]> {
-        if let Some(cu) = self.base.cu() {
-            return Some([cu, cu]);
-        }
-        let [fine, coarse] = self.tail_as()?.map(|reading| reading.cu());
-        Some([coarse?, fine?])
     }
 
     /// A shipped constriction curve of another filter.
@@ -128,16 +111,6 @@ impl Case {
         let grains = needs_grains_per_void(&self.scene, self.guessed_density);
         let grains = grains.then(|| finding::guessed_grains(GUESSED_GRAINS_PER_VOID));
         like_none.into_iter().chain([finding::guessed_constrictions()]).chain(grains).collect()
-    }
-
-    /// That neither study was asked for: worth a word beside a verdict, and no warning before it.
-    pub fn not_studied(&self) -> Option<Finding> {
-        let record = &self.scene.record;
-        // Without a list of its own the study of the thickness goes with the other.
-        let studied = |list: &[f64]| list.iter().any(|factor| *factor != 1.0);
-        let is_studied =
-            studied(&record.sensitivity) || studied(record.thickness.as_deref().unwrap_or_default());
-        (!is_studied).then(finding::not_studied)
     }
 
     /// That less base is offered than the paper's Eq. (2) and mass ratio ask for.
@@ -209,7 +182,7 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::{Topic, Verdict};
+    use crate::outcome::record::Topic;
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -249,7 +222,7 @@ mod tests {
             ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
         let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
         let found = Case::new(Scene::built_in(&all).unwrap()).unwrap().findings();
-        found.iter().filter(|of| of.is_against(Verdict::None)).map(Finding::sentence).collect()
+        found.iter().map(Finding::sentence).collect()
     }
 
     #[track_caller]

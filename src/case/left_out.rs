@@ -20,21 +20,13 @@ impl Case {
         if self.scene.walk.runs == 1 {
             left_out.push(LeftOut::SecondRun);
         }
-        if self.scene.record.sensitivity.is_empty() {
-            left_out.push(LeftOut::Amounts);
-        }
         left_out.extend(self.sensitivity_not_walked());
         for factor in self.thickness_factors() {
             if let Err(error) = self.of_thickness(factor) {
                 left_out.push(LeftOut::ThicknessRefused(factor, error.to_string()));
             }
         }
-        let not_walked = self.thickness_not_walked();
-        let is_of_lattice = self.copies.is_none() && self.fixed_network.is_none();
-        if not_walked.is_empty() && self.thickness_factors().is_empty() && is_of_lattice {
-            left_out.push(LeftOut::Thicknesses);
-        }
-        left_out.extend(not_walked);
+        left_out.extend(self.thickness_not_walked());
         left_out
     }
 }

@@ -198,8 +198,8 @@ impl Case {
             let walks = case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads));
             walks.saturating_add(case.kept_bytes())
         };
-        // One reading is walked after the other, and then the thickest filter.
-        self.readings().map(of).chain(self.thickest().as_ref().map(of)).max().unwrap_or(0)
+        // The thickest filter is walked after the others.
+        of(self).max(self.thickest().as_ref().map_or(0, of))
     }
 
     /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
@@ -207,11 +207,6 @@ impl Case {
     pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
         let all = self.bytes(n_base, threads).saturating_mul(threads);
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
-    }
-
-    /// Whether walks side by side leave room for so many bytes more.
-    pub fn has_room_beside(&self, bytes: u64) -> bool {
-        SIDE_BY_SIDE_BYTES.saturating_add(bytes) <= self.memory
     }
 
     /// Whether there is room for the particles of the scene itself, in memory or on the disk.
@@ -227,9 +222,6 @@ impl Case {
     /// # Errors
     /// [`CaseError::Memory`]: they fit neither.
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
-        for other in &mut self.other_readings {
-            other.place(room, threads, folder)?;
-        }
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
         // Where the scene itself has none, no study is to blame.
@@ -291,12 +283,6 @@ impl Case {
 
     /// Where the particles of a walk on this many threads live, for a reader.
     pub fn memory_in_words(&self, threads: u64) -> String {
-        let largest = self.other_readings.iter().max_by_key(|other| other.bytes(other.n_base, threads));
-        if let Some(other) =
-            largest.filter(|of| of.bytes(of.n_base, threads) > self.bytes(self.n_base, threads))
-        {
-            return other.memory_in_words(threads);
-        }
         let bytes = in_words(self.bytes(self.n_base, threads));
         let limit = in_words(self.memory);
         let kept = match self.kept_bytes() {

@@ -15,7 +15,6 @@ mod packed_filter;
 mod packing_plan;
 mod pan;
 mod places;
-mod readings;
 mod recipe;
 mod record;
 mod regrade;
@@ -46,7 +45,7 @@ use void_graph::GraphPacking;
 use crate::constrictions::{Curve, CurveUnit, ShippedFilter, inscribed};
 use crate::gradation::{Gradation, SizeSampler};
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError, WIDE};
-use crate::outcome::record::{PanSize, Ratios};
+use crate::outcome::record::Ratios;
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
 };
@@ -54,6 +53,7 @@ use crate::store::Placement;
 use crate::stream::{Key, Purpose};
 use crate::verdict::{Mistake, MistakeKind};
 use rand::Rng;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
@@ -96,11 +96,8 @@ pub struct Case {
     pub base: Gradation,
     /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
     pub regraded_from: Option<(Gradation, f64)>,
-    /// Of what size its pan fraction is walked; `None` where there is none, or where it is passive and
-    /// counted by mass only.
-    pub pan_size: Option<PanSize>,
-    /// The other readings of the base's pan fraction, where it need not be passive.
-    pub other_readings: Vec<Case>,
+    /// Its pan fraction is walked as particles just finer than every constriction, not counted by mass only.
+    pub pan_is_walked: bool,
     /// Draws the base's sizes, in units of `unit_mm`.
     pub sampler: SizeSampler,
     /// Base particles of a run, by Eq. (2) or as given.
@@ -299,7 +296,7 @@ impl Case {
             voids: counts[0],
             is_packed: packed.as_ref().is_some_and(|packed| packed.files.is_some()),
         };
-        let (walked, other) = against.readings(&base).map_err(|error| match mistake {
+        let walked = against.walked(&base).map_err(|error| match mistake {
             Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
             None => error,
         })?;
@@ -312,7 +309,7 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
-        let mut case = Self {
+        let case = Self {
             packed,
             filter,
             curve,
@@ -323,8 +320,7 @@ impl Case {
             shipped,
             base,
             regraded_from,
-            pan_size: walked.pan_size,
-            other_readings: Vec::new(),
+            pan_is_walked: walked.pan_is_walked,
             n_base_eq2: walked.n_base_eq2(),
             sampler: walked.sampler,
             n_base: walked.n_base.n_base,
@@ -343,9 +339,28 @@ impl Case {
             placement: Placement::Memory,
             scene,
         };
-        case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
         case.check_clogging()?;
         Ok(case)
+    }
+
+    /// The base as it was given, before any regrading.
+    pub fn base_as_given(&self) -> &Gradation {
+        self.regraded_from.as_ref().map_or(&self.base, |(given, _)| given)
+    }
+
+    /// Share of the base's mass that is passive and counted by mass only.
+    pub fn pan_by_mass_only(&self) -> f64 {
+        if self.pan_is_walked { 0.0 } else { self.base.pan_fraction() }
+    }
+
+    /// The base with all particles that are walked.
+    pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
+        match self.pan_is_walked {
+            true => {
+                Cow::Owned(pan::as_passive(&self.base, self.finest_mm, &self.scene).expect("it was sampled"))
+            }
+            false => Cow::Borrowed(&self.base),
+        }
     }
 
     /// The network of the replicate with this seed.

@@ -7,21 +7,13 @@ use super::{Case, needs_grains_per_void};
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
-const PROTOCOL: u32 = 2;
+const PROTOCOL: u32 = 1;
 
 /// The same of cases in which water flows.
-const WATER_PROTOCOL: u32 = 6;
-
-/// What is added where several curves or readings are walked: their walks have other names, and the verdict
-/// follows from them in another way than before.
-const RANGE_PROTOCOL: u32 = 500;
+const WATER_PROTOCOL: u32 = 1;
 
 /// What is added where particles arch: raised whenever the program gives other results for these alone.
 const ARCHING_PROTOCOL: u32 = 10_000;
-
-/// What is added where evidence of real soils is asked for: raised whenever that evidence gives another label
-/// or other numbers for the same walk.
-const EVIDENCE_PROTOCOL: u32 = 100_000;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
@@ -62,14 +54,8 @@ impl Case {
         // Nothing follows from what is only said of it.
         let scene = Scene { about: About::default(), ..self.resolved() };
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
-        if !self.curve_ends.is_empty() || !self.other_readings.is_empty() {
-            protocol += RANGE_PROTOCOL;
-        }
         if scene.law().is_some() {
             protocol += ARCHING_PROTOCOL;
-        }
-        if scene.record.margin == Some(true) {
-            protocol += EVIDENCE_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.library.is_some() {
@@ -103,10 +89,5 @@ mod tests {
         assert_eq!(said.fingerprint(), case(&[]).fingerprint());
         assert_ne!(said.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
         assert_eq!(said.resolved().about.client.as_deref(), Some("Water Board"));
-        // What asks for evidence is walked again where that says something else.
-        let asks = case(&["record.margin=true"]);
-        let curve = asks.shipped.map_or("", |shipped| shipped.curve_csv);
-        let text = format!("{}\n{}{curve}", PROTOCOL + EVIDENCE_PROTOCOL, asks.resolved().to_toml());
-        assert_eq!(asks.fingerprint(), format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes())));
     }
 }

@@ -7,11 +7,10 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseError, base_gradation, pan, regrade, sizes};
+use super::{Case, CaseError, base_gradation, regrade, sizes};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::Network;
-use crate::outcome::record::PanSize;
 use crate::scene::{NetworkSource, Scene};
 
 /// A base as a scene states it, with its sizes as they are.
@@ -67,31 +66,21 @@ impl Case {
             voids: case.counts[0],
             is_packed: false,
         };
-        let (walked, other) = against.readings(&base)?;
-        let mut case = Self { base, regraded_from: None, other_readings: Vec::new(), ..case }.read_as(walked);
-        case.other_readings = other.into_iter().map(|walked| case.read_as(walked)).collect();
-        Ok(case)
-    }
-
-    /// This case with its filter `factor` times as large against its own base, with the likely reading of its
-    /// finest part where it has several, on a lattice at most `across` voids wide. Nothing else of it is
-    /// walked.
-    ///
-    /// # Errors
-    /// As [`Case::with_base`].
-    pub fn with_larger_filter(&self, factor: f64, across: u64) -> Result<Self, CaseError> {
-        // Of the real size first: how a tail goes on hangs on it.
-        let finest_mm = factor * self.finest_mm;
-        let base = match pan::may_block(&self.base, finest_mm) {
-            true => &pan::taken_as(&self.base, PanSize::Continued, finest_mm)?,
-            false => &self.base,
-        };
-        let mut case = self.clone();
-        case.scene.network.narrow_to(across);
-        if let NetworkSource::Cubic(shape) = case.scene.network.source() {
-            case.counts = sizes::of_lattice(shape)?;
-        }
-        case.with_base(base.scaled(1.0 / factor)?, None)
+        let walked = against.walked(&base)?;
+        // No other number or thickness is studied.
+        case.scene.record.sensitivity.clear();
+        case.scene.record.thickness = Some(Vec::new());
+        Ok(Self {
+            base,
+            regraded_from: None,
+            pan_is_walked: walked.pan_is_walked,
+            n_base_eq2: walked.n_base_eq2(),
+            sampler: walked.sampler,
+            n_base: walked.n_base.n_base,
+            capped: walked.n_base.capped,
+            mass_ratio: walked.mass_ratio,
+            ..case
+        })
     }
 
     /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,
@@ -153,7 +142,7 @@ mod tests {
         assert_eq!(thick.network(7).unwrap().layers(), 120);
     }
 
-    /// The pan fraction of the passive reading blocks nothing at either end of a guess, so that a walk there
+    /// A pan fraction that is walked blocks nothing at either end of a guess, so that a walk there
     /// follows numbers and asks for no column of billions of particles.
     #[test]
     fn a_passive_pan_fraction_is_passive_at_the_ends_of_a_guess_too() {
@@ -165,13 +154,19 @@ mod tests {
         let path = |name: &str, file: &std::path::Path| format!("{name}.sieve={}", file.display());
         let set = [path("base", &base), path("filter", &filter)].into_iter();
         let set = set.chain(["filter.estimate=0.5", "base.n_base=50", "network.nx=4"].map(String::from));
-        let case = Case::new(Scene::built_in(&set.collect::<Vec<_>>()).unwrap()).unwrap();
-        let case = case.readings().find(|case| case.pan_size == Some(PanSize::Passive)).unwrap();
-        let ends = &case.curve_ends;
-        assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
-        for end in ends {
-            assert!(case.sampler.smallest() < (end.curve.smallest() / case.unit_mm) as f32, "{}", end.name);
+        let set: Vec<String> = set.collect();
+        for arches in [&[][..], &["walk.arching=marin-2018", "walk.concentration=0.1"]] {
+            let set: Vec<String> =
+                set.iter().cloned().chain(arches.iter().map(ToString::to_string)).collect();
+            let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+            assert!(case.pan_is_walked);
+            let (ends, widest) = (&case.curve_ends, case.scene.law().map_or(1.0, |law| law.widest));
+            assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
+            for end in ends {
+                let finest = (end.curve.smallest() / widest / case.unit_mm) as f32;
+                assert!(case.sampler.smallest() < finest, "{arches:?} {}", end.name);
+            }
+            assert!(case.bytes(case.n_base, 1) < 10_000_000, "{arches:?} {}", case.bytes(case.n_base, 1));
         }
-        assert!(case.bytes(case.n_base, 1) < 10_000_000, "{}", case.bytes(case.n_base, 1));
     }
 }

@@ -3,7 +3,6 @@
 use super::error::CaseError;
 use super::pan;
 use crate::gradation::{BaseSupply, Gradation, SizeSampler, base_particles};
-use crate::outcome::record::PanSize;
 use crate::scene::{Amount, Scene};
 
 /// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
@@ -11,8 +10,8 @@ pub const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// The base as it is walked.
 pub(super) struct WalkedBase {
-    /// Of what size its pan fraction is; `None` where it is counted by mass only.
-    pub pan_size: Option<PanSize>,
+    /// Its pan fraction is walked as particles, not counted by mass only.
+    pub pan_is_walked: bool,
     /// Draws its sizes.
     pub sampler: SizeSampler,
     /// N_base as walked, N_base by Eq. (2), whether a cap bit.
@@ -45,35 +44,20 @@ pub(super) struct Against<'a> {
 }
 
 impl Against<'_> {
-    /// The base as it is walked: once, or with each reading of a pan fraction that need not be passive, the
-    /// likely one first.
-    pub fn readings(&self, base: &Gradation) -> Result<(WalkedBase, Vec<WalkedBase>), CaseError> {
-        if !pan::may_block(base, self.finest_mm) {
-            return Ok((self.walked(base, None)?, Vec::new()));
-        }
-        let likely = self.walked(base, Some(PanSize::Continued))?;
-        let bounds = [PanSize::Passive, PanSize::FinestSieve].map(|size| self.walked(base, Some(size)));
-        Ok((likely, bounds.into_iter().collect::<Result<_, _>>()?))
-    }
-
-    fn walked(&self, base: &Gradation, pan_size: Option<PanSize>) -> Result<WalkedBase, CaseError> {
-        let taken = match pan_size {
-            Some(size) => &pan::taken_as(base, size, self.finest_mm)?,
-            None => base,
+    /// The base as it is walked: a pan fraction that need not be passive is walked as passive particles.
+    pub fn walked(&self, base: &Gradation) -> Result<WalkedBase, CaseError> {
+        let pan_is_walked = pan::may_block(base, self.finest_mm);
+        let taken = match pan_is_walked {
+            true => &pan::as_passive(base, self.finest_mm, self.scene)?,
+            false => base,
         };
         // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap
         // is there for the work, which passive particles hardly add to.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let (ratio, cap) = match self.scene.base.amount() {
-            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Passive) => {
-                (ratio, Some(self.times(cap, more)?))
-            }
-            Amount::MassRatio(ratio, Some(cap)) if pan_size == Some(PanSize::Continued) => {
-                let active = 1.0 - taken.percent_finer_by_number(self.finest_mm) / 100.0;
-                (ratio, Some(self.times(cap, 1.0 / active.max(1e-12))?))
-            }
-            Amount::MassRatio(ratio, cap) => (ratio, cap),
-            Amount::Number(n) => return self.number(taken, pan_size, self.times(n, more)?),
+            Amount::MassRatio(ratio, Some(cap)) => (ratio, Some(self.times(cap, more)?)),
+            Amount::MassRatio(ratio, None) => (ratio, None),
+            Amount::Number(n) => return self.number(taken, pan_is_walked, self.times(n, more)?),
         };
         let Some(grains) = self.grains_per_void else {
             let problem = "filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs";
@@ -94,21 +78,21 @@ impl Against<'_> {
             true => ratio * n_base.n_base as f64 / n_base.n_base_eq2 as f64,
             false => ratio,
         };
-        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
+        Ok(WalkedBase { pan_is_walked, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
     }
 
     /// The base of which the user gives the number of particles.
-    fn number(&self, taken: &Gradation, pan_size: Option<PanSize>, n: u64) -> Result<WalkedBase, CaseError> {
+    fn number(&self, taken: &Gradation, pan_is_walked: bool, n: u64) -> Result<WalkedBase, CaseError> {
         let sampler = SizeSampler::new(taken, self.unit_mm)?;
         let Some(grains) = self.grains_per_void else {
             let n_base = BaseSupply { n_base: n, n_base_eq2: n, capped: false };
-            return Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: false, mass_ratio: None });
+            return Ok(WalkedBase { pan_is_walked, sampler, n_base, has_eq2: false, mass_ratio: None });
         };
         let per_grain = taken.particles_per_unit_volume() / self.filter.particles_per_unit_volume();
         let eq2 = base_particles(PAPER_MASS_RATIO, grains, self.voids, taken, self.filter, None)?.n_base_eq2;
         let mass_ratio = n as f64 / (grains * self.voids as f64 * per_grain);
         let n_base = BaseSupply { n_base: n, n_base_eq2: eq2, capped: false };
-        Ok(WalkedBase { pan_size, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
+        Ok(WalkedBase { pan_is_walked, sampler, n_base, has_eq2: true, mass_ratio: Some(mass_ratio) })
     }
 
     /// A number of particles times `more`.

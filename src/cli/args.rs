@@ -8,8 +8,7 @@ pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, Wal
 pub use super::study_args::{
     CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs, PrecisionArgs,
 };
-use super::values::{assignment, authority, density, form, length, threads};
-use crate::outcome::rules::Authority;
+use super::values::{assignment, density, form, length, threads};
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
 use crate::store::format::Format;
@@ -37,8 +36,6 @@ pub enum Command {
     Serve(ServeArgs),
     /// Continue a run that was stopped or killed, with the same bits
     Resume(ResumeArgs),
-    /// Walk a finished run again from the scene and inputs in its folder, and compare every number
-    Reproduce(ReproduceArgs),
     /// Estimate a run before it starts: number of base particles, memory, time, packings to make
     Check(SceneArgs),
     /// Apply every rule of filter practice to two sieve tables, without a walk
@@ -111,7 +108,7 @@ pub struct RulesArgs {
     pub filters: Vec<PathBuf>,
     /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: one
     /// table, and the samples that govern
-    #[arg(long, conflicts_with_all = ["json", "authority"])]
+    #[arg(long, conflicts_with = "json")]
     pub each: bool,
     /// With --each: write the table into this new file
     #[arg(long, value_name = "FILE.csv", requires = "each")]
@@ -130,10 +127,6 @@ pub struct RulesArgs {
     /// continuing erosion into it
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
-    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said. JSON has
-    /// all rules, and those of the authority by their id [default: all]
-    #[arg(long, value_name = "NAME", value_parser = authority)]
-    pub authority: Option<Authority>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
@@ -192,7 +185,7 @@ pub struct TableArgs {
     /// Pack the grains of this very filter and measure its constrictions [density: loose]
     #[arg(long)]
     pub pack: bool,
-    /// A first look: five replicates, no studies of the amount of base and of the thickness
+    /// A first look: five replicates
     #[arg(long)]
     pub quick: bool,
     /// Walk the base as sampled, not as filter practice regrades it (base.regrade)
@@ -208,10 +201,6 @@ pub struct TableArgs {
     /// continuing erosion into it (filter.joint_mm)
     #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub joint_mm: Option<f64>,
-    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
-    /// verdict rests on all of them [default: all]
-    #[arg(long, value_name = "NAME", value_parser = authority)]
-    pub authority: Option<Authority>,
     /// What is set in it besides, and how it is prepared.
     #[command(flatten)]
     pub set: SettingArgs,
@@ -230,7 +219,7 @@ pub struct JudgeArgs {
     /// each filter in full, one table in --out [default: voidwalk-batch]. The same command continues what
     /// was stopped or killed; a folder with other samples or filters is refused. With --quick nothing is
     /// walked in full
-    #[arg(long, conflicts_with = "authority")]
+    #[arg(long)]
     #[cfg_attr(feature = "xlsx", arg(conflicts_with = "xlsx"))]
     pub each: bool,
     /// With --each: walk the three samples that govern each filter, and no other
@@ -314,25 +303,4 @@ pub struct ResumeArgs {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Which run is walked again.
-#[derive(Debug, Args)]
-pub struct ReproduceArgs {
-    /// The folder of a finished run, of judge or run; it stays as it is, and the run is walked into a
-    /// temporary folder beside it
-    pub folder: PathBuf,
-    /// Worker threads; the result is the same for any number [default: one per core]
-    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    pub threads: Option<usize>,
-    /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files; the result is the same
-    /// [default: 80 % of what is available]
-    #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
-    pub memory: Option<u64>,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Print no progress and no summary
-    #[arg(long, short)]
-    pub quiet: bool,
 }

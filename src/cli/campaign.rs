@@ -12,8 +12,8 @@ use super::start::START;
 use crate::campaign::{
     self, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions, WrittenJobs,
 };
-use crate::outcome::ledger::{self, LedgerLine, confidences, of_earlier_versions};
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::ledger::{self, LedgerLine};
+use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
@@ -81,28 +81,21 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
         let count = lines.iter().filter(|line| line.verdict == verdict).count();
         if count > 0 {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{count:>5}  {} ({})", verdict.words(), confidences(lines, verdict));
+            let _ = writeln!(text, "{count:>5}  {}", verdict.words());
         }
     }
     for line in lines.iter().filter(|_| lines.len() <= SHOWN) {
         let eroded: Vec<String> =
             line.runs.iter().map(|run| percent(run.eroded_mass_fraction.mean)).collect();
         let eroded = eroded.join(" then ");
-        let confidence = line.confidence.map_or("unknown confidence", Confidence::words);
         let (case, verdict) = (plain(&line.case), line.verdict.words());
-        let _ = writeln!(text, "{case}: {verdict} ({confidence}), {eroded} of the mass eroded");
-        if let Some(reason) = &line.reason {
-            let _ = writeln!(text, "  {}", plain(reason));
-        }
+        let _ = writeln!(text, "{case}: {verdict}, {eroded} of the mass eroded");
         let _ = writeln!(text, "  {}; {}", thickness(line), grains_per_void(line.grains_per_void));
     }
     if lines.len() > SHOWN {
         let same = lines.iter().all(|line| line.thickness == lines[0].thickness);
         let said =
             if same { thickness(&lines[0]) } else { "modelled filter thickness: see cases.csv".into() };
-        let _ = writeln!(text, "{said}");
-    }
-    if let Some(said) = of_earlier_versions(lines) {
         let _ = writeln!(text, "{said}");
     }
     let _ = writeln!(text, "{}", left_out_in_brief(&ledger::leaves_out(lines)));
@@ -114,8 +107,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
 }
 
 fn thickness(line: &LedgerLine) -> String {
-    let words = line.thickness.map_or("not in the ledger of an earlier version".into(), |t| t.words());
-    format!("modelled filter thickness: {words}")
+    format!("modelled filter thickness: {}", line.thickness.words())
 }
 
 /// Writes the job scripts for the cases that are not done.

@@ -107,11 +107,7 @@ fn words(check: &Check) -> String {
     let name = &network.name;
     line("network", format!("{name}: {voids} voids, {constrictions} constrictions, {starts} start nodes"));
     let (runs, increments) = (check.runs_to_walk, check.increments);
-    let margin = match check.runs_of_margin {
-        0 => String::new(),
-        most => format!(", and up to {most} for the margin"),
-    };
-    line("to walk", format!("{runs} runs{margin}, at most {increments} increments of insertion each"));
+    line("to walk", format!("{runs} runs, at most {increments} increments of insertion each"));
     line("memory", check.memory.clone());
     if let Some(packing) = &check.packing {
         line("time to pack", packing_time(packing));

@@ -39,10 +39,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     } else if !quiet {
         show(&plan, &comparison, &args.out);
     }
-    let answer = |case: &ComparedCase| {
-        let (verdict, confidence) = (case.verdict, case.confidence);
-        JudgedAnswer { verdict, confidence, by_practice: case.by_practice }
-    };
+    let answer = |case: &ComparedCase| JudgedAnswer { model: case.verdict, practice: case.by_practice };
     accept(args.accept.fail_on, comparison.cases.iter().map(|case| (case.name.as_str(), answer(case))))
 }
 
@@ -101,12 +98,9 @@ fn words(comparison: &Comparison) -> String {
         let _ = writeln!(text, "{}", plain(&said));
     };
     for case in &comparison.cases {
-        line(format!("{}: {}", case.name, case.headline));
-        line(format!("  Practice: {}", case.practice));
-        line(format!("  Walk: {}", case.walk));
-        line(format!("  Next: {}", case.next));
-        if !case.by_authority.is_empty() {
-            line(format!("  {}", case.by_authority));
+        line(format!("{}:", case.name));
+        for (name, words) in &case.first_lines {
+            line(format!("  {name}: {words}"));
         }
         line(format!(
             "  D15F/D85B {:.2}{}, {}",
@@ -114,10 +108,9 @@ fn words(comparison: &Comparison) -> String {
             of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
-        let found = || case.reasons.iter().chain(&case.beside);
-        found().take(FOREMOST).for_each(|said| line(format!("  - {said}")));
-        if found().count() > FOREMOST {
-            line(format!("  - and {} more on the page", found().count() - FOREMOST));
+        case.found.iter().take(FOREMOST).for_each(|sentence| line(format!("  - {sentence}")));
+        if case.found.len() > FOREMOST {
+            line(format!("  - and {} more on the page", case.found.len() - FOREMOST));
         }
         for ([low, high], run) in case.curve_range.iter().zip(["first", "second"]) {
             let (low, high) = (percent(*low), percent(*high));

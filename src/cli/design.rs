@@ -9,14 +9,13 @@ use super::values::{of_soils, with_options};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range, over_networks};
 use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::Confidence;
 use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::by_authority::of_design;
+use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
 
@@ -50,7 +49,6 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         as_sampled: args.as_sampled,
         as_given: args.as_given,
         inverse: args.inverse,
-        authority: args.authority.unwrap_or_default(),
         bracket: [args.bracket.0, args.bracket.1],
         sieves: args.sieves,
         out: out.clone(),
@@ -68,10 +66,8 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     if args.json {
         to_stdout(&json(format::DESIGN, &found)?);
     } else if !args.quiet {
-        let of_authority = of_design(&found.rules, options.authority, &found.unit);
-        let of_authority = of_authority.map_or(String::new(), |said| format!("{}\n", plain(&said)));
         let page = shown(&out.join("design.html"));
-        to_stdout(&format!("{}{of_authority}report: {page}\n", words(&found)));
+        to_stdout(&format!("{}report: {page}\n", words(&found)));
     }
     Ok(())
 }
@@ -101,14 +97,9 @@ fn words(design: &Design) -> String {
         lines.extend(of.findings.iter().map(|found| format!("warning: {}", found.words())));
         lines.extend(of.still_to_set());
     }
-    lines.push(match (design.confidence, design.reasons.first()) {
-        (Confidence::Within, _) => "within the range in which the model was checked".into(),
-        (confidence, Some(reason)) => format!("{}: {reason}", confidence.words()),
-        (confidence, None) => confidence.words().into(),
-    });
-    let more = design.reasons.len().saturating_sub(1);
-    if more > 0 {
-        lines.push(format!("  and {more} more reason{} on the page", if more == 1 { "" } else { "s" }));
+    lines.extend(design.findings.iter().take(FOREMOST).map(|found| format!("- {}", found.words())));
+    if design.findings.len() > FOREMOST {
+        lines.push(format!("- and {} more on the page", design.findings.len() - FOREMOST));
     }
     lines.extend(design.products_in_words());
     let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
@@ -148,7 +139,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
             false => "between drainage and retention",
         };
         let practice = band.practice_in_words().map(|said| format!("; {said}"));
-        lines.push(format!("  {what}: {}{}", band.words(), practice.unwrap_or_default()));
+        lines.push(format!("  {what}: {}{}", band.said, practice.unwrap_or_default()));
     }
     if let Some(note) = &row.band_note {
         lines.push(format!("  no band. {}", capital(note)));

@@ -13,7 +13,7 @@ use super::groups::with_groups;
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 21] = [
+const EXAMPLES: [(&str, [Example; 2]); 20] = [
     (
         "run",
         [
@@ -50,13 +50,6 @@ const EXAMPLES: [(&str, [Example; 2]); 21] = [
         [
             ["voidwalk resume voidwalk-run", "goes on where the run was stopped"],
             ["voidwalk resume dam --threads 2", "on two cores, with the same bits"],
-        ],
-    ),
-    (
-        "reproduce",
-        [
-            ["voidwalk reproduce voidwalk-run", "the same numbers again? Exit code 0 if so, else 1"],
-            ["voidwalk reproduce dam --threads 2 --json", "on two cores, the answer as JSON"],
         ],
     ),
     (

@@ -2,13 +2,13 @@
 
 use clap::ValueEnum;
 
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::record::Verdict;
 use crate::run::{Exit, RunError};
 
 /// Every exit code and what it means: help, manual pages and guide show this table.
 pub const EXIT_CODES: [(u8, &str); 5] = [
     (0, "done"),
-    (Exit::Failed.code(), "failed; of `voidwalk reproduce` also: not the same"),
+    (Exit::Failed.code(), "failed"),
     (
         Exit::Refused.code(),
         "refused before any work, and nothing was written: the message says what to change",
@@ -23,44 +23,38 @@ pub fn in_words() -> String {
     format!("Exit codes:\n{}", lines.concat())
 }
 
-/// Which answers are not accepted, by the worse of walk and practice. What nobody can say never is.
+/// Which answers are not accepted, by the worse of practice and model. What nobody can say never is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FailOn {
     /// Some erosion, continuing erosion, undecided; practice not met or not known
     Some,
     /// Continuing erosion, undecided; practice not known, or not met with continuing erosion not excluded
     Continuing,
-    /// Anything but practice met and no erosion within the checked range
-    Doubt,
 }
 
-/// What a walk and practice say of a case.
+/// What model and practice say of a case.
 #[derive(Clone, Copy)]
 pub struct JudgedAnswer {
-    pub verdict: Verdict,
-    pub confidence: Confidence,
+    /// The class of the model.
+    pub model: Verdict,
     /// The class as which practice counts; `None` where no rule was applied.
-    pub by_practice: Option<Verdict>,
+    pub practice: Option<Verdict>,
 }
 
 impl FailOn {
-    /// Why an answer is not accepted, by the worse of walk and practice; `None` where it is.
+    /// Why an answer is not accepted, by the worse of practice and model; `None` where it is.
     fn refused(self, answer: JudgedAnswer) -> Option<String> {
-        let JudgedAnswer { verdict, confidence, by_practice } = answer;
-        if self.refuses(verdict, confidence) {
-            return Some(format!("{} ({})", verdict.words(), confidence.words()));
-        }
-        match by_practice.filter(|of| self.refuses(*of, Confidence::Within))? {
-            Verdict::Undecided => Some("nobody can say by practice".into()),
-            class => Some(format!("practice is not met ({} not excluded)", class.words())),
+        match answer.practice.filter(|class| self.refuses(*class)) {
+            Some(Verdict::Undecided) => Some("practice is not known".into()),
+            Some(class) => Some(format!("practice is not met ({} not excluded)", class.words())),
+            None => self.refuses(answer.model).then(|| format!("{} in the model", answer.model.words())),
         }
     }
 
-    fn refuses(self, verdict: Verdict, confidence: Confidence) -> bool {
+    fn refuses(self, class: Verdict) -> bool {
         match self {
-            Self::Some => verdict != Verdict::None,
-            Self::Continuing => matches!(verdict, Verdict::Continuing | Verdict::Undecided),
-            Self::Doubt => (verdict, confidence) != (Verdict::None, Confidence::Within),
+            Self::Some => class != Verdict::None,
+            Self::Continuing => matches!(class, Verdict::Continuing | Verdict::Undecided),
         }
     }
 
@@ -69,7 +63,6 @@ impl FailOn {
         match self {
             Self::Some => "some",
             Self::Continuing => "continuing",
-            Self::Doubt => "doubt",
         }
     }
 }
@@ -118,46 +111,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_undecided_verdict_is_never_accepted_and_doubt_accepts_one_answer_alone() {
-        let every = [Confidence::Within, Confidence::MaySegregate, Confidence::Outside]
-            .map(|confidence| Verdict::ALL.map(|verdict| (verdict, confidence)));
-        for (verdict, confidence) in every.concat() {
-            let accepted = FailOn::value_variants()
-                .iter()
-                .map(|of| accept(Some(*of), [("a", met(verdict, confidence))]).is_ok());
-            let expected = match (verdict, confidence) {
-                (Verdict::None, Confidence::Within) => [true, true, true],
-                (Verdict::None, _) => [true, true, false],
-                (Verdict::Some, _) => [false, true, false],
-                _ => [false; 3],
-            };
-            assert_eq!(accepted.collect::<Vec<_>>(), expected, "{verdict:?}, {confidence:?}");
-            assert!(accept(None, [("a", met(verdict, confidence))]).is_ok());
-        }
-    }
-
-    fn met(verdict: Verdict, confidence: Confidence) -> JudgedAnswer {
-        JudgedAnswer { verdict, confidence, by_practice: Some(Verdict::None) }
-    }
-
-    #[test]
-    fn the_worse_of_practice_and_walk_decides() {
-        for (by_practice, accepted) in [
-            (None, [true; 3]),
-            (Some(Verdict::None), [true; 3]),
-            (Some(Verdict::Some), [false, true, false]),
-            (Some(Verdict::Continuing), [false; 3]),
-            (Some(Verdict::Undecided), [false; 3]),
-        ] {
-            let answer = JudgedAnswer { by_practice, ..met(Verdict::None, Confidence::Within) };
-            let each = FailOn::value_variants().iter().map(|of| accept(Some(*of), [("a", answer)]).is_ok());
-            assert_eq!(each.collect::<Vec<_>>(), accepted, "{by_practice:?}");
+    fn the_worse_of_practice_and_model_decides() {
+        let accepted = |class| match class {
+            Verdict::None => [true, true],
+            Verdict::Some => [false, true],
+            Verdict::Continuing | Verdict::Undecided => [false, false],
+        };
+        let practices = Verdict::ALL.map(Some).into_iter().chain([None]);
+        for (model, practice) in practices.flat_map(|practice| Verdict::ALL.map(|model| (model, practice))) {
+            let answer = JudgedAnswer { model, practice };
+            let by_practice = practice.map_or([true, true], accepted);
+            for (index, fail_on) in FailOn::value_variants().iter().enumerate() {
+                let wanted = accepted(model)[index] && by_practice[index];
+                assert_eq!(accept(Some(*fail_on), [("a", answer)]).is_ok(), wanted, "{model:?} {practice:?}");
+            }
+            assert!(accept(None, [("a", answer)]).is_ok());
         }
     }
 
     #[test]
     fn a_case_that_was_not_walked_is_not_accepted() {
-        let within = Ok(met(Verdict::None, Confidence::Within));
+        let within = Ok(JudgedAnswer { model: Verdict::None, practice: Some(Verdict::None) });
         for of in FailOn::value_variants() {
             assert!(accept_walked(Some(*of), [("a", within)]).is_ok());
             let problem = accept_walked(Some(*of), [("a", within), ("b", Err("no table"))]).unwrap_err();

@@ -14,8 +14,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
 ];
 
 /// Commands that are named alone.
-const MORE: [&str; 7] =
-    ["reproduce", "pack", "constrictions", "percolation", "precision", "completions", "man"];
+const MORE: [&str; 6] = ["pack", "constrictions", "percolation", "precision", "completions", "man"];
 
 /// The command with a help that lists its commands in groups.
 pub(super) fn with_groups(command: Command) -> Command {
@@ -78,9 +77,7 @@ mod tests {
                 names.iter().filter(|n| help.contains(&format!("\n  {n} "))).count()
             );
         }
-        assert!(
-            help.contains("\nMore commands: reproduce, pack") && help.contains("\nOptions:\n  -h, --help")
-        );
+        assert!(help.contains("\nMore commands: pack") && help.contains("\nOptions:\n  -h, --help"));
         assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");
         assert!(help.contains("Exit codes:\n  0  done"), "{help}");
     }

@@ -8,8 +8,7 @@ use super::progress::followed;
 use super::run::show;
 use super::values::{of_soils, with_options};
 use crate::run::{self, RunError};
-use crate::scene::{Record, Scene, TableOptions};
-use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
+use crate::scene::{Scene, TableOptions};
 
 impl TableArgs {
     /// What a scene of two tables is given besides them.
@@ -18,8 +17,7 @@ impl TableArgs {
     /// A setting is given by an option of its own and by --set, too.
     pub fn options(&self) -> Result<TableOptions, RunError> {
         let [dispersive, joint] = of_soils(self.dispersive, self.joint_mm);
-        let authority = self.authority.map(|by| format!("about.authority={}", by.word()));
-        let options = [dispersive, ("--authority", authority), joint];
+        let options = [dispersive, joint];
         let changes = with_options(&self.set.settings()?, options)?;
         let (as_sampled, as_given) = (self.as_sampled, self.as_given);
         Ok(TableOptions {
@@ -52,23 +50,8 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     }
     show(&run, tables.set.json, quiet)?;
     if in_words {
-        let by = tables.authority.unwrap_or_default();
-        let of_authority = of_pair(
-            &run.outcome.rules,
-            by,
-            Some(run.outcome.inputs.filter.d15_mm),
-            run.outcome.if_dispersive,
-        );
-        of_authority.iter().for_each(|said| to_stdout(&format!("{} {ON_ALL_RULES}\n", plain(said))));
         let scene = to_copy(run.folder.join("scene.toml"));
-        let studies = match run.outcome.sensitivity.is_empty() && run.outcome.thickness.is_empty() {
-            true => {
-                let factors: Vec<String> = Record::default().sensitivity.iter().map(f64::to_string).collect();
-                format!(" --set \"record.sensitivity=[{}]\"", factors.join(", "))
-            }
-            false => String::new(),
-        };
-        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30{studies}\n"));
+        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30\n"));
     }
     args.results.workbook(&run)?;
     args.results.accept.judged(&run)

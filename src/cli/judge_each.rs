@@ -54,10 +54,8 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let is_asked = |row: &WalkedRow| !args.governing || row.governs.is_some() || row.rules.is_refused;
     let asked = batch.rows.iter().zip(&names).filter(|(row, _)| row.walk.is_some() || is_asked(row));
     let pairs = asked.map(|(row, name)| {
-        let answer = row.walk.as_ref().map(|walk| {
-            let (verdict, confidence) = (walk.verdict, walk.confidence);
-            JudgedAnswer { verdict, confidence, by_practice: walk.by_practice }
-        });
+        let answer =
+            row.walk.as_ref().map(|walk| JudgedAnswer { model: walk.verdict, practice: walk.by_practice });
         (name.as_str(), answer.ok_or(row.not_walked.as_str()))
     });
     accept_walked(results.accept.fail_on, pairs)

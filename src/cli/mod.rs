@@ -26,7 +26,6 @@ mod precision;
 mod print;
 mod progress;
 mod report;
-mod reproduce;
 mod rules;
 mod run;
 #[cfg(test)]
@@ -103,7 +102,6 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
         #[cfg(feature = "serve")]
         Command::Serve(args) => serve::serve(&args),
         Command::Resume(args) => run::resume(&args),
-        Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path, plan, json, schema } => init::init(path.as_deref(), plan, json, schema),

@@ -150,7 +150,9 @@ impl Display {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
             Event::VerdictStands(outcome) => {
-                self.line(&format!("verdict: {}; the studies beside it follow\n", plain(&outcome.headline())))
+                for (name, words) in outcome.first_lines() {
+                    self.line(&format!("{name}: {}\n", plain(&words)));
+                }
             }
             Event::Packing(_)
             | Event::Increment { .. }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::print::{shown, to_stdout};
-use crate::report;
+use crate::report::{self, ReportError};
 use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
 
@@ -16,14 +16,17 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
-    let page = page(kind, claimed.path()).map_err(RunError::failed)?;
+    let page = page(kind, claimed.path()).map_err(|error| match error {
+        ReportError::Form { .. } => RunError::Refused(error.to_string()),
+        _ => RunError::failed(error),
+    })?;
     to_stdout(&format!("{}\n", shown(&page)));
     Ok(())
 }
 
 /// Writes the page of results that are whole; a set of constrictions has none, and neither has
 /// a server's folder.
-pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, report::ReportError> {
+pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, ReportError> {
     let written = match kind {
         FolderKind::Run => report::write(folder),
         FolderKind::Packing => report::write_packing(folder),

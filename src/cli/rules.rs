@@ -6,11 +6,10 @@ use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::apart::{digits_within, value_and_limit};
 use crate::outcome::record::{AppliedRule, RuleRole};
-use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::store::format;
-use crate::verdict::by_authority::stated_by;
 use crate::verdict::left_out::NOT_COVERED;
+use crate::verdict::listed::listed;
 use crate::verdict::rule_words::{
     LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
 };
@@ -36,14 +35,12 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
         let files = format!("base {}, filter {}", shown(&args.base), shown(filter));
         RunError::Refused(format!("{files}: {}", mistake.refusal()))
     })?;
-    let by = args.authority.unwrap_or_default();
-    let pair = pair.stated_by(by);
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
     to_stdout(&if args.json {
         json(format::RULES, &pair)?
     } else {
-        words(&pair, (&args.base, filter), by, &notes)
+        words(&pair, (&args.base, filter), &notes)
     });
     Ok(())
 }
@@ -51,7 +48,6 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
 fn words(
     pair: &PairRules,
     (base_file, filter_file): (&Path, &Path),
-    by: Authority,
     notes: &[(&str, Vec<String>)],
 ) -> String {
     let (filter, base) = (&pair.filter, &pair.base);
@@ -102,7 +98,7 @@ fn words(
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
-    let listed = stated_by(&pair.rules, by);
+    let listed = listed(&pair.rules);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
@@ -110,9 +106,6 @@ fn words(
         (RuleRole::Placing, "The filter can be placed"),
         (RuleRole::Stability, "Internal stability of the filter"),
     ] {
-        if by != Authority::All && listed.iter().all(|rule| rule.role != role) {
-            continue;
-        }
         line(String::new());
         line(format!("{heading} (a rule that is not met argues against {})", role.speaks_against()));
         for rule in listed.iter().filter(|rule| rule.role == role) {
@@ -121,7 +114,11 @@ fn words(
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
             let curves: Vec<String> = named.map(|(whose, curve)| format!("{whose} curve {curve}")).collect();
             let curves = curves.join(", ");
-            let more = [curves, rule.note.to_string(), rule.needs.to_string()];
+            // Its name says whose it is where no manual states it besides.
+            let is_stated = !rule.stated_by.is_empty();
+            let authorities = is_stated.then(|| format!("authority: {}", rule.authorities().join(", ")));
+            let more =
+                [curves, rule.note.to_string(), rule.needs.to_string(), authorities.unwrap_or_default()];
             for text in more.iter().filter(|text| !text.is_empty()) {
                 wrapped(text, INDENT).into_iter().for_each(&mut line);
             }
@@ -130,9 +127,6 @@ fn words(
     }
     line(String::new());
     line(format!("{LIMITS_ROUNDED} {NOT_COVERED}"));
-    if let Some(stated) = &pair.by_authority {
-        line(stated.said.clone());
-    }
     text
 }
 

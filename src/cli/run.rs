@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::{JudgedAnswer, accept};
-use super::print::{count, counted, grains_per_void, json, of_base, plain, shown, to_stdout};
+use super::print::{json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
 #[cfg(feature = "xlsx")]
@@ -33,11 +33,8 @@ impl AcceptArgs {
     /// Ends a command by the verdict of its run.
     pub fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
         let outcome = &run.outcome;
-        let (verdict, confidence) = (outcome.verdict, outcome.confidence);
-        accept(
-            self.fail_on,
-            [("", JudgedAnswer { verdict, confidence, by_practice: counts_as(&outcome.rules) })],
-        )
+        let answer = JudgedAnswer { model: outcome.model.class, practice: counts_as(&outcome.rules) };
+        accept(self.fail_on, [("", answer)])
     }
 }
 
@@ -98,7 +95,7 @@ pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunErro
 
 /// What a user wants to know first.
 fn summary(run: &FinishedRun) -> String {
-    let (outcome, inputs) = (&run.outcome, &run.outcome.inputs);
+    let outcome = &run.outcome;
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |s: String| {
@@ -107,23 +104,15 @@ fn summary(run: &FinishedRun) -> String {
     for (name, said) in outcome.first_lines() {
         line(format!("{name}: {}", plain(&said)));
     }
-    let (foremost, more) = outcome.foremost();
-    for finding in foremost {
-        line(format!("- {}", plain(&finding.with_to_do())));
+    if !outcome.findings.is_empty() {
+        let mut labels: Vec<&str> = Vec::new();
+        for finding in &outcome.findings {
+            if !labels.contains(&finding.label.as_str()) {
+                labels.push(&finding.label);
+            }
+        }
+        line(format!("{} notes on the page: {}", outcome.findings.len(), labels.join(", ")));
     }
-    if more > 0 {
-        line(format!("- and {more} more on the page"));
-    }
-    line(format!(
-        "  {} of {} base particles, {} voids; D15F/D85B {:.2}{}, D15F/D95B {:.2}, {}",
-        counted(outcome.replicates.len() as u64, "replicate", "replicates"),
-        count(outcome.n_base),
-        count(inputs.network.voids),
-        outcome.ratios.d15f_over_d85b,
-        of_base(inputs.base_size()),
-        outcome.ratios.d15f_over_d95b,
-        grains_per_void(outcome.grains_per_void)
-    ));
     line(left_out_in_brief(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
     line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));

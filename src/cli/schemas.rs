@@ -15,7 +15,7 @@ use crate::outcome::packing::PackingRecord;
 use crate::outcome::percolation::PercolationStudy;
 use crate::outcome::precision::Precision;
 use crate::outcome::record::{Manifest, Outcome};
-use crate::run::{Check, Reproduced};
+use crate::run::Check;
 use crate::scene::SceneReference;
 use crate::store::format::{self, Format};
 use crate::verdict::{DesignedSamples, PairRules, WalkedBatch};
@@ -44,7 +44,6 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::PLAN_CHECK, of::<PlanCheck>()),
         (format::RULES, of::<PairRules>()),
         (format::SOILS, of::<Soils>()),
-        (format::REPRODUCED, of::<Reproduced>()),
         (format::SETTINGS, of::<SceneReference>()),
     ]
 }

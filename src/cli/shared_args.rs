@@ -27,10 +27,9 @@ pub struct WalkArgs {
 /// Which verdicts the caller does not accept.
 #[derive(Debug, Args)]
 pub struct AcceptArgs {
-    /// Exit with code 4 if the worse of walk and practice is at least this bad: some or continuing erosion,
-    /// or doubt for anything but practice met and no erosion within the checked range. Practice that is not
-    /// met counts as some erosion, or as continuing where that is not excluded. Undecided counts as bad for
-    /// each of them, as does practice that is not known. Results are written as usual
+    /// Exit with code 4 if the worse of practice and model is at least this bad: some or continuing erosion.
+    /// Practice that is not met counts as some erosion, or as continuing where that is not excluded.
+    /// Undecided counts as bad, as does practice that is not known. Results are written as usual
     #[arg(long, value_name = "VERDICT")]
     pub fail_on: Option<FailOn>,
 }

@@ -13,7 +13,6 @@ use super::exit::EXIT_CODES;
 use super::print::{shown, to_stdout};
 use super::values::FACETS;
 use crate::constrictions::shipped;
-use crate::outcome::rules::Authority;
 use crate::packing::LengthUnit;
 use crate::run::RunError;
 use crate::scene::{Density, LibraryDensity, Scene, SheetUnits};
@@ -120,7 +119,6 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
                 .concat()
         }
         "settings" => assignments(),
-        "authority" => named(&Authority::ALL.map(Authority::word)),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
         "units" => named(&SheetUnits::ALL.map(SheetUnits::name)),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
@@ -208,7 +206,7 @@ mod tests {
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!(lines[0].ends_with(" -r") && !lines[0].contains("shire2016"), "{lines:?}");
         let with_words =
-            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l authority ");
+            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l units ");
         assert!(every[1].lines().find(with_words).unwrap().contains(" -r -f -a "));
     }
 

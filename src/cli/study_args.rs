@@ -6,11 +6,10 @@ use std::time::Duration;
 use clap::Args;
 
 use super::shared_args::{SceneArgs, WalkArgs};
-use super::values::{assignment, authority, bracket, facets, lattice_size, seed, sheet_units, threads, time};
+use super::values::{assignment, bracket, facets, lattice_size, seed, sheet_units, threads, time};
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::outcome::design::SieveSeries;
-use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::machine::bytes_from_words;
 use crate::scene::SheetUnits;
@@ -27,12 +26,12 @@ pub struct DesignArgs {
     /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: a
     /// design for each, one table and the samples that govern in --out [default: voidwalk-designs]. The same
     /// command continues what was stopped or killed. With --steps nothing is walked
-    #[arg(long, requires = "base", conflicts_with_all = ["inverse", "authority"])]
+    #[arg(long, requires = "base", conflicts_with = "inverse")]
     pub each: bool,
     /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
     /// sieve and standard products
     #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
-          "as_sampled", "as_given", "inverse", "authority", "seed", "bracket", "packings", "memory",
+          "as_sampled", "as_given", "inverse", "seed", "bracket", "packings", "memory",
           "threads"])]
     pub steps: bool,
     /// With --steps: place the band at the finer end of what is allowed: its maximum D15F is lowered, not its
@@ -71,10 +70,6 @@ pub struct DesignArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// Whose rules are listed: nrcs, usbr, usace, foster-fell or all; what is left out is said, and the
-    /// answer rests on all of them [default: all]
-    #[arg(long, value_name = "NAME", value_parser = authority)]
-    pub authority: Option<Authority>,
     /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
     #[arg(long)]
     pub inverse: bool,

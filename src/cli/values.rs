@@ -4,7 +4,6 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use crate::constrictions::Facets;
-use crate::outcome::rules::Authority;
 use crate::run::RunError;
 use crate::scene::{Density, SheetUnits};
 use crate::schema::length::{LENGTHS, millimetres};
@@ -59,12 +58,6 @@ pub(super) fn lattice_size(text: &str) -> Result<[u32; 3], String> {
 /// A seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
-}
-
-/// Whose rules are listed.
-pub(super) fn authority(text: &str) -> Result<Authority, String> {
-    let words = Authority::ALL.map(Authority::word).join(", ");
-    Authority::named(text).ok_or_else(|| format!("one of {words}"))
 }
 
 /// What a sheet shows beside mm.

@@ -12,18 +12,18 @@ use super::rule_note::RuleText;
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AppliedRule {
     /// Its name for programs, as `sherard-dunnigan`.
-    #[serde(default)]
     pub id: String,
     /// Whose rule it is, and what it says.
     pub name: String,
-    /// Whose rule it is; empty where nobody is cited, and in files of earlier versions.
+    /// Whose rule it is; empty where nobody is cited.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub authority: String,
+    /// Authorities whose texts state it besides; may be empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stated_by: Vec<String>,
     /// What it is a rule of.
-    #[serde(default)]
     pub role: RuleRole,
     /// Whether it was made for these soils.
-    #[serde(default)]
     pub applies: bool,
     /// What it limits, as `D15F/D85B`.
     pub quantity: RuleQuantity,
@@ -36,10 +36,8 @@ pub struct AppliedRule {
     /// The most, or the least, that the rule allows; `None` where no number is known.
     pub limit: Option<f64>,
     /// Unit of value and limit: `mm`, `D0F`, `%`; empty for a ratio.
-    #[serde(default)]
     pub unit: String,
     /// Whether `limit` is the least that the rule allows instead of the most.
-    #[serde(default)]
     pub at_least: bool,
     /// Whether the true limit is not known, and is at most `limit`; on either side of it where `needs` names
     /// sieves that stand far apart.
@@ -47,28 +45,22 @@ pub struct AppliedRule {
     pub limit_at_most: bool,
     /// Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing
     /// erosion `true` says only that this is not reached: some or excessive erosion is not excluded.
-    #[serde(alias = "meets")]
     pub met: Option<bool>,
     /// What is missing for a result; may be empty.
-    #[serde(default)]
     pub needs: RuleText,
     /// Where the value is, why the rule was not made for these soils; may be empty.
-    #[serde(default)]
     pub note: RuleText,
     /// What the rule was made for.
-    #[serde(default)]
     pub applies_to: String,
     /// Its limit in words.
-    #[serde(default)]
     pub formula: String,
     /// Where the rule is published.
     pub source: String,
     /// What is left of the filter without the greatest part that it may lose by a rule of internal stability;
-    /// `None` of other rules, and in files of earlier versions.
+    /// `None` of other rules.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_finer: Option<WithoutFiner>,
     /// Which verdicts it speaks against where it is not kept.
-    #[serde(default)]
     pub speaks_against: String,
     /// Which curve of the filter it read, where that is an envelope of several.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -79,6 +71,12 @@ pub struct AppliedRule {
 }
 
 impl AppliedRule {
+    /// Everybody who states it: the one whose rule it is first; empty of a check of this program.
+    pub fn authorities(&self) -> Vec<&str> {
+        let stated_by = self.stated_by.iter().map(String::as_str);
+        std::iter::once(self.authority.as_str()).chain(stated_by).filter(|name| !name.is_empty()).collect()
+    }
+
     /// Whether it is a rule of practice that was made for these soils and is not kept.
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
@@ -148,12 +146,11 @@ impl fmt::Display for RuleQuantity {
 }
 
 /// What a rule is a rule of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RuleRole {
     /// The filter retains the base without erosion.
-    #[default]
     Retention,
     /// A coarser filter: erosion ends.
     Continuation,
@@ -183,78 +180,9 @@ impl RuleRole {
     }
 }
 
-/// How far a verdict can be relied on; the worst is the greatest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub enum Confidence {
-    /// The model was checked for such soils, and no rule of practice speaks against the verdict.
-    #[serde(rename = "within checked range")]
-    Within,
-    /// "No erosion", but practice would not place such a filter.
-    #[serde(rename = "may segregate")]
-    MaySegregate,
-    /// The model was not checked for such soils.
-    #[default]
-    #[serde(rename = "outside checked range")]
-    Outside,
-    /// "No erosion", but the filter may not drain the base: that says nothing of retention.
-    #[serde(rename = "may not drain")]
-    MayNotDrain,
-    /// The filter may lose its own fines, and is then not the filter that was walked.
-    #[serde(rename = "may lose its own fines")]
-    Unstable,
-    /// A rule of retention, or of coarser filters, that was made for these soils speaks against it.
-    #[serde(rename = "contradicted by practice")]
-    Contradicted,
-}
-
-impl Confidence {
-    /// All of them that are a doubt, the worst first.
-    pub const DOUBTS: [Self; 5] =
-        [Self::Contradicted, Self::Unstable, Self::MayNotDrain, Self::Outside, Self::MaySegregate];
-
-    /// Whether a probability would say more than anybody can answer for.
-    pub fn hides_probability(self) -> bool {
-        matches!(self, Self::Outside | Self::Contradicted)
-    }
-
-    /// Its name in `outcome.json`.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Within => "within checked range",
-            Self::MaySegregate => "may segregate",
-            Self::Outside => "outside checked range",
-            Self::MayNotDrain => "may not drain",
-            Self::Unstable => "may lose its own fines",
-            Self::Contradicted => "contradicted by practice",
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Folders and ledgers of earlier versions have three of them.
-    #[test]
-    fn every_label_is_read_back_by_its_words() {
-        for label in Confidence::DOUBTS.into_iter().chain([Confidence::Within]) {
-            let text = serde_json::to_string(&label).unwrap();
-            assert_eq!(text, format!("\"{}\"", label.words()));
-            assert_eq!(serde_json::from_str::<Confidence>(&text).unwrap(), label);
-        }
-        assert!(
-            Confidence::DOUBTS.is_sorted_by(|a, b| a > b)
-                && !Confidence::DOUBTS.contains(&Confidence::Within)
-        );
-        let old = serde_json::json!({
-            "name": "Permeability", "role": "drainage", "quantity": "D15F", "value": 1.0, "limit": 2.0,
-            "met": false, "source": ""
-        });
-        let rule: AppliedRule = serde_json::from_value(old).unwrap();
-        assert!(rule.role == RuleRole::Drainage && !rule.limit_at_most);
-        assert_eq!(rule.quantity, RuleQuantity::D15F);
-    }
 
     #[test]
     fn a_quantity_is_written_by_its_name_and_read_back() {

@@ -15,7 +15,7 @@ pub struct BaseSize {
     /// The size that it was regraded on; `None` where it is as it was sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regraded_at_mm: Option<f64>,
-    /// D85 before regrading, where it was regraded; `None` where records of earlier versions do not say it.
+    /// D85 before regrading, where it was regraded and a sieve tells it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub as_sampled_mm: Option<f64>,
 }
@@ -89,7 +89,7 @@ mod tests {
         );
         let sand = BaseSize { d85_mm: 0.4123, regraded_at_mm: None, as_sampled_mm: None };
         assert_eq!(sand.words(), "D85B 0.412 mm as sampled");
-        let old = BaseSize { as_sampled_mm: None, ..till };
-        assert_eq!(old.words(), "D85B 1.80 mm, regraded on 4.75 mm");
+        let open = BaseSize { as_sampled_mm: None, ..till };
+        assert_eq!(open.words(), "D85B 1.80 mm, regraded on 4.75 mm");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::BaseSize;
 use super::numbers::{SizeUnit, percent, significant, whole};
-use super::record::{Confidence, Ratios, Statistic};
+use super::record::{Ratios, Statistic};
 use super::table::{Columns, TableCell};
 
 /// Mass eroded in a run, and its range where the constriction curve is a range.
@@ -12,24 +12,6 @@ type Eroded = (Option<Statistic>, Option<[f64; 2]>);
 type Thickness = (Option<f64>, bool, Option<u64>);
 
 impl<'a, T: 'a> Columns<'a, T> {
-    /// How far a verdict can be relied on; on a page, `reason` says below it why no further.
-    pub(crate) fn confidence(
-        self,
-        of: fn(&T) -> Option<Confidence>,
-        reason: fn(&T) -> Option<String>,
-    ) -> Self {
-        let shown = move |row: &T| {
-            let words = of(row).map(|confidence| match confidence {
-                Confidence::Within => "within",
-                Confidence::Outside => "outside",
-                Confidence::Contradicted => "contradicted",
-                doubt => doubt.words(),
-            });
-            words.shown().doubt(of(row).is_some_and(|of| of != Confidence::Within)).below(reason(row))
-        };
-        self.column("confidence", move |row| of(row).map(Confidence::words)).words("Confidence", shown)
-    }
-
     /// How many rules of practice are not kept.
     pub(super) fn broken_rules(self, name: &str, heading: &str, of: fn(&T) -> Option<usize>) -> Self {
         let shown = move |row: &T| of(row).shown().doubt(of(row).is_some_and(|count| count > 0));

@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::numbers::SizeUnit;
-use super::record::{Confidence, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
+use super::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 
@@ -27,7 +27,7 @@ pub struct Comparison {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// The cases, in the order in which they were named.
@@ -36,14 +36,13 @@ pub struct Comparison {
     pub pairs: Vec<ComparedPair>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
-    /// What the sheet says of itself; without a day in files of earlier versions.
+    /// What the sheet says of itself.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
     /// Whether inches stand beside mm on page and terminal.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// What no case contains; records of earlier versions do not say.
-    #[serde(default)]
+    /// What no case contains.
     pub model_leaves_out: Vec<ModelLimit>,
 }
 
@@ -57,56 +56,33 @@ pub struct ComparedCase {
     pub folder: String,
     /// The class that its replicates together support.
     pub verdict: Verdict,
-    /// How far it can be relied on.
-    pub confidence: Confidence,
-    /// Why no further: sentences, the weightiest first.
-    pub reasons: Vec<String>,
     /// The rules of practice that were made for these soils and are not kept, by name.
     pub rules_not_kept: Vec<String>,
-    /// What filter practice says of the pair, in a line; records of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub practice: String,
-    /// Where the filter stands by practice; records of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub standing: Option<ComparedStanding>,
-    /// The class as which practice counts; records of earlier versions do not say.
+    /// The class as which practice counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by_practice: Option<Verdict>,
-    /// Whether the filter holds, in a line; records of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub headline: String,
-    /// What the walk says, in a line.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub walk: String,
-    /// What to do next.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub next: String,
-    /// What an authority's rules say of the pair and leave out, where one is named; empty for all.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub by_authority: String,
-    /// What was found about the verdict, the weightiest first, without the names of settings. Records of
-    /// earlier versions do not say.
+    /// The answer of practice; `None` without two sieve curves in mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub headline: Option<Headline>,
+    /// The lines of practice and model, each with its name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub first_lines: Vec<(String, String)>,
+    /// What a reader must know besides, the weightiest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub found: Vec<String>,
-    /// What else stands beside every verdict, in sentences.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub beside: Vec<String>,
     /// Replicates.
     pub replicates: u64,
     /// Thickness of the filter along the flow (mm); `None` where the network does not say.
-    #[serde(default)]
     pub thickness_mm: Option<f64>,
     /// Whether sizes are multiples of D0F instead of mm.
-    #[serde(default)]
     pub scale_free: bool,
     /// Base particles of each run.
     pub n_base: u64,
     /// Filter grains per void, where given.
-    #[serde(default)]
     pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
-    /// D85B and which base it is of; `None` without a unit, and in records of earlier versions.
+    /// D85B and which base it is of; `None` without a unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<BaseSize>,
     /// Eroded mass fraction of each run.
@@ -115,25 +91,6 @@ pub struct ComparedCase {
     /// curve is no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
-}
-
-/// Where a filter stands by practice, the worst first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum ComparedStanding {
-    /// A rule of retention or of coarser filters is not kept, and no test held either.
-    Fails,
-    /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
-    NoMargin,
-    /// It keeps the limits, but may lose its own fines.
-    Unstable,
-    /// The limit of design has no result.
-    Unknown,
-    /// The limit of design is kept.
-    Met,
-    /// No rule of design was applied.
-    NoRules,
 }
 
 /// How much two cases differ in one run.
@@ -213,7 +170,6 @@ impl ComparedCase {
             .headed("Case")
             .column("verdict", |case| case.verdict)
             .headed("Class")
-            .confidence(|case| Some(case.confidence), |_| None)
             .broken_rules("rules_not_kept", "Rules not kept", |case| Some(case.rules_not_kept.len()))
             .column("replicates", |case| case.replicates)
             .headed("Replicates")
@@ -236,19 +192,12 @@ impl ComparedCase {
         Self {
             name: name.into(),
             folder: folder.into(),
-            verdict: outcome.verdict,
-            confidence: outcome.confidence,
-            reasons: outcome.reasons.clone(),
-            practice: String::new(),
-            standing: None,
+            verdict: outcome.model.class,
             by_practice: None,
-            headline: String::new(),
-            walk: String::new(),
-            next: String::new(),
-            by_authority: String::new(),
+            headline: outcome.headline,
+            first_lines: Vec::new(),
             found: Vec::new(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
-            beside: Vec::new(),
             replicates: outcome.replicates.len() as u64,
             thickness_mm: outcome.inputs.network.thickness_mm,
             scale_free: outcome.inputs.scale_free,

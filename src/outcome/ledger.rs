@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::digits::count;
 use super::numbers::{SizeUnit, whole};
-use super::record::{Confidence, ModelLimit, Outcome, Ratios, RunSummary, Verdict};
+use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict};
 use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, Modelled, leaves_out_of_all};
@@ -30,31 +30,19 @@ pub struct LedgerLine {
     pub commit: Option<String>,
     /// The class that the replicates together support.
     pub verdict: Verdict,
-    /// How far it can be relied on; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub confidence: Option<Confidence>,
-    /// The first reason why no further, where there is one; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
-    /// What leaves the verdict undecided; lines of earlier versions do not say.
+    /// What leaves the verdict undecided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided_by: Option<UndecidedBy>,
-    /// The filter that was modelled, along the flow; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub thickness: Option<ModelledThickness>,
-    /// Whether water gave particles their way; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub with_flow: Option<bool>,
-    /// Whether particles arched; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub with_arches: Option<bool>,
-    /// Whether blocked constrictions left openings; lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub with_openings: Option<bool>,
-    /// The rules of practice that were made for these soils and are not kept, by their names for programs;
-    /// lines of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rules_not_met: Option<Vec<String>>,
+    /// The filter that was modelled, along the flow.
+    pub thickness: ModelledThickness,
+    /// Whether water gave particles their way.
+    pub with_flow: bool,
+    /// Whether particles arched.
+    pub with_arches: bool,
+    /// Whether blocked constrictions left openings.
+    pub with_openings: bool,
+    /// The rules of practice that were made for these soils and are not kept, by their names for programs.
+    pub rules_not_met: Vec<String>,
     /// Replicates by their own class, in the order of [`Verdict::ALL`].
     pub replicate_verdicts: [u64; 4],
     /// Replicates.
@@ -69,7 +57,7 @@ pub struct LedgerLine {
     pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
-    /// D85B and which base it is of; `None` without a unit, and in lines of earlier versions.
+    /// D85B and which base it is of; `None` without a unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<BaseSize>,
     /// Statistics of each run.
@@ -142,8 +130,7 @@ pub struct Made {
 }
 
 impl LedgerLine {
-    /// The columns of `cases.csv` and of the page's table. What a line of an earlier version does not say
-    /// stays empty.
+    /// The columns of `cases.csv` and of the page's table.
     pub fn columns(factors: &[String]) -> Columns<'_, Self> {
         let mut columns = Columns::default()
             .column("case", |line: &Self| line.case.clone())
@@ -164,15 +151,13 @@ impl LedgerLine {
             .column("verdict", |line| line.verdict)
             .headed("Class")
             .place(-1)
-            .confidence(|line| line.confidence, |line| Some(shorten(line.reason.as_ref()?, 200)))
-            .column("reason", |line| line.reason.clone())
-            .broken_rules("rules_not_met", "Rules not met", |line| line.rules_not_met.as_ref().map(Vec::len))
+            .broken_rules("rules_not_met", "Rules not met", |line| Some(line.rules_not_met.len()))
             .column("warnings", |line| line.warnings.len())
             .headed("Warnings")
-            .column("layers", |line| line.thickness.map(|thickness| thickness.layers))
+            .column("layers", |line| line.thickness.layers)
             .thickness(3, SizeUnit::Mm, |line| {
-                let of = line.thickness;
-                (of.and_then(|of| of.mm), of.is_some_and(|of| of.scale_free), of.map(|of| of.layers))
+                let ModelledThickness { layers, mm, scale_free } = line.thickness;
+                (mm, scale_free, Some(layers))
             })
             .place(2)
             .column("replicates", |line| line.replicates)
@@ -210,6 +195,7 @@ impl LedgerLine {
     ) -> Self {
         let of = |verdict| outcome.replicates.iter().filter(|r| r.verdict == verdict).count() as u64;
         let modelled = outcome.modelled();
+        let broken = outcome.rules.iter().filter(|rule| rule.is_broken());
         Self {
             case: case.into(),
             levels: levels.iter().map(|(factor, level)| (factor.clone(), level.clone().into())).collect(),
@@ -218,17 +204,13 @@ impl LedgerLine {
             seed: outcome.seed,
             version: env!("CARGO_PKG_VERSION").into(),
             commit: option_env!("VOIDWALK_COMMIT").map(String::from),
-            verdict: outcome.verdict,
-            confidence: Some(outcome.confidence),
-            reason: outcome.reasons.first().cloned(),
+            verdict: outcome.model.class,
             undecided_by: outcome.undecided_by(),
-            thickness: Some(ModelledThickness::of(outcome)),
-            with_flow: Some(modelled.flow),
-            with_arches: Some(modelled.arches),
-            with_openings: Some(modelled.openings),
-            rules_not_met: Some(
-                outcome.rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.clone()).collect(),
-            ),
+            thickness: ModelledThickness::of(outcome),
+            with_flow: modelled.flow,
+            with_arches: modelled.arches,
+            with_openings: modelled.openings,
+            rules_not_met: broken.map(|rule| rule.id.clone()).collect(),
             replicate_verdicts: Verdict::ALL.map(of),
             replicates: outcome.replicates.len() as u64,
             n_base: outcome.n_base,
@@ -238,7 +220,7 @@ impl LedgerLine {
             ratios: outcome.ratios,
             base: outcome.inputs.base_size(),
             runs: outcome.summary.clone(),
-            warnings: outcome.known().map(|of| of.sentence.clone()).collect(),
+            warnings: outcome.findings.iter().map(|of| of.sentence.clone()).collect(),
             made,
         }
     }
@@ -246,36 +228,9 @@ impl LedgerLine {
 
 /// What the model does not contain in any case of a ledger.
 pub fn leaves_out(lines: &[LedgerLine]) -> Vec<ModelLimit> {
-    leaves_out_of_all(lines.iter().filter_map(|line| {
-        let is = |said: Option<bool>| said == Some(true);
-        Some(Modelled {
-            flow: line.with_flow?,
-            arches: is(line.with_arches),
-            openings: is(line.with_openings),
-        })
+    leaves_out_of_all(lines.iter().map(|line| Modelled {
+        flow: line.with_flow,
+        arches: line.with_arches,
+        openings: line.with_openings,
     }))
-}
-
-/// How many cases of a class there are by their confidence, in words: `2 contradicted by practice, 1 within
-/// checked range`; empty without cases.
-pub fn confidences(lines: &[LedgerLine], class: Verdict) -> String {
-    let count = |wanted| lines.iter().filter(|l| l.verdict == class && l.confidence == wanted).count();
-    let labels = Confidence::DOUBTS.into_iter().chain([Confidence::Within]).map(Some);
-    let counted = labels.chain([None]).filter(|wanted| count(*wanted) > 0).map(|wanted| {
-        format!("{} {}", count(wanted), wanted.map_or("of unknown confidence", Confidence::words))
-    });
-    counted.collect::<Vec<_>>().join(", ")
-}
-
-/// What lines of an earlier version do not say, in a sentence; `None` where there are none.
-pub fn of_earlier_versions(lines: &[LedgerLine]) -> Option<String> {
-    let count = lines.iter().filter(|line| line.thickness.is_none()).count();
-    (count > 0).then(|| {
-        let were = if count == 1 { "was" } else { "were" };
-        format!(
-            "{count} of these cases {were} walked by an earlier version: the thickness modelled, why a \
-             verdict is in doubt or undecided, and whether water gave particles their way, stand on their \
-             own pages"
-        )
-    })
 }

@@ -10,6 +10,7 @@
 //! - [`leaves_out`] is what the model does not contain.
 //! - `soil_sizes` are the sizes of a soil that a sheet shows.
 //! - [`so_far`] is a look at the replicates of a run that is under way.
+//! - [`digest`] is one number of all numbers of a record, by which two runs are compared.
 //! - `paper` holds what the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] is Eq. (1) beside the walk.
@@ -31,6 +32,7 @@ mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;
+pub mod digest;
 pub(crate) mod digits;
 pub(crate) mod early_stop;
 mod inches;
@@ -43,7 +45,6 @@ pub mod network_walk;
 pub mod number_rows;
 pub mod numbers;
 pub mod packing;
-mod pan;
 pub(crate) mod paper;
 pub mod percolation;
 pub mod precision;

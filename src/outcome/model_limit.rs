@@ -22,12 +22,10 @@ pub enum ModelLimit {
     Excessive,
     /// What soils do besides.
     Cohesion,
-    /// The words of a file of an earlier version.
-    Said(String),
 }
 
 impl ModelLimit {
-    /// All but what files say.
+    /// All of them.
     pub const ALL: [Self; 9] = [
         Self::Hydraulics,
         Self::HydraulicsElsewhere,

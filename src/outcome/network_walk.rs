@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{BaseRecord, Confidence, FindingRecord, ModelLimit, Replicate, RunSummary, Verdict};
+use super::record::{BaseRecord, FindingRecord, ModelLimit, Replicate, RunSummary, Verdict};
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -10,16 +10,8 @@ use super::record::{BaseRecord, Confidence, FindingRecord, ModelLimit, Replicate
 pub struct NetworkWalkRecord {
     /// The class that the replicates together support.
     pub verdict: Verdict,
-    /// How far the verdict can be relied on.
-    pub confidence: Confidence,
-    /// What was found about the verdict: what speaks against it first, of which the first sets the label.
-    #[serde(default)]
+    /// What a reader must know besides, in the order of every face.
     pub findings: Vec<FindingRecord>,
-    /// The sentences of those that speak against it, in the same order.
-    pub reasons: Vec<String>,
-    /// What records of earlier versions say besides; now in `findings`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.

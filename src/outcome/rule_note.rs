@@ -168,6 +168,16 @@ impl Default for RuleText {
 }
 
 impl RuleText {
+    /// The openings (mm) of the two sieves between which D15F lies, where they stand far apart; `None` of a
+    /// text that was read back.
+    pub fn d15f_between(&self) -> Option<[f64; 2]> {
+        let Self::Of(notes) = self else { return None };
+        notes.iter().find_map(|note| match *note {
+            RuleNote::D15FBetween(from, to) => Some([from, to]),
+            _ => None,
+        })
+    }
+
     /// Whether it says nothing.
     pub fn is_empty(&self) -> bool {
         match self {

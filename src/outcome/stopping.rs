@@ -119,7 +119,6 @@ impl StopRule {
             met,
             verdict,
             half_width_pp: half_width.map(|half| 100.0 * half),
-            sentence: None,
             short_of: match verdict {
                 Some(Verdict::Undecided) => Some(self.undecided(error.unwrap_or(1.0), &below, runs)),
                 _ => self.too_wide(replicates, half_width, close),

@@ -8,9 +8,6 @@ use super::record::{CurveRange, Outcome, RunSummary, Verdict};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum UndecidedBy {
-    /// The bounds of the base's finest part give different classes, in folders without a likely reading.
-    #[serde(rename = "pan fraction")]
-    Pan,
     /// The ends of the constriction curve's range give another class than the curve itself.
     #[serde(rename = "constriction curve")]
     Curve,
@@ -24,22 +21,20 @@ pub enum UndecidedBy {
 
 impl UndecidedBy {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Pan, Self::Curve, Self::SecondRun, Self::Replicates];
+    pub const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
 }
 
 impl Outcome {
     /// What leaves the verdict undecided; `None` where it is decided.
     pub fn undecided_by(&self) -> Option<UndecidedBy> {
-        if self.verdict != Verdict::Undecided {
+        if self.model.class != Verdict::Undecided {
             return None;
         }
         let erodes = |run: &RunSummary| {
             let eroded = &run.eroded_mass_fraction;
             eroded.low.unwrap_or(eroded.mean) >= self.threshold
         };
-        Some(if self.pan_bounds.as_ref().is_some_and(|bounds| bounds.differ() && bounds.likely().is_none()) {
-            UndecidedBy::Pan
-        } else if self.curve_range.as_ref().is_some_and(CurveRange::leaves_open) {
+        Some(if self.curve_range.as_ref().is_some_and(CurveRange::leaves_open) {
             UndecidedBy::Curve
         } else if self.summary.len() == 1 && self.summary.iter().all(erodes) {
             UndecidedBy::SecondRun

@@ -311,27 +311,6 @@ fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
     assert!(closest < 1.0 && held > 0.2, "{closest} {held}");
 }
 
-/// As an earlier version left it, which moved every grain with its own mass.
-#[test]
-fn a_wide_packing_that_an_earlier_version_began_goes_on_as_it_would_have() {
-    for (ratio, is_wide) in [(19.0, false), (20.0, true)] {
-        let settings = Settings { grains: 2, ..Settings::default() };
-        let edge = 3.0 * ratio;
-        let grains = [[0.2 * edge, 0.2 * edge, 0.2 * edge, ratio], [0.8 * edge, 0.8 * edge, 0.8 * edge, 1.0]];
-        let bytes = Compression::new(&packing(edge, &grains), &settings).unwrap().to_bytes();
-        let said = b"\"makes_heavier\":true,";
-        let at = bytes.windows(said.len()).position(|window| window == said);
-        assert_eq!(at.is_some(), is_wide);
-        assert_eq!(Compression::from_bytes(&settings, &bytes).unwrap().makes_heavier(), is_wide);
-        let Some(at) = at else { continue };
-        let mut earlier = [&bytes[..at], &bytes[at + said.len()..bytes.len() - 8]].concat();
-        let length = u64::from_le_bytes(earlier[16..24].try_into().unwrap()) - said.len() as u64;
-        earlier[16..24].copy_from_slice(&length.to_le_bytes());
-        earlier.extend(xxhash_rust::xxh3::xxh3_64(&earlier).to_le_bytes());
-        assert!(!Compression::from_bytes(&settings, &earlier).unwrap().makes_heavier());
-    }
-}
-
 /// The grains of a wide gradation, though none of its extremes was drawn.
 #[test]
 fn one_gradation_has_one_protocol() {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 const MAGIC: [u8; 8] = *b"vwpacked";
-const VERSION: u64 = 2;
+const VERSION: u64 = 1;
 
 /// What of a compression is not a column; the fields of the same names in [`Compression`] say what each is.
 #[derive(Serialize, Deserialize)]
@@ -30,7 +30,7 @@ struct Record {
     aspect: f64,
     strain_rate: f64,
     friction: f64,
-    /// Whether crowded grains are moved as heavier ones; earlier versions moved none so.
+    /// Whether crowded grains are moved as heavier ones.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     makes_heavier: bool,
     listed_at: u64,
@@ -64,7 +64,7 @@ impl Compression {
     /// | bytes | what |
     /// |---|---|
     /// | 8 | `vwpacked` |
-    /// | 8 | version of this format, 2 (all numbers are little-endian) |
+    /// | 8 | version of this format, 1 (all numbers are little-endian) |
     /// | 8 | bytes of the record |
     /// | | the record: JSON with named fields; every floating-point number comes back bit for bit |
     /// | 4 n | `rank` (u32) of each of the `n` grains by size, in memory order |

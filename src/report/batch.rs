@@ -191,11 +191,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              link to the page of the walk. Below a number its 95 % interval over the replicates; the \
              threshold between the classes is "
             (threshold(batch.threshold))
-            ". Probability of no erosion in a test (none outside the checked range, against practice, or \
-             beyond every D15F without erosion): by \
-             the published range of tests alone, in which boundaries are taken as log-uniform, and by what \
-             the walk is worth for soils of this kind; beyond the boundary that tests saw, the lower of the \
-             two. It is not for a risk analysis."
+            "."
         }
     }
 }

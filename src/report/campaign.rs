@@ -142,7 +142,6 @@ fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
                 .name("Class", |(class, _)| class.words())
                 .number("cases", |(_, count)| whole(*count)))
             (campaign_cases::undecided(ledger))
-            (campaign_cases::doubted(ledger))
         }
         (leaves_out(&of_ledger(ledger), &html! {}))
     } };

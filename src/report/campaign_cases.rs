@@ -10,8 +10,8 @@ use super::figures::shorten;
 use super::numbers::whole;
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::ledger::{Campaign, LedgerLine, of_earlier_versions};
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
 
@@ -28,41 +28,23 @@ pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Mar
         @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
         p.small {
             "Class: with a link to the page of the case; below it the replicates by class, where they \
-             differ. Confidence: within or outside the range in which the model was checked, contradicted \
-             by a rule of retention, or of a filter that practice would not build; below it the first \
-             reason, which sets it. Below a number its 95 % interval over the replicates."
+             differ. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
         (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
     }
 }
 
-/// How many verdicts cannot be relied on as they stand; nothing where all can.
-pub(super) fn doubted(ledger: &[LedgerLine]) -> Markup {
-    let count = |wanted| ledger.iter().filter(|line| line.confidence == Some(wanted)).count() as u64;
-    let doubts = Confidence::DOUBTS.map(|doubt| (doubt, count(doubt)));
-    html! {
-        @for (doubt, count) in doubts.into_iter().filter(|(_, count)| *count > 0) {
-            p {
-                span.amber {
-                    (whole(count)) @if count == 1 { " case: " } @else { " cases: " } (doubt.words())
-                }
-            }
-        }
-        @if let Some(said) = of_earlier_versions(ledger) { p { (said) "." } }
-    }
-}
-
 /// What leaves verdicts undecided, each thing once with the number of cases.
 pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
     let open = || ledger.iter().filter(|line| line.verdict == Verdict::Undecided);
-    let count = |by| open().filter(|line| line.undecided_by == by).count() as u64;
-    let by = UndecidedBy::ALL.map(Some).into_iter().chain([None]).map(|by| (by, count(by)));
+    let count = |by| open().filter(|line| line.undecided_by == Some(by)).count() as u64;
+    let causes = UndecidedBy::ALL.map(|by| (by, count(by)));
     html! {
-        @for (by, count) in by.filter(|(_, count)| *count > 0) {
+        @for (by, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
             p {
                 "Undecided, " (whole(count)) @if count == 1 { " case: " } @else { " cases: " }
-                (by.map_or("the page of the case says why", UndecidedBy::words)) "."
+                (by.words()) "."
             }
         }
     }
@@ -97,7 +79,7 @@ fn replicates_by_class(line: &LedgerLine) -> String {
 /// The names of the rules that a case does not keep.
 fn rules_of(line: &LedgerLine) -> Vec<String> {
     let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name());
-    line.rules_not_met.iter().flatten().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
+    line.rules_not_met.iter().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
 }
 
 /// What cases say, each thing once with the number of cases that say it, the commonest first.

@@ -18,7 +18,7 @@ use super::shell::{Drawn, citation, clean, unbroken};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::record::Verdict;
 use crate::verdict::FOREMOST;
 use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::words::capital;
@@ -108,7 +108,6 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
     };
     let first = html! { section.sheet {
             (answers(comparison))
-            (doubts(comparison))
             p { (lead(comparison)) }
             @if comparison.cases.iter().any(|case| case.verdict == Verdict::Undecided) {
                 p { "Undecided is not a verdict. The page of the case says what would decide it." }
@@ -124,10 +123,8 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
     let table = html! {
         (cases(folder, comparison))
         p.small {
-            "Class: with a link to the page of the case. Confidence: within or outside the range in which \
-             the model was checked, contradicted by a rule of retention, or of a filter that practice would \
-             not build. Below a number its 95 % interval over the replicates; the threshold between the \
-             classes is " (threshold(comparison.threshold))
+            "Class: with a link to the page of the case. Below a number its 95 % interval over the \
+             replicates; the threshold between the classes is " (threshold(comparison.threshold))
             "."
         }
     };
@@ -154,7 +151,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         .section("How this was made", &made)
 }
 
-/// How many verdicts of each class there are, and how many of them can be relied on.
+/// How many classes of the model there are of each kind.
 fn lead(comparison: &Comparison) -> String {
     let count = |class| comparison.cases.iter().filter(|case| case.verdict == class).count();
     let classes: Vec<String> = Verdict::ALL
@@ -162,42 +159,17 @@ fn lead(comparison: &Comparison) -> String {
         .filter(|class| count(*class) > 0)
         .map(|class| format!("{} {}", count(class), class.words()))
         .collect();
-    let within = comparison.cases.iter().filter(|case| case.confidence == Confidence::Within).count();
-    let relied = match (within, comparison.cases.len()) {
-        (0, _) => "None of these verdicts is within the range in which the model was checked.".to_owned(),
-        (within, all) if within == all => "All are within the range in which the model was checked.".into(),
-        (within, all) => {
-            format!("{within} of these {all} verdicts are within the range in which the model was checked.")
-        }
-    };
-    format!("In the model: {}. {relied}", classes.join(", "))
+    format!("In the model: {}.", classes.join(", "))
 }
 
-/// The lines that every face begins with, of each case; records of earlier versions have some of them.
+/// The lines that every face begins with, of each case.
 fn answers(comparison: &Comparison) -> Markup {
-    html! { @for case in comparison.cases.iter().filter(|case| !case.practice.is_empty()) {
-        @let headline = if case.headline.is_empty() { case.verdict.words() } else { &case.headline };
-        section.verdict.(colour(case.verdict, case.confidence, case.standing)) {
-            p.practice { bdi { (name(&case.name)) } ": " b { (clean(headline)) } "." }
+    html! { @for case in &comparison.cases {
+        section.verdict.(colour(case.headline)) {
+            p.practice { b { bdi { (name(&case.name)) } } }
             ul {
-                @let lines = [("Practice", &case.practice), ("Walk", &case.walk), ("Next", &case.next)];
-                @for (line, said) in lines {
-                    @if !said.is_empty() { li { b { (line) } ": " (unbroken(said)) "." } }
-                }
-                @if !case.by_authority.is_empty() { li { (unbroken(&case.by_authority)) } }
+                @for (name, words) in &case.first_lines { li { b { (name) } ": " (unbroken(words)) "." } }
             }
-        }
-    } }
-}
-
-fn doubts(comparison: &Comparison) -> Markup {
-    html! { @for doubt in Confidence::DOUBTS {
-        @let named: Vec<String> = comparison.cases.iter()
-            // The line of the walk says it.
-            .filter(|case| case.confidence == doubt && case.walk.is_empty())
-            .map(|case| name(&case.name)).collect();
-        @if !named.is_empty() {
-            p { span.amber { (capital(doubt.words())) } ": " bdi { (named.join(", ")) } }
         }
     } }
 }
@@ -212,11 +184,6 @@ fn cases(folder: &Path, comparison: &Comparison) -> Markup {
 }
 
 fn pairs(comparison: &Comparison) -> Markup {
-    let doubted = |name: &String| {
-        let of = |case: &&ComparedCase| case.name == *name && case.confidence != Confidence::Within;
-        comparison.cases.iter().any(|case| of(&case))
-    };
-    let any_doubted = comparison.pairs.iter().any(|pair| doubted(&pair.first) || doubted(&pair.second));
     let uncertain = comparison.pairs.iter().any(|pair| pair.differ.is_none());
     html! {
         @if comparison.pairs.is_empty() { p { "No two cases share a replicate." } }
@@ -235,84 +202,25 @@ fn pairs(comparison: &Comparison) -> Markup {
                 ". Its range stands in the table, as “curve”."
             }
         }
-        @if any_doubted {
-            p { span.amber { "A difference is the model’s" } ": if the verdict of a case is in doubt, so is \
-                every comparison with it." }
-        }
     }
 }
 
-/// Why the verdicts are in doubt, which rules are not kept, and what else stands beside each.
+/// Which rules are not kept, and what else to know of each case.
 fn reasons(comparison: &Comparison) -> Markup {
-    let said = |case: &&ComparedCase| {
-        !case.reasons.is_empty() || !case.rules_not_kept.is_empty() || !case.beside.is_empty()
-    };
-    html! { @for case in comparison.cases.iter().filter(said) {
+    html! { @for case in &comparison.cases {
         section.warnings {
-            h2 { bdi { (name(&case.name)) } ": "
-                @if case.confidence == Confidence::Within { "what else to know" }
-                @else { "why this verdict is in doubt" } }
-            @let all: Vec<&String> = match case.found.is_empty() {
-                true => case.reasons.iter().chain(&case.beside).collect(),
-                false => case.found.iter().collect(),
-            };
-            @let (foremost, rest) = all.split_at(all.len().min(FOREMOST));
-            ul { @for said in foremost { li { (clean(said)) } } }
+            h2 { bdi { (name(&case.name)) } ": what else to know" }
+            @let (foremost, rest) = case.found.split_at(case.found.len().min(FOREMOST));
+            ul { @for sentence in foremost { li { (clean(sentence)) } } }
             @if !case.rules_not_kept.is_empty() {
                 p { "Rules of practice that are not kept: " (clean(&case.rules_not_kept.join("; "))) "." }
             }
             @if !rest.is_empty() {
                 details {
                     summary { "and " (rest.len()) " more" }
-                    ul { @for said in rest { li { (clean(said)) } } }
+                    ul { @for sentence in rest { li { (clean(sentence)) } } }
                 }
             }
         }
     } }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gradation::Gradation;
-    use crate::outcome::record::AppliedRule;
-    use crate::verdict::PairRules;
-    use crate::verdict::practice::{Standing, standing};
-    use crate::verdict::practice_words::practice_in_words;
-
-    fn rules(base: &[(f64, f64)], filter: &[(f64, f64)]) -> Vec<AppliedRule> {
-        let of = |points| Gradation::from_lines(points).unwrap();
-        PairRules::of(&of(base), &of(filter)).rules
-    }
-
-    /// The page of a comparison of one case with some erosion, and what the case's own page is coloured.
-    fn colours(rules: &[AppliedRule]) -> (String, &'static str) {
-        let comparison: Comparison = serde_json::from_value(serde_json::json!({
-            "of": "filters", "common": "b", "seed": 1, "version": "1", "pairs": [], "threshold": 0.075,
-            "cases": [{
-                "name": "a", "folder": "a", "verdict": Verdict::Some, "confidence": Confidence::Within,
-                "reasons": [], "rules_not_kept": [], "practice": practice_in_words(rules),
-                "standing": standing(rules).recorded(), "replicates": 1, "n_base": 1,
-                "ratios": {"d15f_over_d85b": 1.0, "d15f_over_d95b": 1.0}, "runs": [],
-            }],
-        }))
-        .unwrap();
-        let own = colour(Verdict::Some, Confidence::Within, Some(standing(rules).recorded()));
-        (answers(&comparison).into_string(), own)
-    }
-
-    #[test]
-    fn a_case_has_the_colour_of_its_own_page_whatever_its_line_of_practice_begins_with() {
-        let sand = [(0.2, 0.0), (0.6, 100.0)];
-        let fails = rules(&sand, &[(8.0, 0.0), (16.0, 100.0)]);
-        // Between the limit of design and the boundary that tests saw.
-        let no_margin = rules(&sand, &[(2.5, 0.0), (5.0, 100.0)]);
-        assert_eq!([&fails, &no_margin].map(|of| standing(of)), [Standing::Fails, Standing::NoMargin]);
-        for (rules, class) in [(&fails, "continuing"), (&no_margin, "some")] {
-            assert!(practice_in_words(rules).starts_with("not met"));
-            let (page, own) = colours(rules);
-            assert_eq!(own, class);
-            assert!(page.contains(&format!("class=\"verdict {class}\"")), "{page}");
-        }
-    }
 }

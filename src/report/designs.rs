@@ -150,8 +150,7 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
             "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
              minimum D15F that drains it. "
             @if !all.filter.is_empty() {
-                "No erosion by walk up to: the D15F that nearly all networks hold; “no guide” beyond the \
-                 range in which erosion began in tests on soils with such fines. "
+                "No erosion by walk up to: the D15F that nearly all networks hold. "
             }
             "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for \
              the sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \

@@ -21,16 +21,16 @@ pub(super) fn text(path: &Path) -> Result<String, ReportError> {
 /// # Errors
 /// [`ReportError`] names the file, and the line where its form is wrong.
 pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
-    json_of(path, &text(path)?)
+    from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
-/// [`json()`] of a file with this text.
+/// The record of walks in memory, which `path` names in errors; it need not begin as a file does.
 pub(super) fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
-    from_json(text.as_bytes()).map_err(|error| ReportError::Form {
-        path: path.to_owned(),
-        line: error.line() as u64,
-        message: error.to_string(),
-    })
+    serde_json::from_str(text).map_err(|error| form(path, &error))
+}
+
+fn form(path: &Path, error: &serde_json::Error) -> ReportError {
+    ReportError::Form { path: path.to_owned(), line: error.line().max(1) as u64, message: error.to_string() }
 }
 
 /// The lines of a file of JSON lines, as `ledger.jsonl`.

@@ -7,25 +7,19 @@ use serde::Deserialize;
 use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
-use super::numbers::{SizeUnit, size, whole};
+use super::numbers::SizeUnit;
 use super::rules::{result, value_and_limit};
 use super::shell::{clean, model, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
-use crate::outcome::comparison::ComparedStanding;
-use crate::outcome::record::{
-    AppliedRule, Confidence, FindingRecord, NetworkKind, Outcome, SheetCover, Verdict,
-};
-use crate::outcome::rules::{Authority, DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::verdict::FOREMOST;
-use crate::verdict::beside::NOT_COUNTED;
-use crate::verdict::by_authority::{ON_ALL_RULES, of_pair, stated_by};
+use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
+use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::practice::standing;
+use crate::verdict::listed::listed;
 use crate::verdict::rule_words::{RuleResult, limit_begins, limit_ends, result_of, value_begins};
 use crate::verdict::words::capital;
 
-/// What the scene says of the page, and nothing else of it: a scene of another version has a page too.
+/// What the scene says of the page, and nothing else of it.
 #[derive(Default, Deserialize)]
 struct Said {
     #[serde(default)]
@@ -39,7 +33,6 @@ struct About {
     cover: SheetCover,
     coarse_left: bool,
     units: Option<String>,
-    authority: Option<String>,
 }
 
 /// Whether gradations are drawn with coarse sizes on the left.
@@ -51,12 +44,6 @@ pub(super) fn coarse_left(folder: &RunFolder) -> bool {
 pub(super) fn units(folder: &RunFolder) -> SizeUnit {
     let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.units;
     SizeUnit::of(folder.outcome.inputs.scale_free, said.as_deref() == Some("us"))
-}
-
-/// Whose rules the first sheet lists.
-pub(super) fn authority(folder: &RunFolder) -> Authority {
-    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.authority;
-    said.as_deref().and_then(Authority::named).unwrap_or_default()
 }
 
 /// The two soils, and what belongs to a sheet that is handed in.
@@ -88,70 +75,39 @@ fn about(folder: &RunFolder) -> Markup {
     cover(&said.cover.dated(day), &program, Some(folder.outcome.seed))
 }
 
-/// The answer: four lines, and the findings that matter most.
+/// The answer: the lines of practice and model, and the findings that matter most.
 pub(super) fn answer(outcome: &Outcome) -> Markup {
-    let [(_, headline), lines @ ..] = outcome.first_lines();
-    let all = findings(outcome);
-    let (foremost, more) = all.split_at(all.len().min(FOREMOST));
+    let (foremost, more) = outcome.foremost();
     html! {
-        section.verdict.(colour_of(outcome)) {
-            p.word { (clean(&capital(&headline))) "." }
-            @for (name, said) in &lines {
-                p.practice { b { (name) } ": " (unbroken(said)) "." }
-                @if *name == "Practice" && let Some(alone) = outcome.judged_alone() {
+        section.verdict.(colour(outcome.headline)) {
+            @for (name, words) in outcome.first_lines() {
+                p.practice { b { (name) } ": " (unbroken(&words)) "." }
+                @if name == "Practice" && let Some(alone) = outcome.judged_alone() {
                     p.counted { (alone) }
-                }
-                // Beside the mass that is counted.
-                @if let Some(not_counted) = outcome.not_counted().filter(|_| *name == "Walk") {
-                    p.counted { (unbroken(&not_counted)) }
                 }
             }
             @if !foremost.is_empty() {
                 ul { @for finding in foremost { li { (unbroken(&finding.sentence)) } } }
             }
-            @if !more.is_empty() {
-                p.small { "and " (more.len()) " more below, under “Other findings”" }
-            }
+            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
     }
 }
 
-/// What is said of the thickness below the rules: how much was walked, and whether the verdict moves with it.
-const OF_THICKNESS: [&str; 2] = ["modelled_thickness", MOVES_WITH_THICKNESS];
-const MOVES_WITH_THICKNESS: &str = "moves_with_thickness";
-
-/// All findings in the order of a reader, but those that stand elsewhere on the first sheet.
-pub(super) fn findings(outcome: &Outcome) -> Vec<FindingRecord> {
-    let is_elsewhere = |finding: &FindingRecord| {
-        let of_thickness = OF_THICKNESS.contains(&finding.id.as_str());
-        finding.id == NOT_COUNTED || (of_thickness && outcome.inputs.network.thickness_mm.is_some())
-    };
-    let all = outcome.ordered().into_iter();
-    all.filter(|finding| !is_elsewhere(finding)).collect()
+/// The colour of an answer, which is that of practice: neutral without it.
+pub(super) fn colour(headline: Option<Headline>) -> &'static str {
+    let Some(headline) = headline else { return "neutral" };
+    match (headline, headline.class()) {
+        (Headline::Meets, _) => "none",
+        (Headline::BeyondDesign, _) => "some",
+        (_, PracticeClass::DoesNotMeet) => "continuing",
+        (_, PracticeClass::Meets | PracticeClass::NotKnown) => "doubted",
+    }
 }
 
 /// The colour of the answer to a pair.
 pub fn colour_of(outcome: &Outcome) -> &'static str {
-    colour(outcome.verdict, outcome.confidence, Some(standing(&outcome.rules).recorded()))
-}
-
-/// The colour of the answer: that of a filter that does not hold where practice says so, whatever the walk
-/// says, and not where practice is met; never green where the model was not checked or practice does not
-/// agree.
-pub(super) fn colour(
-    verdict: Verdict,
-    confidence: Confidence,
-    standing: Option<ComparedStanding>,
-) -> &'static str {
-    match (standing, verdict) {
-        (Some(ComparedStanding::Fails), _) => "continuing",
-        (Some(ComparedStanding::Met), Verdict::Continuing) => "some",
-        (_, Verdict::Continuing) => "continuing",
-        (_, Verdict::None) if confidence != Confidence::Within => "doubted",
-        (_, Verdict::None) => "none",
-        (_, Verdict::Some) => "some",
-        (_, Verdict::Undecided) => "undecided",
-    }
+    colour(outcome.headline)
 }
 
 /// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
@@ -169,17 +125,18 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 }
 
 /// The rules of practice, those that decide first, and the thickness that was modelled.
-pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Markup {
-    let stated = stated_by(&outcome.rules, by);
-    let mut practice: Vec<&AppliedRule> = stated.iter().collect();
+pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let rules = listed(&outcome.rules);
+    let mut practice: Vec<&AppliedRule> = rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     practice.sort_by_key(|rule| place(rule));
     let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
         practice.into_iter().partition(|rule| place(rule) < WITHOUT_RESULT);
-    let of_authority = of_pair(&outcome.rules, by, Some(outcome.inputs.filter.d15_mm), outcome.if_dispersive);
+    let is_empty = shown.is_empty() && others.is_empty();
+    let range = outcome.practice.as_ref().and_then(|practice| practice.range_of_tests_mm);
     html! {
         section.short {
             h2 { "Rules of practice, in short" }
-            @if stated.is_empty() { p { "No rule was applied." } }
+            @if is_empty { p { "No rule was applied." } }
             @if !shown.is_empty() { (table(&shown, unit)) }
             @if !others.is_empty() {
                 p.others {
@@ -192,10 +149,14 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit, by: Authority) -> Mark
                     }
                 }
             }
-            @if let Some(said) = of_authority { p { b { (clean(&said)) " " (ON_ALL_RULES) } } }
-            (thickness(outcome, unit))
-            p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The verdict of the walk is \
-                the model’s. It does not replace a filter test or a designer’s judgement." }
+            @if let Some([low, high]) = range {
+                p {
+                    "Tests of bases with such fines began to erode at a D15F of " (unit.greatest(low)) " to "
+                    (unit.least(high)) " mm (Fell et al., Table 9.2)."
+                }
+            }
+            p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The model does not replace \
+                a filter test or a designer’s judgement." }
         }
     }
 }
@@ -241,24 +202,4 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         })
         .text("result", |rule| result(rule));
     html! { (table) }
-}
-
-/// How thick the filter is that was walked.
-fn thickness(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let network = &outcome.inputs.network;
-    html! {
-        @if let Some(thickness) = network.thickness_mm {
-            p.thickness {
-                "The walk models " b { (unit.size(thickness)) } " of the filter"
-                (outcome.beside_thickness(thickness, |mm| unit.size(mm))) ": "
-                (whole(network.layers)) " layers of voids"
-                @if network.kind != NetworkKind::Graph {
-                    ", each D50F by number, "
-                    (size(outcome.inputs.filter.d50_by_number_mm, outcome.inputs.scale_free))
-                }
-                ". "
-                @if let Some(sentence) = outcome.sentence_of(MOVES_WITH_THICKNESS) { (unbroken(&sentence)) }
-            }
-        }
-    }
 }

@@ -65,7 +65,7 @@ impl RunFolder {
 /// What figures and tables show of walks that an outcome is of.
 pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
     Walks {
-        verdict: outcome.verdict,
+        verdict: outcome.model.class,
         summary: &outcome.summary,
         replicates: &outcome.replicates,
         threshold: outcome.threshold,
@@ -123,7 +123,7 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
         walked: Classed {
             replicates: outcome.replicates.len() as u64,
             stopped_when_clear: false,
-            verdict: outcome.verdict,
+            verdict: outcome.model.class,
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
         },
     };

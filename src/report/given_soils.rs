@@ -45,7 +45,7 @@ impl<'a> GivenSoils<'a> {
         Self { curves, filter: None, record: "specification.json", inches: of.inches, scaled: None }
     }
 
-    /// Those of a design; none in a file of an earlier version, but for the base of its specification.
+    /// Those of a design.
     pub(super) fn of_design(of: &'a Design) -> Self {
         let specified = of.specification.iter().flat_map(|of| &of.curves);
         let mut curves: Vec<GivenCurve> = specified.map(GivenCurve::of).collect();

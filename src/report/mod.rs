@@ -66,7 +66,6 @@ mod sizes;
 mod soils;
 mod specification;
 mod table;
-mod varied;
 mod verdict_box;
 mod vtu;
 mod walks;

@@ -16,7 +16,7 @@ use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_word
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
-use crate::outcome::record::{Confidence, Verdict};
+use crate::outcome::record::Verdict;
 use crate::verdict::words::capital;
 
 /// What errors call the record.
@@ -55,11 +55,9 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     Ok(brief(
         &walks,
         &Said {
-            headline: &headline(&record),
-            class: None,
-            practice: None,
+            lines: &[("Model (research)", record.verdict.words().to_owned())],
             meaning: in_words(&walks),
-            doubt: Some(&doubt(&record)),
+            findings: &record.findings,
             replicate: replicate(&record),
             leaves_out: &record.model_leaves_out,
         },
@@ -137,7 +135,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 (leaves_out(&record.model_leaves_out, &html! {}))
             }
         }
-        (doubts(record))
+        (findings(record))
         (shell::contents())
         h2 { "Figures" }
         (shell::figures(figures))
@@ -149,39 +147,14 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
     whole_page(&title, &header, &main, &citation())
 }
 
-/// The verdict in a few words.
-fn headline(record: &NetworkWalkRecord) -> String {
-    let model = if record.confidence == Confidence::Within { "" } else { " in the model" };
-    format!("{}{model}", record.verdict.words())
-}
-
-/// How far it can be relied on and why no further, and what else there is to know.
-fn doubt(record: &NetworkWalkRecord) -> String {
-    let sentences = record.reasons.iter().cloned().chain(besides(record)).map(|said| format!(" {said}"));
-    format!("Confidence: {}.{}", record.confidence.words(), sentences.collect::<String>())
-}
-
-/// What does not speak against the verdict.
-fn besides(record: &NetworkWalkRecord) -> Vec<String> {
-    let found = record.findings.iter().filter(|finding| !finding.against).map(|of| &of.sentence);
-    let earlier = record.warnings.iter().filter(|warning| !record.reasons.contains(warning));
-    found.chain(earlier).cloned().collect()
-}
-
-fn doubts(record: &NetworkWalkRecord) -> Markup {
-    let list = |heading: &str, said: &[String]| {
-        html! {
-            @if !said.is_empty() {
-                section.sheet {
-                    h2 { (heading) }
-                    ul { @for said in said { li { (clean(&capital(said))) } } }
-                }
+fn findings(record: &NetworkWalkRecord) -> Markup {
+    html! {
+        @if !record.findings.is_empty() {
+            section.sheet {
+                h2 { "What else to know" }
+                ul { @for finding in &record.findings { li { (clean(&capital(&finding.sentence))) } } }
             }
         }
-    };
-    html! {
-        (list("Why this is in doubt", &record.reasons))
-        (list("What else to know", &besides(record)))
     }
 }
 
@@ -211,8 +184,7 @@ fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
     };
     html! {
         section.verdict.(class) {
-            p.word { (capital(&headline(record))) "." }
-            p { "Confidence: " b { (record.confidence.words()) } "." }
+            p.word { "Model (research): " (record.verdict.words()) "." }
             p.lead { (in_words(walks)) }
             div { (drawing(&run_figures::verdict(walks))) }
             (eroded_table(walks))

@@ -13,22 +13,18 @@ use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::{file_name, is_named, soil_name};
 use super::numbers::{known, percent, significant, size, whole};
-use super::results::{eroded, replicates, results, sensitivity, thickness};
+use super::results::{replicates, results, varied};
 use super::rules::rules;
-use super::run_figures::{self, run_name};
+use super::run_figures;
 use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot};
-use super::table::Table;
-use super::varied;
 use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Confidence, NetworkKind, Outcome, PanBounds, Stopping, Verdict};
+use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::{OF_AMOUNTS, OF_THICKNESS};
 use crate::verdict::words::capital;
 
 /// Characters of `scene.toml` that are shown.
@@ -64,17 +60,11 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
-    let doubt = outcome
-        .against()
-        .first()
-        .filter(|_| outcome.confidence != Confidence::Within)
-        .map(|first| format!("Confidence: {}. {}", outcome.confidence.words(), first.sentence));
+    let lines = outcome.first_lines();
     let said = Said {
-        headline: &outcome.headline(),
-        class: Some(outcome.verdict.words()),
-        practice: Some(outcome.practice_in_words()),
+        lines: &lines,
         meaning: in_words(&outcome, &walks),
-        doubt: doubt.as_deref(),
+        findings: outcome.foremost().0,
         replicate: replicate(&outcome),
         leaves_out: &outcome.model_leaves_out,
     };
@@ -102,8 +92,6 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
         run_figures::eroded(&walks),
         run_figures::layers(&walks),
         run_figures::retained(&walks),
-        varied::sensitivity(run),
-        varied::thickness(run),
         run.packing.as_ref().map(packing::slice),
     ]
     .into_iter()
@@ -128,7 +116,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         section.sheet {
             (answer(outcome))
             div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
-            (in_short(outcome, unit, first_page::authority(folder)))
+            (in_short(outcome, unit))
         }
         (shell::contents())
         (findings(outcome))
@@ -144,8 +132,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))
         (replicates(&folder.walks()))
-        (sensitivity(outcome))
-        (thickness(outcome))
+        (varied(outcome))
         (inputs(outcome, folder.packing.as_ref()))
         (appendix::of_run(outcome, unit))
         (provenance(folder))
@@ -171,48 +158,15 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     html! {
         h2 { "What the model found" }
-        p.lead { b { (capital(outcome.verdict.words())) } ". " (in_words(outcome, walks)) }
-        @if outcome.confidence != Confidence::Within {
-            p { "Confidence: " b { (clean(&outcome.confidence_in_words())) } "." }
-        }
+        p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
-        @if let Some(over) = outcome.over_curve_range() {
-            p.small { "The table is of the curve itself. Eroded " (over) "." }
-        }
-        @if let Some(bounds) = &outcome.pan_bounds { (readings(bounds)) }
         @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
         // What a rule that adds replicates says is said above.
         @if let Some(said) = outcome.sentence_of("second_run_missing").filter(|_| !falls_short) {
             p { (clean(&said)) }
         }
         (verdict_box::replicates_in_words(walks, replicate(outcome)))
-        @if let Some(evidence) = outcome.evidence_in_words() {
-            p { b { "Evidence" } ": " (clean(&evidence)) }
-        }
-    }
-}
-
-/// What came of each reading of a pan fraction that need not be passive.
-fn readings(bounds: &PanBounds) -> Markup {
-    let table = Table::of(&bounds.readings)
-        .name("The base’s finest part taken as", |reading| bounds.words(reading))
-        .text("verdict", |reading| reading.walked.verdict.words());
-    let runs =
-        (1..).map(run_name).take(bounds.readings.first().map_or(0, |reading| reading.walked.runs.len()));
-    let table = eroded(table, runs, |reading| &reading.walked);
-    html! {
-        p {
-            (percent(bounds.mass_fraction)) " of the base is finer than its finest sieve, "
-            (size(bounds.finest_sieve_mm, false)) ", which is coarser than the finest constriction, "
-            (size(bounds.finest_constriction_mm, false)) ". The base was walked with each of these readings \
-                of that part. "
-            @if bounds.likely().is_some() {
-                "The class of the first counts, which is the likely one; the others bound it. All are walked \
-                 with the constrictions of the table."
-            } @else { "The verdict takes both; all other numbers are of the first." }
-        }
-        (table)
     }
 }
 
@@ -229,13 +183,8 @@ fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
         text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
     }
     let short = ["level_missed", "target_missed", "second_run_missing"];
-    let short =
-        short.into_iter().find_map(|id| outcome.sentence_of(id)).or_else(|| stopping.sentence.clone());
-    let is_open = outcome.curve_range.as_ref().is_some_and(|range| range.whole() == Verdict::Undecided);
+    let short = short.into_iter().find_map(|id| outcome.sentence_of(id));
     text += match (&short, stopping.met) {
-        (_, true) if is_open && stopping.decide_percent.is_some() => {
-            "That was reached for the curve itself; the range of the constrictions leaves the class open."
-        }
         (_, true) => "That was reached.",
         (Some(sentence), _) => sentence,
         (None, false) => "That was not reached.",
@@ -246,7 +195,7 @@ fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
 /// What the class means, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
-        Some(open @ (UndecidedBy::Pan | UndecidedBy::Curve)) => format!("Inconclusive: {}.", open.words()),
+        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", open.words()),
         _ => verdict_box::in_words(walks),
     }
 }
@@ -254,8 +203,7 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
 /// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
 /// print.
 fn findings(outcome: &Outcome) -> Markup {
-    let all = first_page::findings(outcome);
-    let rest = &all[all.len().min(FOREMOST)..];
+    let rest = &outcome.findings[outcome.foremost().0.len()..];
     html! {
         @if !rest.is_empty() {
             h2 { "Other findings" }
@@ -267,28 +215,9 @@ fn findings(outcome: &Outcome) -> Markup {
     }
 }
 
-/// Of a page that was written before the studies were walked.
-const TO_COME: &str = "The effect of the amount of base and of the filter's thickness is not walked yet; \
-    voidwalk resume goes on with it.";
-
-/// What was left out of a study, in sentences.
-fn left_out_of(outcome: &Outcome, study: &[&str]) -> Vec<String> {
-    let is_of = |said: &&String| study.iter().any(|begin| said.starts_with(begin));
-    outcome.left_out.iter().filter(is_of).map(|said| format!("{}.", capital(said))).collect()
-}
-
 /// Says which figures are missing, and why.
 fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
-    let outcome = &folder.outcome;
-    let to_come = outcome.studies_to_come;
-    let because = |study: &[&str], asked: &str| match (to_come, left_out_of(outcome, study)) {
-        (true, _) => String::new(),
-        (false, said) if said.is_empty() => asked.to_owned(),
-        (false, said) => said.join(" "),
-    };
-    let of_base = because(OF_AMOUNTS, "Sensitivity to the number of base particles was not asked for.");
-    let of_thickness = because(OF_THICKNESS, "Filters of other thicknesses were not asked for.");
     let reasons = [
         ("eroded", "series.csv has no rows: the progress of erosion is not drawn."),
         ("layers", "layers.csv has no rows: blocking by layer is not drawn."),
@@ -296,16 +225,10 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
             "retained",
             "retained.csv and eroded.csv have no rows for the first run: size curves are not drawn.",
         ),
-        ("sensitivity", if to_come { TO_COME } else { &of_base }),
-        ("thickness", &of_thickness),
     ];
     html! {
         @for (name, reason) in reasons {
-            @if !has(name) && !reason.is_empty() { p.small { (clean(reason)) } }
-        }
-        // What was asked for beside the points that were walked.
-        @for (name, study) in [("sensitivity", OF_AMOUNTS), ("thickness", OF_THICKNESS)] {
-            @if has(name) { @for said in left_out_of(outcome, study) { p.small { (clean(&said)) } } }
+            @if !has(name) { p.small { (reason) } }
         }
         @if has("eroded")
             && folder.rows.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
@@ -343,10 +266,6 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     };
     html! {
         h2 { "Inputs" }
-        // A thickness stands on the first sheet.
-        @if network.thickness_mm.is_none() {
-            p { "Modelled filter thickness: none in particular, the layers of this network have none." }
-        }
         h3 { "Filter" }
         table.facts { tbody {
             (fact("Name", file_name(&filter.name)))
@@ -382,12 +301,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             }
             @if base.tail_mass_fraction > 0.0 {
                 (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; {}", percent(base.tail_mass_fraction),
-                        match outcome.pan_bounds {
-                            Some(_) => "walked in several readings",
-                            None => "taken as too fine to block any constriction (passive); only its \
-                                     mass is counted",
-                        })))
+                    format!("{} by mass; taken as too fine to block any constriction (passive)",
+                        percent(base.tail_mass_fraction))))
             }
             (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
                 significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
@@ -403,6 +318,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
             (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
             (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
+            (fact("Thickness modelled", known(network.thickness_mm, mm)))
         } }
     }
 }

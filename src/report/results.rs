@@ -2,10 +2,9 @@
 
 use maud::{Markup, Render, html};
 
-use super::numbers::{known, percent, percent_interval, significant, size, size_unit, trimmed, whole};
+use super::numbers::{percent, percent_interval, significant, size, size_unit, trimmed, whole};
 use super::run_figures::run_name;
 use super::table::Table;
-use super::varied::{STOPPED_WHEN_CLEAR, classes_of_points, held};
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic, Verdict};
 use crate::verdict::words::capital;
@@ -140,14 +139,6 @@ fn count(particles: u64) -> String {
     if particles < 10_000_000_000 { whole(particles) } else { significant(particles as f64) }
 }
 
-/// What is said below a study: that points stopped early, and of what their classes are.
-fn below(outcome: &Outcome, stopped: bool) -> Markup {
-    html! {
-        @if stopped { p.small { (STOPPED_WHEN_CLEAR) } }
-        @if let Some(classes) = classes_of_points(outcome) { p.small { (classes) } }
-    }
-}
-
 /// With a column a run of what eroded in each row.
 pub(super) fn eroded<'a, T>(
     table: Table<'a, T>,
@@ -159,45 +150,42 @@ pub(super) fn eroded<'a, T>(
     runs.into_iter().enumerate().fold(table, |table, (index, run)| table.number(run, of(index)))
 }
 
-/// Filters of other thicknesses, collapsed.
-pub(super) fn thickness(outcome: &Outcome) -> Markup {
-    let scale_free = outcome.inputs.scale_free;
-    let is_held = |row: &OfThickness| !outcome.has_its_base(row);
-    let table = Table::of(&outcome.thickness)
-        .number("Times the thickness", |row| format!("×{}", trimmed(row.factor)))
-        .number("Layers of voids", |row| whole(row.layers))
-        .number("Thickness", move |row| known(row.thickness_mm, |t| size(t, scale_free)))
-        .number("Base particles, N_base", move |row| {
-            format!("{}{}", whole(row.n_base), if is_held(row) { " *" } else { "" })
-        })
-        .number("Replicates", |row| row.walked.replicates);
-    let runs = outcome.summary.iter().map(|run| capital(run_name(run.run)));
-    let table = eroded(table, runs, |row| &row.walked);
-    html! {
-        @if !outcome.thickness.is_empty() { details {
-            summary { "Filters of other thicknesses, in numbers" }
-            (table.text("Verdict", |row| class(row.walked.verdict)))
-            @if outcome.thickness.iter().any(is_held) { p.small { "* " (held()) } }
-            (below(outcome, outcome.thickness.iter().any(|row| row.walked.stopped_when_clear)))
-        } }
-    }
+/// A row of [`varied`]: the case with another amount of base or another thickness.
+struct Varied<'a> {
+    changed: &'static str,
+    factor: f64,
+    layers: u64,
+    n_base: u64,
+    walked: &'a Classed,
 }
 
-/// Other numbers of base particles, collapsed.
-pub(super) fn sensitivity(outcome: &Outcome) -> Markup {
-    let table = Table::of(&outcome.sensitivity)
-        .number("Times the base particles", |case| format!("×{}", trimmed(case.factor)))
-        .number("Base particles, N_base", |case| whole(case.n_base))
-        .number("Grains per void", |case| known(case.grains_per_void, significant))
-        .number("or mass ratio", |case| known(case.mass_ratio, percent))
-        .number("Replicates", |case| case.walked.replicates);
+/// Other amounts of base and other thicknesses, with what eroded of each and its class.
+pub(super) fn varied(outcome: &Outcome) -> Markup {
+    let layers = outcome.inputs.network.layers;
+    let amounts = outcome.sensitivity.iter().map(|row| {
+        let (factor, n_base, walked) = (row.factor, row.n_base, &row.walked);
+        Varied { changed: "Amount of base", factor, layers, n_base, walked }
+    });
+    let thicknesses = outcome.thickness.iter().map(|row| {
+        let OfThickness { factor, layers, n_base, ref walked, .. } = *row;
+        Varied { changed: "Thickness", factor, layers, n_base, walked }
+    });
+    let rows: Vec<Varied> = amounts.chain(thicknesses).collect();
+    let table = Table::of(&rows)
+        .name("Changed", |row| row.changed)
+        .number("Times", |row| format!("×{}", trimmed(row.factor)))
+        .number("Layers of voids", |row| whole(row.layers))
+        .number("Base particles, N_base", |row| whole(row.n_base))
+        .number("Replicates", |row| row.walked.replicates);
     let runs = outcome.summary.iter().map(|run| capital(run_name(run.run)));
-    let table = eroded(table, runs, |case| &case.walked);
+    let table = eroded(table, runs, |row| row.walked);
     html! {
-        @if !outcome.sensitivity.is_empty() { details {
-            summary { "Sensitivity to the number of base particles, in numbers" }
-            (table.text("Verdict", |case| class(case.walked.verdict)))
-            (below(outcome, outcome.sensitivity.iter().any(|case| case.walked.stopped_when_clear)))
+        @if outcome.studies_to_come {
+            p.small { "Amount of base and thickness: not walked yet; voidwalk resume goes on with them." }
+        }
+        @if !rows.is_empty() { details {
+            summary { "Amount of base and thickness (×1 has the class of this page)" }
+            (table.text("Class", |row| class(row.walked.verdict)))
         } }
     }
 }

@@ -7,7 +7,7 @@ use super::shell::clean;
 use super::table::Table;
 use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
-use crate::verdict::by_authority::listed;
+use crate::verdict::listed::listed;
 use crate::verdict::rule_words::{
     LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
 };
@@ -23,7 +23,6 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
         h2 { "Filter rules beside the verdict" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p { (outcome.compared_with_tests()) }
             p.small { (LIMITS_ROUNDED) }
             (table(&practice, unit))
             @if !walk.is_empty() {
@@ -93,6 +92,14 @@ pub(super) fn result(rule: &AppliedRule) -> Markup {
     }
 }
 
+/// Everybody who states a rule.
+pub(super) fn authorities(rule: &AppliedRule) -> Markup {
+    match rule.authorities() {
+        none if none.is_empty() => html! { "–" },
+        named => html! { (clean(&named.join(", "))) },
+    }
+}
+
 /// Rules as a table.
 pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
@@ -101,9 +108,6 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             html! {
                 (clean(&rule.name))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
-                @if !rule.speaks_against.is_empty() && rule.role != RuleRole::Walk {
-                    br; span.small { "If not met, it argues against " (clean(&rule.speaks_against)) "." }
-                }
                 @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
                         "Without its finest " (format!("{:.1}", left.percent)) " % its D15F is "
@@ -116,6 +120,7 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 br; span.small { (clean(&rule.source)) }
             }
         })
+        .text("Authority", |rule| authorities(rule))
         .number("Here", |rule| {
             let [value, _] = value_and_limit(rule, unit);
             let value =

@@ -10,9 +10,9 @@ use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::record::{ModelLimit, RunSummary, Verdict};
+use crate::outcome::record::{FindingRecord, ModelLimit, RunSummary, Verdict};
 use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::{capital, meaning};
+use crate::verdict::words::meaning;
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
@@ -59,24 +59,17 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
 
 /// What a verdict in brief says beside its numbers.
 pub(super) struct Said<'a> {
-    /// The answer in a few words.
-    pub headline: &'a str,
-    /// The class of the walk, where the answer is by practice, too.
-    pub class: Option<&'static str>,
-    /// What filter practice says of the pair; of a network there is no pair.
-    pub practice: Option<String>,
+    /// The lines of practice and model, each with its name; of a network the model's alone.
+    pub lines: &'a [(&'static str, String)],
     /// What the class means, in the sentence of the page.
     pub meaning: String,
-    /// Why nobody should rely on the verdict as it stands, where the headline does not say it.
-    pub doubt: Option<&'a str>,
+    /// What a reader must know besides.
+    pub findings: &'a [FindingRecord],
     /// What one replicate is, and what each of several is.
     pub replicate: [&'static str; 2],
     /// What the model leaves out.
     pub leaves_out: &'a [ModelLimit],
 }
-
-/// The amber of `page.css`, where there is no style sheet; the dark text goes with it on dark pages too.
-const AMBER: &str = "background:#fff0c2;color:#222;padding:0 .25rem;border-radius:.2rem";
 
 /// The verdict in brief, for a page of another program, as a notebook: no style is needed, and the figure is
 /// a picture, so that several stand on one page.
@@ -86,13 +79,9 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
     html! {
         div {
-            p {
-                b { (clean(&capital(said.headline))) "." }
-                @if said.class.is_none() { " " (clean(&said.meaning)) }
-            }
-            @if let Some(practice) = &said.practice { p { b { "Practice" } ": " (clean(practice)) "." } }
-            @if let Some(class) = said.class { p { b { (capital(class)) "." } " " (clean(&said.meaning)) } }
-            @if let Some(doubt) = said.doubt { p { span style=(AMBER) { (clean(doubt)) } } }
+            @for (name, words) in said.lines { p { b { (name) } ": " (clean(words)) "." } }
+            p { (clean(&said.meaning)) }
+            ul { @for finding in said.findings { li { (clean(&finding.sentence)) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
             (table)

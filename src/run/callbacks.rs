@@ -62,7 +62,7 @@ pub enum Event<'a> {
         replicates: u64,
         /// Runs of each.
         runs: u64,
-        /// Whether other readings of its inputs are walked after these: of the pan fraction, of the curve.
+        /// Whether the ends of the range of its curve are walked beside these.
         readings: bool,
     },
     /// The verdict stands, and what else is walked are studies beside it.

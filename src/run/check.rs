@@ -6,9 +6,7 @@ use serde::Serialize;
 
 use super::callbacks::Callbacks;
 use super::error::RunError;
-use super::evidence::walks_margin;
 use super::machine::on_threads;
-use super::margin::MOST_WALKS;
 use super::planned::runs_to_walk;
 use super::prepare::{Draft, PrepareOptions};
 use super::replicates::{have_networks, left_out_of_first_run};
@@ -36,8 +34,6 @@ pub struct Check {
     pub one_by_one: u64,
     /// Runs to walk.
     pub runs_to_walk: u64,
-    /// Runs of the margin besides, at most: how many hangs on what they find.
-    pub runs_of_margin: u64,
     /// Increments of insertion of a run, at most.
     pub increments: u64,
     /// Memory of a walk (bytes).
@@ -127,13 +123,8 @@ fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError>
         mass_ratio: case.mass_ratio,
         one_by_one: case.one_by_one(case.n_base),
         runs_to_walk: runs_to_walk(&case),
-        runs_of_margin: if walks_margin(&case) { MOST_WALKS } else { 0 },
         increments: case.increments(),
-        bytes: case
-            .readings()
-            .map(|case| case.bytes(case.n_base, threads).saturating_add(case.kept_bytes()))
-            .max()
-            .unwrap_or(0),
+        bytes: case.bytes(case.n_base, threads).saturating_add(case.kept_bytes()),
         bytes_allowed: case.memory,
         memory: case.memory_in_words(threads),
         core_seconds: case.core_seconds_here(),

@@ -42,9 +42,8 @@ pub struct Done {
 /// Which walk of a case: a checkpoint of one is never taken for another's.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkId {
-    /// 0: the walks of the scene itself; from 1: those of the sensitivity study, then those of the other
-    /// readings of the base's pan fraction, those at the ends of the constriction curve's range, and those of
-    /// other thicknesses; from 2^32: those of the margin.
+    /// 0: the walks of the scene itself; from 1: those of the sensitivity study, then those at the ends of
+    /// the constriction curve's range, and those of other thicknesses; from 2^32: those of the margin.
     pub part: u64,
     /// Replicate, counted from 1.
     pub replicate: u64,

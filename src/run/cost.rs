@@ -123,13 +123,6 @@ impl Case {
 
     fn foreseen(&self) -> Foreseen {
         let files = FILES_S + if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
-        let readings = self.readings().map(Case::reading_foreseen);
-        let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
-        readings.fold(begun, |all, reading| all.and(1.0, &reading))
-    }
-
-    /// The same for one reading of its base, its files apart.
-    fn reading_foreseen(&self) -> Foreseen {
         let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
         let ends = &self.curve_ends;
         let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
@@ -155,7 +148,8 @@ impl Case {
         let replicates = first_replicates(self);
         let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.n_base, most_s);
         let ends = ends.iter().map(|end| (replicates_of_end(replicates), of_end(&end.curve)));
-        let first = Foreseen::default().and(replicates as f64, &own);
+        let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
+        let first = begun.and(replicates as f64, &own);
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }
 

@@ -24,10 +24,10 @@ pub struct BegunEnd<'a> {
 /// that is walked whatever comes of the case, where walks fit into the memory side by side.
 ///
 /// # Errors
-/// As [`super::replicates::replicates_and`].
+/// As [`super::replicates::replicates`].
 pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
-    // The parts before these are the sensitivity study's and the other readings'.
-    let before = (case.sensitivity_factors().len() + case.other_readings.len()) as u64 + 1;
+    // The parts before these are the sensitivity study's.
+    let before = case.sensitivity_factors().len() as u64 + 1;
     let fit = fit(case);
     let one = |(part, end): (u64, &'a OtherCurve)| {
         let other = case.with_curve(end.curve.clone());
@@ -49,7 +49,7 @@ fn fit(case: &Case) -> bool {
 /// many as were walked with the curve itself. `None` where the curve is no range.
 ///
 /// # Errors
-/// As [`super::replicates::replicates_and`].
+/// As [`super::replicates::replicates`].
 pub fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],

@@ -233,16 +233,7 @@ impl FolderKind {
     /// The figures of its page, in `figures`; those of a campaign stay, as all that it holds.
     pub fn figures(self) -> &'static [&'static str] {
         match self {
-            Self::Run => &[
-                "verdict",
-                "gradations",
-                "eroded",
-                "layers",
-                "retained",
-                "sensitivity",
-                "thickness",
-                "slice",
-            ],
+            Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "slice"],
             Self::Packing => &["curves", "slice", "connectivity"],
             Self::Percolation => &["percolation-sd", "percolation-threshold"],
             Self::Precision => &[

@@ -1,7 +1,6 @@
 //! The application: what every face of the program calls, the command line as much as any other.
 //!
-//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`reproduce`](reproduce::reproduce) walks it
-//!   again and compares, [`walk_case`] walks a case in memory,
+//! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
 //! - [`check`](check::check) says what a run would do, by the one model of `cost`.
@@ -21,11 +20,9 @@ pub(crate) mod cost;
 mod curve_range;
 pub(crate) mod erosion;
 pub mod error;
-pub(crate) mod evidence;
 mod examples;
 pub mod folder;
 pub mod machine;
-mod margin;
 mod network_answer;
 mod network_record;
 mod network_walk;
@@ -36,7 +33,6 @@ mod pilot;
 pub(crate) mod planned;
 pub(crate) mod prepare;
 pub(crate) mod replicates;
-mod reproduce;
 pub mod results;
 pub(crate) mod shared_networks;
 pub(crate) mod studies;
@@ -54,5 +50,4 @@ pub use folder::FolderKind;
 pub use network_walk::{GivenFilter, NetworkOutcome, NetworkWalk, WalkedNetwork, walk_networks};
 pub use pack::{FinishedPacking, PackOptions, pack};
 pub use prepare::{PrepareOptions, prepare, write_built_in, write_new};
-pub use reproduce::{Difference, Reproduced, reproduce};
 pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_case_recorded, walk_scene};

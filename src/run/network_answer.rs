@@ -6,13 +6,14 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::PAPER_MASS_RATIO;
 use crate::network::Network;
+use crate::outcome::record::FindingRecord;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::{Finding, Judgement, PlannedWalk, finding, judge};
+use crate::verdict::{Finding, PlannedWalk, finding, ordered};
 
 impl NetworkOutcome {
-    /// What the verdict is worth, on so many networks of which this is the first.
-    pub fn answer(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Judgement {
+    /// What a reader must know besides the class, on so many networks of which this is the first.
+    pub fn findings(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<FindingRecord> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
         let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
@@ -29,27 +30,21 @@ impl NetworkOutcome {
                 ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        let mut answer = judge(self.verdict, &rules, found);
+        let mut all = ordered(&rules, found);
         // Settings are those of a scene, and there is none.
-        answer.findings.iter_mut().for_each(|finding| finding.to_do.clear());
-        answer
+        all.iter_mut().for_each(|finding| finding.to_do.clear());
+        all
     }
 }
 
 impl NetworkWalk {
-    /// Cu of the base with all that is finer than its finest sieve as coarse as that sieve.
-    fn cu_at_least(&self) -> Option<f64> {
-        Some(self.base.d(60.0)? / self.base.smallest_mm())
-    }
-
     /// What was not checked, or is not known, whatever comes of the walk.
     fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
         let filter = self.filter.as_ref();
         let planned = PlannedWalk {
             base: &self.base,
             regraded_from: None,
-            base_cu: self.base.cu().or_else(|| self.cu_at_least()).map(|cu| [cu, cu]),
-            pan_is_passive: true,
+            finest_constriction_mm: f64::from(network.finest_open(|_| false)) * network.unit_mm(),
             filter: filter.map(|filter| &filter.gradation),
             filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
             scale_free: false,
@@ -60,7 +55,7 @@ impl NetworkWalk {
             increments: self.increments,
             replicates,
         };
-        planned.findings().into_iter().chain(self.amount(network)).chain([finding::not_studied()]).collect()
+        planned.findings().into_iter().chain(self.amount(network)).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
@@ -89,7 +84,6 @@ mod tests {
     use crate::constrictions::find;
     use crate::gradation::Gradation;
     use crate::network::{ExitRule, NetworkColumns};
-    use crate::outcome::record::Confidence;
     use crate::run::{Callbacks, GivenFilter, walk_networks};
     use crate::scene::Scene;
 
@@ -97,7 +91,7 @@ mod tests {
         n_base: Option<u64>,
         filter: Option<Gradation>,
         grains_per_void: Option<f64>,
-    ) -> (u64, Judgement) {
+    ) -> (u64, Vec<FindingRecord>) {
         let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
         let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
         let filter = filter.map(|gradation| GivenFilter { gradation, is_measured: true, grains_per_void });
@@ -106,7 +100,7 @@ mod tests {
         let eq2 = plan.eq2(&network, 0.05).unwrap();
         plan.n_base = n_base.or(eq2).unwrap();
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        (plan.n_base, outcome.answer(&plan, &network, 1))
+        (plan.n_base, outcome.findings(&plan, &network, 1))
     }
 
     /// What nobody can compare with Eq. (2), what falls short of it, and what exceeds it are doubts; its own
@@ -114,38 +108,18 @@ mod tests {
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
-        let has = |said: &Judgement, part: &str| said.reasons().iter().any(|reason| reason.contains(part));
+        let has = |found: &[FindingRecord], id: &str| found.iter().any(|finding| finding.id == id);
         let (n, of_eq2) = said(None, filter(), Some(0.6));
-        assert!(n > 1000 && !has(&of_eq2, "The base has"), "{n} {:?}", of_eq2.reasons());
-        assert!(has(&said(Some(1000), filter(), Some(0.6)).1, "The base has 1 000 of the"));
-        assert!(has(&said(Some(n + 1), filter(), Some(0.6)).1, "a smaller share passes"));
+        assert!(
+            n > 1000
+                && !["few_particles", "more_particles", "amount_unknown"].iter().any(|id| has(&of_eq2, id))
+        );
+        assert!(has(&said(Some(1000), filter(), Some(0.6)).1, "few_particles"));
+        assert!(has(&said(Some(n + 1), filter(), Some(0.6)).1, "more_particles"));
         for filter in [None, filter()] {
-            let unknown = said(Some(n), filter, None).1;
-            assert!(has(&unknown, "nothing says how many are needed"), "{:?}", unknown.reasons());
+            assert!(has(&said(Some(n), filter, None).1, "amount_unknown"));
         }
-        assert!(has(&said(Some(n), None, None).1, "no rule of practice was applied"));
-    }
-
-    /// D15F 1.13 mm and D85B 0.25 mm: practice accepts the pair. A filter ten times as coarse is refused by
-    /// its rules, whatever is walked; without a filter nobody is asked.
-    #[test]
-    fn rules_of_practice_are_asked_where_the_filter_is_known() {
-        let fine = said(Some(2000), Gradation::linear_from_d0(1.0, 1.5).ok(), Some(0.6)).1;
-        assert_eq!(fine.confidence, Confidence::Outside, "{:?}", fine.reasons());
-        let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
-        let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
-        let coarse = GivenFilter {
-            gradation: Gradation::linear_from_d0(10.0, 1.5).unwrap(),
-            is_measured: true,
-            grains_per_void: None,
-        };
-        // Coarser than every constriction: nothing passes in the model.
-        let base = Gradation::linear_from_dx(85.0, 0.9, 1.5).unwrap();
-        let plan = NetworkWalk { filter: Some(coarse), ..NetworkWalk::new(base, 500) };
-        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        let said = outcome.answer(&plan, &network, 1);
-        assert_eq!(said.confidence, Confidence::Contradicted, "{:?}", said.reasons());
-        assert!(said.reasons()[0].contains("The limit of design is D15F"), "{:?}", said.reasons());
+        assert!(has(&said(Some(n), None, None).1, "no_filter"));
     }
 
     /// The one constriction is closed by the first particle: what to try is said in the words of a walk
@@ -166,18 +140,16 @@ mod tests {
         let network = Arc::new(Network::from_columns(&columns).unwrap().0);
         let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        let reasons = outcome.answer(&plan, &network, 1).reasons().join("\n");
-        assert!(reasons.contains("clogged wholly") && reasons.contains("More and smaller increments"));
-        assert!(!reasons.contains("inject_share"), "{reasons}");
+        let found = outcome.findings(&plan, &network, 1);
+        let clogged = found.iter().find(|finding| finding.id == "clogged").expect("a finding");
+        assert!(clogged.to_do.is_empty() && !clogged.sentence.contains("inject_share"), "{clogged:?}");
     }
 
     /// Findings that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
     /// (2) asks for the base.
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
-    /// A scene knows the Cu of a base whose D10 lies in its finest part, from how it walks that part.
-    const WITHOUT_A_SCENE: [&str; 1] = ["cu_unknown"];
 
-    /// What is found of a scene, and of its soils on its network without it: all but the lists above.
+    /// What is found of a scene, and of its soils on its network without it: all but the list above.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(&'static str, String)>; 2] {
         let filter = GivenFilter {
             gradation: case.filter.clone(),
@@ -193,9 +165,9 @@ mod tests {
             let shared = found.iter().filter(|finding| !own.contains(&finding.id()));
             shared.map(|finding| (finding.id(), finding.with_to_do())).collect()
         };
-        let of_scene = case.findings().into_iter().chain(case.not_studied()).collect();
+        let of_scene = case.findings();
         let of_network = plan.findings(network, case.scene.walk.replicates);
-        [said(of_scene, &OF_A_SCENE), said(of_network, &WITHOUT_A_SCENE)]
+        [said(of_scene, &OF_A_SCENE), said(of_network, &[])]
     }
 
     /// A narrow lattice, and one whose water stops before any of the base can be through.
@@ -213,12 +185,12 @@ mod tests {
             of_network.retain(|(id, _)| *id != "given_network");
             assert_eq!(of_scene, of_network);
             let ids: BTreeSet<&str> = of_scene.iter().map(|(id, _)| *id).collect();
-            assert_eq!(ids, [id, "few_particles", "few_replicates", "not_studied"].into());
+            assert_eq!(ids, [id, "few_particles", "few_replicates"].into());
         }
     }
 
     /// The same soils on the same network, with a scene and without: each finding that follows from them is
-    /// reported by both with the same numbers, or stands in a list above.
+    /// reported by both with the same numbers, or stands in the list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
         type Points = &'static [(f64, f64)];

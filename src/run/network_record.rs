@@ -16,13 +16,9 @@ impl NetworkOutcome {
     /// The record of these walks by a plan, on so many networks of which this is the first.
     pub fn record(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> NetworkWalkRecord {
         let first = self.replicates.first().map(|walked| &walked.result);
-        let answer = self.answer(plan, network, networks);
         NetworkWalkRecord {
             verdict: self.verdict,
-            confidence: answer.confidence,
-            reasons: answer.reasons(),
-            findings: answer.findings,
-            warnings: Vec::new(),
+            findings: self.findings(plan, network, networks),
             seed: plan.seed,
             n_base: plan.n_base,
             n_base_eq2: plan.eq2(network, plan.mass_ratio).ok().flatten(),
@@ -111,6 +107,10 @@ mod tests {
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
         assert!(record.model_leaves_out[0].to_string().starts_with("hydraulics but for"));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
-        assert!(record.reasons[0].contains("nothing says how many are needed"), "{:?}", record.reasons);
+        assert!(
+            record.findings.iter().any(|finding| finding.id == "amount_unknown"),
+            "{:?}",
+            record.findings
+        );
     }
 }

@@ -347,7 +347,7 @@ mod tests {
                 ..NetworkWalk::new(case.base.clone(), 30_000)
             };
             let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
-            assert_eq!((found.verdict, &found.summary), (expected.verdict, &expected.summary));
+            assert_eq!((found.verdict, &found.summary), (expected.model.class, &expected.summary));
             for (walked, expected) in found.replicates.iter_mut().zip(&mut expected.replicates) {
                 let replicate = &mut walked.result.replicate;
                 let runs = replicate.runs.iter_mut().chain(&mut expected.runs);

@@ -1,23 +1,17 @@
-//! What is walked of a case besides itself, where its inputs leave open what it is: the other readings of a
-//! pan fraction, the ends of the range of its constriction curve, and how much coarser the filter could be.
+//! What is walked of a case besides itself, where its inputs leave open what it is: the ends of the range of
+//! its constriction curve.
 
 use super::curve_range::{begin_ends, curve_range};
 use super::error::RunError;
-use super::evidence;
-use super::margin::MOST_BYTES;
-use super::replicates::{ReplicateContext, ReplicateResult, other_readings, replicates_and};
+use super::replicates::{ReplicateContext, ReplicateResult, replicates};
 use crate::case::Case;
-use crate::outcome::record::{CurveRange, Margin};
+use crate::outcome::record::CurveRange;
 
 /// What was walked besides the case itself.
 #[derive(Default)]
 pub struct OtherWalks {
-    /// Replicates of each other reading of the base's pan fraction.
-    pub readings: Vec<Vec<ReplicateResult>>,
     /// What came of the ends of the curve's range; `None` where the curve is no range.
     pub range: Option<CurveRange>,
-    /// How much coarser the filter could be; `None` where that is not asked for.
-    pub margin: Option<Margin>,
 }
 
 impl OtherWalks {
@@ -25,21 +19,15 @@ impl OtherWalks {
     /// follows from.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates_and`].
+    /// As [`super::replicates::replicates`].
     pub fn with_case(
         case: &Case,
         context: &ReplicateContext,
     ) -> Result<(Vec<ReplicateResult>, Self), RunError> {
-        // Ends and the margin do not wait for the last replicate.
-        let margin = |own: &ReplicateResult| evidence::walked(case, own, context);
-        let (walked, begun) =
-            rayon::join(|| replicates_and(case, context, MOST_BYTES, margin), || begin_ends(case, context));
-        let ((walked, margin), begun) = (walked?, begun?);
-        let other = Self {
-            readings: other_readings(case, context)?,
-            range: curve_range(case, &walked, begun, context)?,
-            margin,
-        };
+        // Ends do not wait for the last replicate.
+        let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));
+        let (walked, begun) = (walked?, begun?);
+        let other = Self { range: curve_range(case, &walked, begun, context)? };
         Ok((walked, other))
     }
 }

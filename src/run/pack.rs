@@ -22,7 +22,7 @@ use crate::outcome::packing::PackingRecord;
 use crate::packing::{Compression, PackReport, PackingError, draw, tall_start};
 use crate::scene::PackingSpec;
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
-use crate::store::format;
+use crate::store::format::{self, from_json};
 use crate::store::{Folder, StoreError};
 
 /// The checkpoint of a compression that is not finished; its files are [`STATES`].
@@ -93,7 +93,7 @@ pub fn pack(
     }
     on_threads(options.threads, || make(&folder, &plan, options.checkpoint_interval, callbacks))?;
     let json = folder.read(RECORD)?.unwrap_or_default();
-    let record = serde_json::from_slice(&json)?;
+    let record = from_json(&json)?;
     let filter = PackedFilter::read(&out, &plan)?.ok_or_else(|| gone(&out))?;
     Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
 }

@@ -10,9 +10,8 @@ use crate::outcome::verdict::{THRESHOLD, classify};
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
     let of_ends = replicates_of_end(first) * case.curve_ends.len() as u64;
-    let of_verdict = first * case.readings().count() as u64 + of_ends;
     let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
-    case.scene.walk.runs * (of_verdict + points * replicates_at_least(case))
+    case.scene.walk.runs * (first + of_ends + points * replicates_at_least(case))
 }
 
 /// Replicates of a case as far as it is known before it is walked.

@@ -68,69 +68,27 @@ pub struct ReplicateResult {
     pub(super) below: Vec<bool>,
 }
 
-/// Walks every replicate of the case: as many as the scene says, or until its rule stops. `of_first` walks
-/// what else hangs on the first of them alone, and takes up to so many bytes: beside the others where walks
-/// fit into the memory side by side, and after them elsewhere.
+/// Walks every replicate of the case: as many as the scene says, or until its rule stops.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
-pub fn replicates_and<R: Send>(
-    case: &Case,
-    context: &ReplicateContext,
-    bytes_of_first: u64,
-    of_first: impl FnOnce(&ReplicateResult) -> Result<R, RunError> + Send,
-) -> Result<(Vec<ReplicateResult>, R), RunError> {
-    let wanted = first_replicates(case);
-    tell_needs(case, wanted, context);
-    let rest = || some_replicates(case, 0, 2..=wanted, case.n_base, context);
-    let fits = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
-    if !fits || !case.has_room_beside(bytes_of_first) {
-        let walked = all_replicates(case, 0, Vec::new(), context)?;
-        let besides = of_first(&walked[0])?;
-        return Ok((walked, besides));
-    }
-    let first = || {
-        let first = walk_replicate(case, 0, 1, case.n_base, context)?;
-        let besides = of_first(&first)?;
-        Ok((first, besides))
-    };
-    let (first, rest): (Result<_, RunError>, _) = rayon::join(first, rest);
-    let (first, besides) = first?;
-    let mut walked = vec![first];
-    walked.extend(rest?);
-    Ok((all_replicates(case, 0, walked, context)?, besides))
+pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+    tell_needs(case, first_replicates(case), context);
+    all_replicates(case, 0, context)
 }
 
 /// Says that the verdict needs so many replicates, as far as is known.
 fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
-    let readings = !case.other_readings.is_empty() || !case.curve_ends.is_empty();
+    let readings = !case.curve_ends.is_empty();
     context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
 }
 
-/// The same for each other reading of the base's pan fraction, on the same networks.
-///
-/// # Errors
-/// As [`replicates_and`].
-pub fn other_readings(
-    case: &Case,
-    context: &ReplicateContext,
-) -> Result<Vec<Vec<ReplicateResult>>, RunError> {
-    // The parts before are those of the sensitivity study.
-    let parts = case.sensitivity_factors().len() as u64 + 1..;
-    parts
-        .zip(&case.other_readings)
-        .map(|(part, other)| all_replicates(other, part, Vec::new(), context))
-        .collect()
-}
-
-/// Goes on from those that are walked already, until there are enough.
 fn all_replicates(
     case: &Case,
     part: u64,
-    mut walked: Vec<ReplicateResult>,
     context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
-    let mut wanted = first_replicates(case);
+    let (mut wanted, mut walked) = (first_replicates(case), Vec::new());
     loop {
         let more = walked.len() as u64 + 1..=wanted;
         walked.extend(some_replicates(case, part, more, case.n_base, context)?);

@@ -5,16 +5,16 @@ use std::time::SystemTime;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::evidence::evidence;
 use super::machine::Machine;
 use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, said_by_walks};
 use super::studies::Studies;
-use super::summary::{classed, concluded, summarise};
+use super::summary::{concluded, summarise};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
+use crate::outcome::digest::digest;
 use crate::outcome::record::{
-    Classed, Confidence, ConstrictionsRecord, IfDispersive, Manifest, Outcome, PanBounds, PanReading,
-    Statistic, Verdict, VoidRow, commit,
+    ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Verdict,
+    VoidRow, commit,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -23,7 +23,7 @@ use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
 use crate::verdict::left_out::LeftOut;
-use crate::verdict::{Finding, beside, dispersion, finding, judge, practice};
+use crate::verdict::{Finding, beside, dispersion, finding, ordered, practice};
 use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -37,36 +37,27 @@ pub fn outcome(
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
     let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
-    let pan_bounds = pan_bounds(case, walked, &other.readings);
-    let verdict = pan_bounds.as_ref().map_or(verdict, PanBounds::verdict);
     let inputs = rule_inputs(case, walked);
     let rules = rules::apply(&inputs);
-    let verdict = match &other.range {
-        // What the base's finest part leaves open stays so.
-        Some(range) if verdict == range.verdict => range.whole(),
-        Some(range) if range.whole() != verdict => Verdict::Undecided,
-        _ => verdict,
-    };
+    let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
     let mut found = findings_of_walk(case, verdict, walked);
-    for (reading, walked) in case.other_readings.iter().zip(&other.readings) {
-        found.extend(findings_of_walk(reading, verdict, walked));
-    }
     found.extend(case.unchecked_clogging());
     found.extend(unsure.map(finding::decided_below_95));
-    found.extend(case.findings().into_iter().chain(case.not_studied()));
-    // What was to be walked in several readings has been.
-    found.extend(pan_bounds.as_ref().map(beside::pan).or_else(|| case.to_be_walked()));
+    found.extend(case.findings());
     found.extend(other.range.as_ref().map(beside::curve_range));
+    let inputs_record = case.record();
     let mut outcome = Outcome {
-        headline: String::new(),
-        verdict,
-        confidence: Confidence::default(),
+        headline: None,
+        practice: practice::record(&rules, rules::tested_range(&inputs)),
+        model: Model {
+            class: verdict,
+            eroded_percent: eroded_percent(&summary, other.range.as_ref()),
+            replicates: walked.len() as u64,
+            network: inputs_record.network.kind,
+        },
         findings: Vec::new(),
-        reasons: Vec::new(),
-        notes: Vec::new(),
-        practice: practice::record(&rules),
         if_dispersive: None,
-        constrictions: Some(ConstrictionsRecord { origin: case.curve_origin() }),
+        constrictions: ConstrictionsRecord { origin: case.curve_origin() },
         seed: case.scene.walk.seed,
         n_base: case.n_base,
         n_base_eq2: case.n_base_eq2,
@@ -76,12 +67,10 @@ pub fn outcome(
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
         stopping,
-        pan_bounds,
         threshold: verdict::THRESHOLD,
-        warnings: Vec::new(),
         left_out: left_out(case, walked.first().map_or(&[], |walked| &walked.left_out)),
         model_leaves_out: leaves_out(case.modelled()),
-        inputs: case.record(),
+        inputs: inputs_record,
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
         rules,
@@ -90,58 +79,40 @@ pub fn outcome(
             .is_lattice_by_area()
             .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
         curve_range: other.range.clone(),
-        margin: other.margin.clone(),
-        evidence: evidence(case, other.margin.as_ref()),
         arching: case.arching_record(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
         studies_to_come: false,
+        digest: String::new(),
         seconds,
     };
     found.extend(outcome.found());
     if case.scene.base.dispersive.is_none() {
         let d15f = case.filter.d(15.0);
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
-        let of = |of| dispersion::finding(verdict, d15f, &outcome.rules, of);
-        found.extend(outcome.if_dispersive.and_then(of));
+        let note = |limit| dispersion::finding(d15f, &outcome.rules, limit);
+        found.extend(outcome.if_dispersive.map(note));
     }
-    if let Some(evidence) = &outcome.evidence {
-        found = evidence.weigh(verdict, &outcome.rules, found);
-    }
-    let answer = judge(verdict, &outcome.rules, found);
-    (outcome.confidence, outcome.reasons) = (answer.confidence, answer.reasons());
-    outcome.findings = answer.findings;
-    outcome.headline = outcome.headline();
+    outcome.findings = ordered(&outcome.rules, found);
+    outcome.headline = practice::headline(&outcome.rules, outcome.beyond_if_dispersive().is_some());
+    outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
+}
+
+/// Mass eroded (%) of each run, least and most, over the replicates and the range of the constriction curve.
+fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f64; 2]> {
+    let of_run = |(index, run): (usize, &RunSummary)| {
+        let Statistic { mean, low, high, .. } = run.eroded_mass_fraction;
+        let ends = range.and_then(|range| range.eroded_mass_fraction.get(index).copied());
+        ends.unwrap_or([low.unwrap_or(mean), high.unwrap_or(mean)]).map(|part| 100.0 * part)
+    };
+    summary.iter().enumerate().map(of_run).collect()
 }
 
 /// What these walks say themselves against the verdict.
 fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
     let of_network = (case.counts[3], case.scene.leaves_openings());
-    said_by_walks(verdict, walked, &case.base, case.increments(), of_network)
-}
-
-/// What came of the readings of the base's pan fraction; `None` where there is only one.
-fn pan_bounds(case: &Case, own: &[ReplicateResult], others: &[Vec<ReplicateResult>]) -> Option<PanBounds> {
-    let reading = |case: &Case, walked: &[ReplicateResult]| -> Option<PanReading> {
-        let (verdict, _, stopping) = concluded(case, walked);
-        Some(PanReading {
-            taken_as: case.pan_size?,
-            n_base: case.n_base,
-            walked: Classed { verdict, ..classed(walked) },
-            stopping,
-        })
-    };
-    if case.other_readings.is_empty() {
-        return None;
-    }
-    let walked = std::iter::once(own).chain(others.iter().map(Vec::as_slice));
-    Some(PanBounds {
-        mass_fraction: case.base.pan_fraction(),
-        finest_sieve_mm: case.base.smallest_mm(),
-        finest_constriction_mm: case.finest_mm,
-        readings: case.readings().zip(walked).map(|(case, of)| reading(case, of)).collect::<Option<_>>()?,
-    })
+    said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network)
 }
 
 /// Writes what a run can be started again from: the resolved scene and its input files.
@@ -268,6 +239,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::Headline;
     use crate::run::{Callbacks, walk_case};
     use crate::scene::Scene;
 
@@ -300,9 +272,8 @@ mod tests {
         let next = coarse.next_in_words();
         let beside =
             "at most 0.700 mm (0.500 mm if the base is dispersive, which is not stated) and at least ";
-        assert!(next.contains(beside), "{:?}: {next}", coarse.verdict);
-        let fine = Outcome { verdict: Verdict::None, ..walked(45.0, 0.06, &[]) };
-        let next = fine.next_in_words();
+        assert!(next.contains(beside), "{next}");
+        let next = walked(45.0, 0.06, &[]).next_in_words();
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = walked(25.0, 9.0, &[]).next_in_words();
@@ -316,25 +287,14 @@ mod tests {
         }
     }
 
-    /// A limit that holds if the base is dispersive, and that the filter breaks, stands in the line of
-    /// practice; the test stands in the next step, whatever the walk says, and no finding says it again.
     #[test]
     fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
-        let walked = walked(45.0, 0.6, &[]);
-        let test = "have the base tested for dispersion by a pinhole or crumb test";
-        for verdict in [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided] {
-            let of = Outcome { verdict, ..walked.clone() };
-            let (practice, next) = (of.practice_in_words(), of.next_in_words());
-            let beyond = "; if the base is dispersive, the limit is 0.500 mm, and 0.";
-            let begin = "met unless the base is dispersive, without a margin in the limit: D15F ";
-            assert!(practice.starts_with(begin), "{practice}");
-            assert!(practice.contains(beyond), "{practice}");
-            let headline = of.headline();
-            assert!(headline.starts_with("holds by practice unless the base is dispersive; "), "{headline}");
-            assert_eq!(next, test);
-            assert!(of.ordered().iter().all(|finding| finding.id != "dispersive_would_not_hold"));
-        }
-        let kept = Outcome { verdict: Verdict::None, ..super::tests::walked(45.0, 0.45, &[]) };
+        let broken = walked(45.0, 0.6, &[]);
+        assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
+        assert!(broken.practice_in_words().contains("; if the base is dispersive, the limit is 0.500 mm, "));
+        assert_eq!(broken.next_in_words(), "have the base tested for dispersion by a pinhole or crumb test");
+        let kept = walked(45.0, 0.45, &[]);
+        assert_eq!(kept.headline, Some(Headline::Meets));
         assert!(!kept.next_in_words().contains("dispers"), "{}", kept.next_in_words());
         assert!(!kept.practice_in_words().contains("dispersive"));
     }
@@ -354,72 +314,15 @@ mod tests {
         assert!(pan.starts_with(&format!("{begin}0.375 mm; for a filter that exists")), "{pan}");
     }
 
-    /// Beyond every D15F without erosion the line of the walk has its place and no probability; a base that
-    /// erodes does so though a part of the filter is not counted; and the label says which range it means.
     #[test]
-    fn the_line_of_the_walk_has_no_number_that_nobody_can_work_out() {
-        use crate::outcome::record::{Confidence, Evidence};
-        use crate::outcome::rules::BaseSoil;
-        use crate::verdict::finding;
-        let rows = "0.01,0\n0.02,8.6\n0.04,17.2\n0.075,25\n0.15,58.5\n0.3,92\n0.6,100\n";
-        let points = [(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)];
-        let soil = BaseSoil::of(&crate::Gradation::from_lines(&points).unwrap(), false);
-        let of = |d15f: f64| {
-            let walked = walked_base(rows, d15f, &[]);
-            let evidence = Evidence::of(&soil, walked.inputs.filter.d15_mm, Some(1.5), None);
-            Outcome { confidence: Confidence::Within, findings: Vec::new(), evidence, ..walked }
-        };
-        let (within, beyond) = (of(0.5), of(9.0));
-        let said = within.walk_in_words();
-        assert!(said.contains("Probability of no erosion in a test"), "{said}");
-        // A worse label hides nothing, and no probability comes back with it.
-        let few = |id: &[crate::verdict::Finding]| Outcome {
-            verdict: Verdict::None,
-            confidence: Confidence::MayNotDrain,
-            findings: id.iter().map(|of| of.record(true)).collect(),
-            ..within.clone()
-        };
-        let dry = finding::fines_of_filter("8 %");
-        let all =
-            [dry.clone(), finding::cu_unchecked("filter", 18.0, 1.2, 6.0), finding::may_segregate("Cu")];
-        let (dry, all) = (few(&[dry]), few(&all));
-        assert!(dry.shows_probabilities() && !all.shows_probabilities());
-        assert!(!all.walk_in_words().contains("robability") && all.walk_in_words().contains("filter 18"));
-        let words = all.confidence_in_words();
-        for word in ["may not drain", "outside checked range", "may segregate"] {
-            assert!(words.contains(word), "{words}");
+    fn what_eroded_is_recorded_run_by_run() {
+        let outcome = walked(45.0, 1.2, &["replicates=3"]);
+        let model = &outcome.model;
+        assert_eq!((model.replicates, model.eroded_percent.len()), (3, outcome.summary.len()));
+        for ([low, high], run) in model.eroded_percent.iter().zip(&outcome.summary) {
+            let mean = 100.0 * run.eroded_mass_fraction.mean;
+            assert!(low <= &mean && &mean <= high, "{low} {mean} {high}");
         }
-        assert!(all.headline().starts_with(&dry.headline()) && all.headline().contains("may segregate"));
-        let said = beyond.walk_in_words();
-        assert!(!said.contains("robability") && said.contains(" times the highest D15F without "), "{said}");
-        assert!(beyond.evidence.is_some_and(|of| of.probability_by_tests.is_some()));
-
-        let found = [
-            finding::pan_of_filter(2.0).record(false),
-            finding::cu_unchecked("filter", 35.4, 1.2, 6.0).record(true),
-        ];
-        let of = |verdict| Outcome {
-            verdict,
-            confidence: Confidence::Outside,
-            findings: found.to_vec(),
-            ..within.clone()
-        };
-        for (verdict, erodes) in [
-            (Verdict::None, false),
-            (Verdict::Some, true),
-            (Verdict::Continuing, true),
-            (Verdict::Undecided, false),
-        ] {
-            let said = of(verdict).not_counted().unwrap();
-            assert_eq!(said.ends_with("favours holding. The base erodes all the same."), erodes, "{said}");
-        }
-        let range = "; outside checked range (Cu of the filter 35.4, checked for 1.2 to 6)";
-        let said = of(Verdict::Continuing).walk_in_words();
-        assert!(said.contains(range), "{said}");
-        // Practice is met: nobody is sent to a laboratory for what the model was not checked for.
-        let of = of(Verdict::None);
-        assert!(!of.next_in_words().contains("tested") && of.walk_in_words().contains(range));
-        assert!(of.confidence_in_words().ends_with(" (Cu of the filter 35.4, checked for 1.2 to 6)"));
     }
 
     /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
@@ -434,17 +337,17 @@ mod tests {
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=true"]).as_deref(), Some("0.111"));
         // Within the floor nothing is to be done.
-        let of = |d15f, set| Outcome { verdict: Verdict::None, ..walked_base(CLAY, d15f, &[set]) };
-        let fine = of(0.18, "base.dispersive=false");
+        let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
+        let fine = of(0.18);
         assert_eq!(fine.next_in_words(), "nothing by these rules");
-        assert!(fine.practice_in_words().starts_with("met, ") && fine.headline().starts_with("holds by "));
-        let fine = of(0.08, "base.dispersive=false");
+        assert_eq!(fine.headline, Some(Headline::Meets));
+        let fine = of(0.08);
         assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.200 mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {
             let said = walked_base(FAT, d15f, &["base.dispersive=false"]);
-            assert!(said.practice_in_words().starts_with("not met: "), "{}", said.practice_in_words());
+            assert_eq!(said.headline, Some(Headline::DoesNotMeet));
             assert_eq!(most(FAT, d15f, &["base.dispersive=false"]).as_deref(), Some("0.0720"));
         }
     }

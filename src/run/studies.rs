@@ -50,9 +50,8 @@ struct Walked {
 /// The points of both studies of a case.
 fn points(case: &Case) -> Vec<Point<'_>> {
     let factors = case.sensitivity_factors();
-    // The parts between are those of the other readings and of the ends of the curve's range.
-    let between = case.other_readings.len() + case.curve_ends.len();
-    let thicknesses = (factors.len() + between) as u64 + 1..;
+    // The parts between are those of the ends of the curve's range.
+    let thicknesses = (factors.len() + case.curve_ends.len()) as u64 + 1..;
     let of_base = |(part, factor): (u64, f64)| Point {
         case: Cow::Borrowed(case),
         part,
@@ -73,7 +72,7 @@ impl Studies {
     /// that was walked besides taken in.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates_and`].
+    /// As [`super::replicates::replicates`].
     pub fn walk(
         case: &Case,
         own: &[ReplicateResult],

@@ -7,6 +7,7 @@
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::store::format::from_json;
 use crate::store::{Folder, StoreError};
 
 /// The file.
@@ -42,7 +43,7 @@ impl Unfinished {
         if Self::read(folder)?.as_ref() != Some(self) {
             return Ok(None);
         }
-        Ok(folder.read(record)?.and_then(|bytes| serde_json::from_slice(&bytes).ok()))
+        Ok(folder.read(record)?.and_then(|bytes| from_json(&bytes).ok()))
     }
 
     /// Marks a folder, unless it says the same already.

@@ -23,6 +23,7 @@ use crate::outcome::Recorded;
 use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
+use crate::store::format::from_json;
 use crate::text::{plain, shell_word};
 
 /// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
@@ -70,7 +71,7 @@ pub struct FinishedRun {
 /// let folder = tempfile::tempdir()?;
 /// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
 /// let run = walk_scene(Scene::built_in(&settings)?, &options, &Callbacks::default())?;
-/// println!("{}: {}", run.folder.display(), run.outcome.verdict.words());
+/// println!("{}: {}", run.folder.display(), run.outcome.model.class.words());
 /// assert!(run.folder.join("outcome.json").is_file());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -162,7 +163,7 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         if !Studies::are_none(case) {
             (callbacks.on_event)(Event::VerdictStands(&first));
         }
-        let studies = Studies::walk(case, &walked, first.verdict, &context)?;
+        let studies = Studies::walk(case, &walked, first.model.class, &context)?;
         let outcome = results::outcome(case, &walked, &other, studies, seconds(begun));
         let mut recorded = Recorded::default();
         walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
@@ -294,7 +295,7 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
         return Ok(None);
     }
     let outcome = folder.read(FolderKind::Run.record())?;
-    let outcome: Option<Outcome> = outcome.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let outcome: Option<Outcome> = outcome.and_then(|bytes| from_json(&bytes).ok());
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
@@ -338,8 +339,8 @@ impl CaseRun<'_> {
         first.studies_to_come = true;
         write(&first, &walked)?;
         (self.callbacks.on_event)(Event::VerdictStands(&first));
-        let studies =
-            Studies::walk(self.case, &walked, first.verdict, &context).map_err(|error| self.ended(error))?;
+        let studies = Studies::walk(self.case, &walked, first.model.class, &context)
+            .map_err(|error| self.ended(error))?;
         let whole = outcome(studies);
         write(&whole, &walked)?;
         Ok(whole)

@@ -4,7 +4,7 @@ use super::About;
 use crate::outcome::record::SheetCover;
 
 /// Settings of the sheet that are one of a few words, or of the figure: they are not on the cover.
-const NO_COVER: [&str; 3] = ["coarse_left", "authority", "units"];
+const NO_COVER: [&str; 2] = ["coarse_left", "units"];
 
 impl About {
     /// The full names of the settings of the cover, which are texts.

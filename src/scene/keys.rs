@@ -7,7 +7,6 @@ use super::values::{
 };
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, shipped};
 use crate::network::ExitRule;
-use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
@@ -251,10 +250,6 @@ section! {
         /// this study. Default: half and twice, if `sensitivity` is walked.
         pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Walk how much coarser the filter could be before the base begins to erode, on the first
-        /// replicate's network. Default: only where base and filter are sieve tables of `voidwalk judge` and
-        /// its like.
-        pub margin: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
         /// Most replicates of each point of both studies; a clear point stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
@@ -281,9 +276,6 @@ section! {
         pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
-        /// Whose rules the first sheet lists: "all", or those of one authority, with what it leaves out. The
-        /// verdict rests on all of them.
-        pub authority: Option<Authority> = None, off "\"nrcs\"", words(&Authority::ALL.map(Authority::word));
         /// "us": sizes on the first sheet in inches too, and the names of US sieves in the appendix. Files
         /// stay in mm.
         pub units: Option<SheetUnits> = None, off "\"us\"", words(&SheetUnits::ALL.map(SheetUnits::name));

@@ -15,7 +15,7 @@ pub struct TableOptions {
     pub density: Option<Density>,
     /// This very filter is packed, loose where no density is given.
     pub pack: bool,
-    /// A first look: fewer replicates, and no studies of the amount of base and of the thickness.
+    /// A first look: fewer replicates.
     pub quick: bool,
     /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
     /// regrades
@@ -75,9 +75,6 @@ impl TableOptions {
         if self.quick && !self.is_set(&REPLICATES) {
             settings.push(format!("replicates={QUICK}"));
         }
-        if self.quick && !self.is_set(&["record.sensitivity"]) {
-            settings.push("record.sensitivity=[]".into());
-        }
         if self.as_sampled {
             settings.push(self.regrading()?);
         }
@@ -125,7 +122,8 @@ impl Scene {
         if !options.as_sampled && !options.is_set(&REGRADE) {
             settings.push(options.regrading()?);
         }
-        settings.push("record.margin=true".into());
+        // A pair is judged as it is given; other amounts and thicknesses are a researcher's question.
+        settings.push("record.sensitivity=[]".into());
         let changes = options.settings()?;
         let mut scene = Self::built_in(&[&settings[..], &changes].concat())?;
         // Passive particles by the million scatter by less than anyone reads, and their expectation is quick;
@@ -338,9 +336,20 @@ mod tests {
     }
 
     #[test]
+    fn a_pair_is_walked_with_another_amount_or_thickness_where_that_is_set_alone() {
+        let of = |sets: &[&str]| {
+            let record = scene(&with(sets)).unwrap().record;
+            (record.sensitivity, record.thickness)
+        };
+        assert_eq!(of(&[]), (Vec::new(), None));
+        assert_eq!(of(&["record.sensitivity=[2]"]), (vec![2.0], None));
+        assert_eq!(of(&["record.thickness=[0.5]"]), (Vec::new(), Some(vec![0.5])));
+    }
+
+    #[test]
     fn a_quick_look_walks_fewer_replicates_of_the_same_model() {
         let quick = scene(&TableOptions { quick: true, ..with(&[]) }).unwrap();
-        assert_eq!((quick.walk.replicates, quick.record.sensitivity.len()), (QUICK, 0));
+        assert_eq!(quick.walk.replicates, QUICK);
         let whole = scene(&with(&[])).unwrap();
         assert_eq!(quick.network, whole.network);
         let told = scene(&TableOptions { quick: true, ..with(&["replicates=7"]) }).unwrap();

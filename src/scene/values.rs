@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::network::{Connectivity, ExitRule};
-use crate::outcome::rules::Authority;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::Leaf;
 use crate::walk::{ArchSize, BlockedAs, Concentration, Engine, LawName, Sampling};
@@ -190,7 +189,6 @@ impl SheetUnits {
 }
 
 impl Leaf for SheetUnits {}
-impl Leaf for Authority {}
 impl Leaf for CellOption {}
 impl Leaf for LengthUnit {}
 impl Leaf for NetworkMadeOf {}

@@ -191,10 +191,9 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "boundaries": boundaries,
         "share_of_networks": share_of_networks(design.replicates),
         "replicates": design.replicates,
-        "confidence": design.confidence.words(),
-        "reasons": design.reasons,
+        "fits_by_practice": design.fits_by_practice(),
         "cautions": design.cautions().iter().map(DesignFinding::words).collect::<Vec<_>>(),
-        "warnings": design.warnings_beside_cautions(),
+        "warnings": design.findings_beside_cautions(),
         "products": design.products_in_words(),
         "model_leaves_out": design.model_leaves_out,
     }))
@@ -218,10 +217,12 @@ mod tests {
         let text = json!({
             "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
             "unit": "mm",
-            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.2, "d95_over_d85": null},
-            "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
-            "confidence": "within checked range", "reasons": [], "rules": [], "rules_at": 1.75,
-            "products": [], "warnings": [unstable.words(), "another"], "findings": [unstable.clone()],
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.2, "d95_over_d85": null,
+                "tail_mass_fraction": 0.0},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
+            "step": 0.005,
+            "rules": [], "rules_at": 1.75,
+            "products": [], "findings": [unstable.clone()],
             "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": of,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": null, "continuing": null, "not_monotone": 0,
@@ -232,7 +233,7 @@ mod tests {
             least: 0.7,
             least_at_most: false,
             greatest: 0.75,
-            set_by: Some(SetBy::Walk),
+            set_by: SetBy::Walk,
             practice: Some(0.8069),
             practice_rule: "r".into(),
             practice_rule_id: None,
@@ -247,10 +248,10 @@ mod tests {
         // The page shows the answer part by part.
         assert_eq!(shown["answer"]["limit"], design.answer().limit);
         assert!(!design.answer().limit.is_empty());
-        assert_eq!(shown["warnings"], json!(["another"]));
+        assert_eq!(shown["warnings"], json!([]));
         // Without a specification the warning stays where it was.
         let alone = Design { specification: None, ..design };
-        assert_eq!(of_design(&alone).unwrap()["warnings"].as_array().unwrap().len(), 2);
+        assert_eq!(of_design(&alone).unwrap()["warnings"].as_array().unwrap().len(), 1);
     }
 
     /// Five networks: the ends on the page are the least and the most of them.
@@ -262,10 +263,12 @@ mod tests {
         let text = json!({
             "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
             "unit": "mm",
-            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.5, "d95_over_d85": null},
-            "threshold": 0.075, "replicates": 5, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
-            "confidence": "within checked range", "reasons": [], "rules": [], "rules_at": 1.75,
-            "products": [], "warnings": [], "findings": [],
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.5, "d95_over_d85": null,
+                "tail_mass_fraction": 0.0},
+            "threshold": 0.075, "replicates": 5, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
+            "step": 0.005,
+            "rules": [], "rules_at": 1.75,
+            "products": [], "findings": [],
             "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": boundary, "continuing": null, "not_monotone": 0,

@@ -91,9 +91,8 @@ impl Live {
             CaseEvent::Done(line) => {
                 self.walking.remove(case);
                 self.cases[0] += 1;
-                let confidence = line.confidence.map(|confidence| confidence.words());
                 let words = line.verdict.words();
-                self.done.push(json!({ "case": case, "verdict": words, "confidence": confidence }));
+                self.done.push(json!({ "case": case, "verdict": words }));
             }
             CaseEvent::Failed(problem) => {
                 self.walking.remove(case);

@@ -356,16 +356,16 @@ function showRules(pair) {
   if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), named(open)));
   if (!broken.length && !open.length) parts.push(el("p", {}, "Every rule that was made for these soils is met. What the walk says is another question."));
   parts.push(el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source], shown: [value, limit], found, sign, ends, bound }) => {
-    return el("tr", {}, el("td", {}, result(found)), el("td", {}, name),
+  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound }) => {
+    return el("tr", {}, el("td", {}, result(found)), el("td", {}, name), el("td", {}, authorities || "–"),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
       el("td", { class: "n" }, limit ? `${sign} ${limit}${ends}` : "–"),
       el("td", { class: "small" }, [rule.note, rule.needs, source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
-    ...["Result", "Rule", "Quantity"].map((text) => el("th", {}, text)),
+    ...["Result", "Rule", "Authority", "Quantity"].map((text) => el("th", {}, text)),
     ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
-    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 6 }, el("b", {}, title))), ...rowsOfRole(role))));
+    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 7 }, el("b", {}, title))), ...rowsOfRole(role))));
   parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("p", { class: "small" }, pair.rounded), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }
@@ -491,12 +491,10 @@ async function design() {
 async function check() {
   show($("#form-problem"), "");
   const into = $("#checked");
-  const margin = (check) => check.runs_of_margin ? `, and up to ${check.runs_of_margin} for the margin` : "";
-  const runs = (check) => whole(check.runs_to_walk) + margin(check);
   into.hidden = true;
   try {
     const check = await ask("api/check", asked(false));
-    const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", runs(check)],
+    const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", whole(check.runs_to_walk)],
       ["voids", whole(check.inputs.network.voids)], ["memory", check.memory],
       ["time to walk", `about ${number(check.core_seconds)} s of one core, a rough guess`]];
     if (check.packing) {
@@ -546,7 +544,6 @@ const eroded = (run) => percent(run.mean) + (run.low === null ? ", no interval f
 const COLOURS = { none: "green", some: "amber", doubted: "amber", continuing: "red" };
 
 const list = (items) => (items && items.length ? el("ul", {}, ...items.map((item) => el("li", {}, item))) : null);
-const confidenceOf = (words) => (words === "within checked range" ? el("span", {}, words) : el("span", { class: "mark" }, words));
 
 /** What a walk has come to so far: never a verdict. */
 function soFar(job) {
@@ -561,7 +558,7 @@ function soFar(job) {
     parts.push(el("p", {}, `${live.cases_done} of ${live.cases} cases are done` + (live.case && !live.walking.length && live.cases_done < live.cases ? `; at ${live.case}` : "")),
       el("progress", { max: live.cases, value: live.cases_done + live.walking.reduce((sum, one) => sum + one.done / Math.max(1, one.runs), 0) }),
       list(live.walking.map((one) => `${one.case}: ${whole(one.done)} of ${whole(one.runs)} runs are walked`)),
-      list(live.done.map((one) => `${one.case}: ${one.verdict} (${one.confidence})`)));
+      list(live.done.map((one) => `${one.case}: ${one.verdict}`)));
   } else if (live.runs) {
     parts.push(el("p", {}, `${whole(live.runs_done)} of ${whole(live.runs)} runs are walked`), el("progress", { max: live.runs, value: live.runs_done }));
   } else if (!live.lines.length) {
@@ -611,24 +608,20 @@ function boundariesOf(job) {
     el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
     said.walk ? el("p", {}, `${said.walk}.`) : null,
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
-    el("p", {}, "Confidence: ", confidenceOf(done.confidence), "."),
     scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
       el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.products ? el("p", {}, `${done.products}.`) : null,
-    done.reasons.length ? el("details", { open: done.confidence !== "within checked range" }, el("summary", {}, "Limits of this answer"), list(done.reasons)) : null,
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
 }
 
-/** No green where no boundary is known, where it cannot be relied on, where practice has no answer, or where no filter drains and holds. */
-const colourOfDesign = (done) => (done.confidence !== "within checked range" || (done.answer && done.answer.d15f_over_d85b === null)
+/** No green where no boundary is known, where the walk sets the answer, where practice has no answer, or where no filter drains and holds. */
+const colourOfDesign = (done) => (!done.fits_by_practice || (done.answer && done.answer.d15f_over_d85b === null)
   || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
   : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
 
 /** The lines that every face begins with. */
-const answer = (of) => [of.headline ? el("p", { class: "word" }, `${of.headline.charAt(0).toUpperCase()}${of.headline.slice(1)}.`) : null,
-  ...["Practice", "Walk", "Next"].filter((name) => of[name.toLowerCase()])
-    .map((name) => el("p", { class: "practice" }, el("b", {}, name), `: ${of[name.toLowerCase()]}.`))];
+const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
 
 /** At most three findings; the rest is folded. */
 const findings = (all) => [list(all.slice(0, 3)),
@@ -643,15 +636,15 @@ function verdictOf(job) {
   }
   if (job.kind === "compare") {
     return [scrolling(`the cases of job ${job.id}`, el("table", {}, el("thead", {}, el("tr", {},
-      ...["Case", "Class", "Confidence", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
+      ...["Case", "Class", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
       el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
-        el("td", {}, confidenceOf(one.confidence)), el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
+        el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one), ...findings([...one.reasons, ...one.beside])]),
+      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.first_lines), ...findings(one.found)]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  return [...answer(done), ...plot(done.runs), ...findings(done.findings)];
+  return [...answer(done.lines), ...plot(done.runs), ...findings(done.findings)];
 }
 
 function card(job) {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::outcome::numbers::SizeUnit;
 use crate::report::value_and_limit;
 use crate::verdict::PairRules;
-use crate::verdict::by_authority::listed;
+use crate::verdict::listed::listed;
 use crate::verdict::rule_words::{LIMITS_ROUNDED, limit_begins, limit_ends, result_of, value_begins};
 
 /// Every rule with its words: the page shows value and limit as every sheet does, and works nothing out.
@@ -15,7 +15,12 @@ pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
     // What a sheet lists once is no row of its own.
     let names: Vec<_> = rules
         .iter()
-        .map(|rule| listed.iter().find(|of| of.id == rule.id).map(|of| [&of.name, &of.source]))
+        .map(|rule| {
+            listed
+                .iter()
+                .find(|of| of.id == rule.id)
+                .map(|of| [of.name.clone(), of.source.clone(), of.authorities().join(", ")])
+        })
         .map(|of| json!(of))
         .collect();
     let shown: Vec<_> = rules.iter().map(|rule| value_and_limit(rule, SizeUnit::Mm)).collect();

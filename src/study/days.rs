@@ -42,6 +42,7 @@ fn day(moment: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::store::format::MANIFEST;
 
     #[test]
     fn the_last_day_of_several_cases_counts_and_a_folder_without_one_says_nothing() {
@@ -61,7 +62,7 @@ mod tests {
                 finished: finished.into(),
                 command: String::new(),
             };
-            std::fs::write(folder.join("manifest.json"), serde_json::to_vec(&manifest).unwrap()).unwrap();
+            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest).unwrap()).unwrap();
             folder
         };
         let cases =

@@ -237,8 +237,7 @@ impl SampleDesignOptions {
 
     fn stated_with(&self, settings: &[String]) -> String {
         let of = &self.design;
-        let authority = of.authority.word();
-        format!("{} {authority} {settings:?} {} {}", of.sieves, of.as_sampled, of.as_given)
+        format!("{} {settings:?} {} {}", of.sieves, of.as_sampled, of.as_given)
     }
 
     fn of_sample(&self, row: &DesignedSample, out: PathBuf) -> DesignOptions {
@@ -252,7 +251,7 @@ fn covered(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, Run
     let design: Design = kept::record(&options.out, kind)?;
     // A date that is no day was stated earlier; the table of the walks tells their day.
     let day = design.cover.date.clone().filter(|date| is_day(date));
-    let day = day.or_else(|| design.cover.date.as_ref().and(day_of(&options.out.join(OF_DESIGN))));
+    let day = day.or_else(|| day_of(&options.out.join(OF_DESIGN)));
     let cover = options.cover().dated(day);
     if design.cover == cover {
         return Ok(design);

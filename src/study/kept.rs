@@ -52,7 +52,7 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                 false => kept.newest(callbacks)?,
             };
             let has_cases = kind.has_cases();
-            // Of a corrupt mark, or one of an earlier version, nothing is known.
+            // Of a corrupt mark nothing is known.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
                 return Err(RunError::Refused(format!(
                     "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \

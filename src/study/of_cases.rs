@@ -17,6 +17,7 @@ use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
 use crate::scene::Scene;
 use crate::store::Folder;
+use crate::store::format::from_json;
 
 /// What a sheet says of itself, as a part of what its study follows from; nothing where nothing is said.
 pub(super) fn of_sheet(cover: &SheetCover, inches: bool) -> String {
@@ -110,7 +111,7 @@ impl StudyOfCases<'_> {
         };
         if kind.is_finished(folder.path())? {
             let bytes = folder.read(kind.record())?;
-            let there = bytes.and_then(|bytes| serde_json::from_slice::<R>(&bytes).ok());
+            let there = bytes.and_then(|bytes| from_json::<R>(&bytes).ok());
             let is_walked = |cases: Option<&[PreparedCase]>| {
                 let cases = cases.filter(|all| all.iter().all(|of| of.line(&of_campaign.out).is_some()));
                 there.filter(|there| cases.is_some_and(|cases| is_this(there, cases)))

@@ -26,7 +26,7 @@ impl Band {
             least,
             least_at_most: drainage.limit_at_most,
             greatest,
-            set_by: Some(if stricter.is_some() { SetBy::Practice } else { SetBy::Walk }),
+            set_by: if stricter.is_some() { SetBy::Practice } else { SetBy::Walk },
             practice: strictest.map(|(_, limit)| limit),
             practice_rule: strictest.map_or_else(String::new, |(rule, _)| rule.name.clone()),
             practice_rule_id: strictest.map(|(rule, _)| rule.id.clone()),
@@ -42,19 +42,9 @@ impl Band {
         Some(band)
     }
 
-    /// Its two sides in words. That of an earlier version may say more than practice allows.
-    pub fn words(&self) -> String {
-        match (self.is_empty, self.set_by, self.practice) {
-            (false, None, Some(practice)) if practice < self.greatest => {
-                self.sides(practice, Some(self.rule()))
-            }
-            _ => self.said.clone(),
-        }
-    }
-
     /// What practice allows beyond the walk that sets the greatest; `None` where it allows no more.
     pub fn practice_in_words(&self) -> Option<String> {
-        let limit = self.practice.filter(|_| self.set_by == Some(SetBy::Walk) && !self.is_empty)?;
+        let limit = self.practice.filter(|_| self.set_by == SetBy::Walk && !self.is_empty)?;
         Some(format!("practice allows up to {} {}", rounded_down(limit), self.unit))
     }
 
@@ -63,8 +53,8 @@ impl Band {
         let size = |rounded: String| format!("{rounded} {}", self.unit);
         let (least, greatest) = (size(rounded_up(self.least)), size(rounded_down(self.greatest)));
         let set_by = match self.set_by {
-            Some(SetBy::Practice) => self.rule(),
-            _ => "the walk".into(),
+            SetBy::Practice => self.rule(),
+            SetBy::Walk => "the walk".into(),
         };
         self.is_empty.then(|| finding::empty_band(&least, &greatest, &set_by))
     }
@@ -117,11 +107,8 @@ mod tests {
              design)"
         );
         let narrow = Band::new(&all, D15F, 1.2, "mm").unwrap();
-        assert_eq!((narrow.greatest, narrow.set_by), (1.2, Some(SetBy::Walk)));
+        assert_eq!((narrow.greatest, narrow.set_by), (1.2, SetBy::Walk));
         assert_eq!(narrow.said, "D15F from 0.430 to 1.20 mm, the coarse side by the walk");
-        // As an earlier version wrote it.
-        let old = Band { greatest: 1.8, set_by: None, said: "D15F from 0.430 to 1.800 mm".into(), ..band };
-        assert!(old.words().contains("from 0.430 to 1.60 mm") && (old.greatest_of_both() - 1.6).abs() < 1e-9);
     }
 
     #[test]
@@ -143,7 +130,7 @@ mod tests {
         let band = Band::new(&all, D15F, 1.5, "mm").unwrap();
         let least = 5.0 * 0.4 * libm::pow(1.2, -1.4);
         assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
-        assert_eq!((band.greatest, band.set_by), (1.5, Some(SetBy::Walk)));
+        assert_eq!((band.greatest, band.set_by), (1.5, SetBy::Walk));
     }
 
     #[test]
@@ -153,7 +140,7 @@ mod tests {
         let least = 5.0 * 0.4 * libm::pow(1.1, -1.4);
         assert!(band.practice.unwrap() < least && least < 1.8, "{band:?}");
         assert!(band.is_empty && (band.least - least).abs() < 1e-9, "{band:?}");
-        assert!((band.greatest - 1.6).abs() < 1e-9 && band.set_by == Some(SetBy::Practice), "{band:?}");
+        assert!((band.greatest - 1.6).abs() < 1e-9 && band.set_by == SetBy::Practice, "{band:?}");
     }
 
     #[test]

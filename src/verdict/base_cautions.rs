@@ -25,7 +25,7 @@ pub(super) fn broad_base(sampled: &Gradation) -> Option<Finding> {
 }
 
 impl Design {
-    /// What its specification warns of; nothing without one, and in files of earlier versions.
+    /// What its specification warns of; nothing without one.
     pub fn cautions(&self) -> &[DesignFinding] {
         self.specification.as_ref().map_or(&[], |of| &of.findings)
     }
@@ -36,10 +36,9 @@ impl Design {
         ALIKE.contains(&id) && self.cautions().iter().any(|said| said.finding.id == id)
     }
 
-    /// The warnings without what the specification says.
-    pub fn warnings_beside_cautions(&self) -> Vec<String> {
-        let said: Vec<String> =
-            self.findings.iter().filter(|of| self.is_cautioned(of)).map(DesignFinding::words).collect();
-        self.warnings.iter().filter(|warning| !said.contains(warning)).cloned().collect()
+    /// What was found besides, without what the specification says.
+    pub fn findings_beside_cautions(&self) -> Vec<String> {
+        let others = self.findings.iter().filter(|found| !self.is_cautioned(found));
+        others.map(DesignFinding::words).collect()
     }
 }

@@ -4,7 +4,6 @@
 use super::mistake::Mistake;
 use super::pair::{PairOptions, PairRules};
 use super::practice::{DRAINAGE_UNKNOWN, broken, open_sieves, standing};
-use super::practice_words::MET_UNLESS_DISPERSIVE;
 use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
@@ -216,7 +215,7 @@ impl BatchRow {
     /// The result in words.
     pub fn result(&self) -> &'static str {
         match self.met {
-            Some(true) if self.breaks_if_dispersive => MET_UNLESS_DISPERSIVE,
+            Some(true) if self.breaks_if_dispersive => "met unless the base is dispersive",
             Some(true) => "met",
             Some(false) => "not met",
             None => "no result",

@@ -6,18 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
 use super::rule_words::cited_rule;
-use super::words::capital;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{
-    Confidence, FindingRecord, IfDispersive, InputFile, ModelLimit, SheetCover, commit,
-};
+use crate::outcome::record::{FindingRecord, IfDispersive, InputFile, ModelLimit, SheetCover, commit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 11] = [
+const SHOWN: [&str; 10] = [
     "sample",
     "group",
     "d85b_mm",
@@ -28,7 +25,6 @@ const SHOWN: [&str; 11] = [
     "d15f_max_mm",
     "set_by",
     "governs",
-    "confidence",
 ];
 
 /// The whole of `designs.json`.
@@ -37,7 +33,7 @@ const SHOWN: [&str; 11] = [
 pub struct DesignedSamples {
     /// Version of the program.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Hash of everything that the rows follow from: samples, shape of the filter and settings.
@@ -51,13 +47,13 @@ pub struct DesignedSamples {
     /// Whether inches stand beside mm on page and terminal.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// What the sheet says of itself; without a day in files of earlier versions.
+    /// What the sheet says of itself.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
     /// What was walked for every sample; `None` where nothing was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walks: Option<DesignedWalks>,
-    /// Every file that was read; empty in files of earlier versions.
+    /// Every file that was read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
     /// A row for each sample.
@@ -75,7 +71,7 @@ pub struct DesignedWalks {
     /// The filter's shape and its constrictions, in words.
     pub filter: String,
     /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not
-    /// given, and in files of earlier versions.
+    /// given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub filter_gradation: Vec<[f64; 2]>,
     /// How densely the filter is packed, in the order in which it was asked for.
@@ -117,7 +113,7 @@ pub struct DesignedSample {
     pub sample: String,
     /// What names the sample on a command line.
     pub path: PathBuf,
-    /// Size (mm) and percent finer by mass, as sampled; empty in files of earlier versions.
+    /// Size (mm) and percent finer by mass, as sampled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradation: Vec<[f64; 2]>,
     /// The same after regrading; empty where the rules do not regrade it.
@@ -148,8 +144,7 @@ pub struct DesignedSample {
     pub if_dispersive: Option<IfDispersive>,
     /// Maximum D15F that both practice and walk allow; `None` where none is known.
     pub d15f_max_mm: Option<f64>,
-    /// What a reader must know of the sample itself, as for a filter of its own; empty in files of earlier
-    /// versions.
+    /// What a reader must know of the sample itself, as for a filter of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<FindingRecord>,
     /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
@@ -180,15 +175,6 @@ pub struct SampleDesign {
     /// Whose rule set it; empty where the walk did.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub rule: String,
-    /// How far the answer can be relied on.
-    pub confidence: Confidence,
-    /// The weightiest reason why no further.
-    pub reason: Option<String>,
-    /// The walk's D15F of no erosion over the centre of the range in which erosion began in tests on soils
-    /// with such fines, where it lies beyond that range: the walk is no guide there. `None` in files of
-    /// earlier versions, too.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub beyond_tests: Option<f64>,
     /// That the filter as given is too coarse without the finer part that it may lose, as a design has it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub washout: Option<String>,
@@ -240,9 +226,6 @@ impl DesignedSample {
             no_erosion_d15f_over_d85b: ratio,
             set_by: answer.set_by,
             rule: rule.map_or_else(String::new, cited_rule),
-            confidence: design.confidence,
-            reason: design.reasons.first().cloned(),
-            beyond_tests: design.beyond_tests(),
             washout: answer.washout,
             said: answer.said,
         };
@@ -304,11 +287,9 @@ impl DesignedSample {
             .digits("no_erosion_d15f_mm", 4, move |row| design(row)?.no_erosion_d15f_mm)
             .number("No erosion by walk up to, mm", move |row| {
                 let mm = design(row).and_then(|of| of.no_erosion_d15f_mm).map(|mm| unit.greatest(mm));
-                let no_guide = design(row).and_then(|of| of.beyond_tests).map(|_| "no guide".to_owned());
-                mm.unwrap_or_default().shown().below(why_not(row).or(no_guide))
+                mm.unwrap_or_default().shown().below(why_not(row))
             })
             .digits("no_erosion_d15f_over_d85b", 3, move |row| design(row)?.no_erosion_d15f_over_d85b)
-            .digits("walk_over_centre_of_tests", 2, move |row| design(row)?.beyond_tests)
             .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
             .number("D15F up to, mm", move |row| {
                 let is_unserved = row.d15f_max_mm.is_some() && !row.no_band.is_empty();
@@ -319,12 +300,6 @@ impl DesignedSample {
             .headed("Set by")
             .column("governs", |row: &Self| row.governs)
             .headed("Governs")
-            .column("confidence", move |row| design(row).map(|of| of.confidence.words().to_owned()))
-            .words("Confidence", move |row| {
-                let words = design(row).map(|of| capital(of.confidence.words())).unwrap_or_default();
-                words.shown().below(design(row).and_then(|of| of.reason))
-            })
-            .column("reason", move |row| design(row)?.reason)
             .column("not_walked", |row: &Self| row.not_walked.clone())
             .column("no_band", |row: &Self| row.no_band.clone())
             .column("said", move |row| design(row).map(|of| of.said))

@@ -2,9 +2,8 @@
 
 use super::designed_samples::{DesignedSample, DesignedSamples};
 use super::specification::{least_of_band, no_band_between};
-use super::words::capital;
 use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::record::{Confidence, IfDispersive};
+use crate::outcome::record::IfDispersive;
 use crate::outcome::rules::WIDEST_BAND;
 
 /// What a specification warns of a base, and how it begins where it is said of several.
@@ -163,13 +162,6 @@ impl DesignedSamples {
         if walked > 0 {
             said.extend(self.set_in_words());
             said.extend(self.washout_in_words(walked));
-            said.extend(self.beyond_tests_in_words(walked));
-        }
-        for confidence in self.confidences() {
-            let is_so =
-                |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.confidence == confidence);
-            let count = self.rows.iter().filter(is_so).count();
-            said.push(format!("{}: {count} of {}", capital(confidence.words()), counted(walked)));
         }
         let (open, known): (Vec<_>, Vec<_>) = self.rows.iter().partition(|row| row.d15f_max_mm.is_none());
         let unserved = known.iter().filter(|row| !row.no_band.is_empty());
@@ -253,30 +245,6 @@ impl DesignedSamples {
             )
         })
     }
-
-    /// For how many of the samples that were walked the walk is no guide.
-    fn beyond_tests_in_words(&self, walked: usize) -> Option<String> {
-        let beyond = |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.beyond_tests.is_some());
-        let count = self.rows.iter().filter(beyond).count();
-        (count > 0).then(|| {
-            format!(
-                "The walk is no guide for {count} of {}: its boundary of no erosion lies beyond the range in \
-                 which erosion began in tests on soils with such fines",
-                counted(walked)
-            )
-        })
-    }
-
-    /// The confidences below the best, once each.
-    fn confidences(&self) -> Vec<Confidence> {
-        let mut all: Vec<Confidence> = Vec::new();
-        for of in self.rows.iter().filter_map(|row| row.design.as_ref()) {
-            if of.confidence != Confidence::Within && !all.contains(&of.confidence) {
-                all.push(of.confidence);
-            }
-        }
-        all
-    }
 }
 
 #[cfg(test)]
@@ -305,9 +273,6 @@ mod tests {
             no_erosion_d15f_over_d85b: None,
             set_by: SetBy::Walk,
             rule: String::new(),
-            confidence: Confidence::Outside,
-            reason: Some("too small".into()),
-            beyond_tests: None,
             washout: None,
             said: "No ratio is known".into(),
         };
@@ -351,7 +316,6 @@ mod tests {
             " mm. Their bands, and the filter for all, are then not valid: design again for dispersive soils",
             "Not a complete specification: the maximum D90F is still to be set",
             "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",
-            "Outside checked range: 2 of 2 samples",
             "May govern, as no maximum D15F is known: silt (limit of practice ",
             "mm): No ratio is known",
         ] {
@@ -360,30 +324,7 @@ mod tests {
         let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
         assert!(csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,limit_mm,rule,"));
         assert_eq!(csv.lines().count(), 4);
-        assert!(
-            csv.contains("outside checked range,too small") && csv.contains("No ratio is known"),
-            "{csv}"
-        );
-    }
-
-    /// A boundary of the walk that lies beyond every test is marked where it stands.
-    #[test]
-    fn samples_whose_walk_is_no_guide_are_counted_and_marked() {
-        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
-        let guide = |beyond_tests| {
-            let of = walked(core.clone(), Some(17.8));
-            let design = of.design.clone().map(|design| SampleDesign { beyond_tests, ..design });
-            DesignedSample { design, ..of }
-        };
-        let all = DesignedSamples::new("s".into(), vec![guide(Some(16.3)), guide(None)]);
-        let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
-        assert!(
-            said.contains("The walk is no guide for 1 of 2 samples: its boundary of no erosion "),
-            "{said}"
-        );
-        let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
-        let at = |line: &str| line.contains(",16.3");
-        assert_eq!(csv.lines().map(at).collect::<Vec<_>>(), [false, true, false], "{csv}");
+        assert!(csv.contains("No ratio is known"), "{csv}");
     }
 
     #[test]

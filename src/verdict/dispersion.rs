@@ -1,7 +1,7 @@
 //! What is said of a base of which nobody has said whether it is dispersive.
 //!
 //! A sieve table does not tell it, tests of dispersive soils had other boundaries, and practice has other
-//! limits for them. Only a class that trusts the filter needs the statement.
+//! limits for them.
 
 use super::entry::Finding;
 use super::finding;
@@ -11,7 +11,7 @@ use crate::gradation::{FEW_FINES, Gradation};
 use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::numbers::rounded_down;
-use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Verdict};
+use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
 use crate::outcome::rules::{NamedCurve, RuleInputs, apply};
 
 /// What to do where the limit of a pair is not known.
@@ -123,22 +123,6 @@ impl IfDispersive {
         format!("D15F is to be {}", self.limit_and(TEST_WITH_FILTER))
     }
 
-    /// What practice says then of a filter of this D15F (mm), where that is known, and of these rules.
-    pub fn of_filter(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> String {
-        let allows = format!("practice allows a D15F of at most {} mm", rounded_down(self.d15f_max_mm));
-        match (d15f_mm.map(|d15f| self.is_broken_by(d15f)), self.at_most) {
-            (Some(true), _) => format!("{allows}, which is not met"),
-            (_, true) => format!("D15F is to be {}", self.limit_and(TEST_PAIR)),
-            (Some(false), false) => {
-                let lost = lost_beyond(rules, self.d15f_max_mm).map_or_else(String::new, |left| {
-                    format!(" as placed, but not without the filter's finest {} %", fixed(left.percent, 1))
-                });
-                format!("{allows}, which is met{lost}")
-            }
-            (None, false) => allows,
-        }
-    }
-
     /// The D15F of a filter beside the limit that it breaks then, as placed or without the finer part that it
     /// may lose, where it keeps `rules` as they are: what does not hold anyway would not hold the more.
     fn newly_broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<[String; 2]> {
@@ -168,98 +152,51 @@ impl IfDispersive {
     }
 }
 
-/// What is said beside a verdict of a base of which nobody has said whether it is dispersive, and of its
-/// filter of this D15F (mm); `rules` are those of the pair. `None` where the walk erodes.
-pub fn finding(
-    verdict: Verdict,
-    d15f_mm: Option<f64>,
-    rules: &[AppliedRule],
-    if_dispersive: IfDispersive,
-) -> Option<Finding> {
-    if matches!(verdict, Verdict::Some | Verdict::Continuing) {
-        return None;
-    }
-    Some(match if_dispersive.newly_broken_by(rules, d15f_mm) {
+/// The note on a base of which nobody has said whether it is dispersive, and on its filter of this D15F (mm);
+/// `rules` are those of the pair.
+pub fn finding(d15f_mm: Option<f64>, rules: &[AppliedRule], if_dispersive: IfDispersive) -> Finding {
+    match if_dispersive.newly_broken_by(rules, d15f_mm) {
         Some([value, limit]) => finding::dispersive_would_not_hold(&limit, &value),
-        None => {
-            let limit = format!("{} mm", rounded_down(if_dispersive.d15f_max_mm));
-            finding::dispersion_not_known(&if_dispersive.of_filter(rules, d15f_mm), &limit)
-        }
-    })
+        None => finding::dispersion_not_known(&if_dispersive.limit()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gradation::Gradation;
-    use crate::outcome::record::Confidence;
-    use crate::verdict::{PairRules, judge};
+    use crate::verdict::PairRules;
 
-    /// Id, sentence and label of a verdict on a soil with so many percent of fines and a filter of this D15.
-    fn said(verdict: Verdict, fines: f64, d15f: f64) -> (Option<(&'static str, String)>, Confidence) {
-        said_of(&[(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)], verdict, d15f)
+    fn soil(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_lines(points).unwrap()
     }
 
-    /// The same of a base of these points.
-    fn said_of(
-        base: &[(f64, f64)],
-        verdict: Verdict,
-        d15f: f64,
-    ) -> (Option<(&'static str, String)>, Confidence) {
-        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
-        let base = soil(base);
+    fn with_fines(fines: f64) -> [(f64, f64); 4] {
+        [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]
+    }
+
+    /// Id of the note on a base and a filter of this D15, and the limit if the base is dispersive.
+    fn note(base: &[(f64, f64)], d15f: f64) -> Option<(&'static str, IfDispersive)> {
         let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-        let pair = PairRules::of(&base, &filter);
-        let inputs = RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) };
-        let if_dispersive = IfDispersive::of(&inputs);
-        let found = if_dispersive.and_then(|of| finding(verdict, Some(d15f), &pair.rules, of));
-        let label = judge(verdict, &pair.rules, found.clone().into_iter().collect()).confidence;
-        (found.map(|found| (found.id(), found.sentence())), label)
+        let pair = PairRules::of(&soil(base), &filter);
+        let limit = pair.if_dispersive?;
+        Some((finding(Some(d15f), &pair.rules, limit).id(), limit))
     }
 
     /// Practice has 0.7 mm for such soils, 0.5 mm where they are dispersive.
     #[test]
-    fn no_erosion_is_within_only_where_a_dispersive_base_would_be_held_too() {
+    fn a_filter_that_a_dispersive_base_would_have_finer_is_told_from_one_that_holds_it() {
         for fines in [36.0, 45.0, 80.0] {
-            let (found, label) = said(Verdict::None, fines, 0.6);
-            let (id, sentence) = found.unwrap();
-            assert_eq!((id, label), ("dispersive_would_not_hold", Confidence::Outside));
-            assert!(
-                sentence.contains("allows a D15F of at most 0.500 mm, and this is 0.600 mm"),
-                "{sentence}"
-            );
-            let (found, label) = said(Verdict::None, fines, 0.45);
-            let (id, sentence) = found.unwrap();
-            assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
-            // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
-            let then = match fines < 40.0 {
-                true => "If it is, D15F is to be at most 0.500 mm, and have the pair tested. ",
-                false => "allows a D15F of at most 0.500 mm, which is met",
-            };
-            assert!(sentence.contains(then), "{sentence}");
-        }
-    }
-
-    /// What page 1 says next and what the finding says is one decision.
-    #[test]
-    fn the_finding_and_the_next_step_say_the_same() {
-        for (d15f_max_mm, at_most) in [(0.5, false), (0.5, true)] {
-            let of = IfDispersive { d15f_max_mm, at_most, lacks: None };
-            for d15f in [Some(0.4), Some(0.5), None] {
-                let found = finding(Verdict::None, d15f, &[], of).unwrap();
-                let said = found.sentence();
-                assert_eq!(found.record(false).numbers["limit"], "0.500 mm");
-                assert!(said.contains(&format!("If it is, {}. ", of.of_filter(&[], d15f))), "{said}");
+            let base = with_fines(fines);
+            for (d15f, id) in [(0.6, "dispersive_would_not_hold"), (0.45, "dispersion_not_known")] {
+                let (found, limit) = note(&base, d15f).unwrap();
+                assert_eq!((found, limit.is_broken_by(d15f)), (id, d15f > 0.5));
+                assert!((limit.d15f_max_mm - 0.5).abs() < 1e-9, "{limit:?}");
+                // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
+                assert_eq!(limit.at_most, fines < 40.0);
             }
-            let found = finding(Verdict::None, Some(0.6), &[], of).unwrap();
-            assert_eq!(found.id(), "dispersive_would_not_hold");
-            assert!(of.of_filter(&[], Some(0.6)).ends_with("0.500 mm, which is not met"));
+            // A filter that does not hold anyway would not hold the more.
+            assert_eq!(note(&base, 0.9).unwrap().0, "dispersion_not_known");
         }
-        let open = IfDispersive { d15f_max_mm: 0.5, at_most: true, lacks: None };
-        assert_eq!(
-            open.beside(0.4).unwrap(),
-            "if the base is dispersive, which is not stated: at most 0.500 mm, and have the pair tested"
-        );
     }
 
     /// A clay whose table ends at No. 200 lacks its D85 alone: for such fines practice has a limit. The same
@@ -267,16 +204,11 @@ mod tests {
     #[test]
     fn a_clay_that_no_hydrometer_tested_lacks_its_d85_and_no_source() {
         let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
-        let (id, sentence) = said_of(&clay, Verdict::None, 0.4).0.unwrap();
-        assert_eq!(id, "dispersion_not_known");
-        let lacks = "If it is, D15F is to be at most 0.480 mm, as D85B is not known; have the base tested \
-                     with a hydrometer. ";
-        assert!(sentence.contains(lacks), "{sentence}");
-        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
-        let (base, filter) = (soil(&clay), soil(&[(0.5, 0.0), (0.8, 15.0), (2.0, 100.0)]));
-        let beyond =
-            IfDispersive::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
-        assert_eq!(beyond.unwrap().lacks, Some(DispersiveLack::D85B));
+        for d15f in [0.4, 0.8] {
+            let (_, limit) = note(&clay, d15f).unwrap();
+            assert_eq!(limit.lacks, Some(DispersiveLack::D85B));
+        }
+        assert_eq!(note(&clay, 0.4).unwrap().0, "dispersion_not_known");
         // With a curve that lacks a limit of design and a finer one that lacks nothing.
         let of =
             |d15f_max_mm, lacks: Option<_>| IfDispersive { d15f_max_mm, at_most: lacks.is_some(), lacks };
@@ -289,71 +221,33 @@ mod tests {
         assert_eq!(IfDispersive::strictest(&[any, of(1.0, open.lacks)]).unwrap(), any);
     }
 
-    /// Of a filter that practice allows, and that a dispersive base would have finer.
-    #[test]
-    fn a_limit_that_is_broken_if_the_base_is_dispersive_is_named_with_the_size_beyond_it() {
-        let base = Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None);
-        let base = base.unwrap();
-        let said = |d15f: f64| {
-            let points = [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
-            let filter = Gradation::from_lines(&points).unwrap();
-            let inputs = RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) };
-            let of = IfDispersive::of(&inputs).unwrap();
-            of.beyond_in_words(&PairRules::of(&base, &filter).rules, Some(d15f))
-        };
-        let beyond = "if the base is dispersive, the limit is 0.500 mm, and 0.610 mm is beyond it";
-        assert_eq!(said(0.61).unwrap(), beyond);
-        // Within it, and too coarse in any case.
-        assert_eq!([said(0.45), said(0.8)], [None, None]);
-    }
-
     /// As placed a filter of 0.40 mm is within 0.500 mm, and within 0.700 mm without the part that it may
     /// lose; then it is beyond 0.500 mm.
     #[test]
     fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
-        let base = Gradation::from_points(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)], None);
-        let base = base.unwrap();
+        let base = soil(&with_fines(45.0));
         let of_gap = |scale: f64| {
             let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
-            let filter = gap.map(|(size, percent)| (scale * size, percent));
-            let filter = Gradation::from_lines(&filter).unwrap();
+            let filter = soil(&gap.map(|(size, percent)| (scale * size, percent)));
             let pair = PairRules::of(&base, &filter);
             (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
         };
-        let (of, rules, d15f) = of_gap(0.2);
-        let said = of.beyond_in_words(&rules, d15f).unwrap();
-        assert!(
-            said.starts_with("if the base is dispersive, the limit is 0.500 mm, and 0.5")
-                && said.ends_with(" mm (without the filter's finest 17.6 %) is beyond it"),
-            "{said}"
-        );
-        let found = finding(Verdict::None, d15f, &rules, of).unwrap();
-        assert_eq!(found.id(), "dispersive_would_not_hold");
+        let (limit, rules, d15f) = of_gap(0.2);
+        assert!(!limit.is_broken_by(d15f.unwrap()) && limit.beyond_in_words(&rules, d15f).is_some());
+        assert_eq!(finding(d15f, &rules, limit).id(), "dispersive_would_not_hold");
         // Beyond 0.700 mm it does not hold in any case.
-        let (of, rules, d15f) = of_gap(0.3);
-        assert!(washout(&rules).is_some() && of.beyond_in_words(&rules, d15f).is_none());
-        assert!(of.of_filter(&rules, d15f).contains("met as placed, but not without"));
-        let (of, rules, d15f) = of_gap(0.1);
-        assert!(of.beyond_in_words(&rules, d15f).is_none());
-        assert!(of.of_filter(&rules, d15f).ends_with("which is met"));
+        let (limit, rules, d15f) = of_gap(0.3);
+        assert!(washout(&rules).is_some() && limit.beyond_in_words(&rules, d15f).is_none());
+        let (limit, rules, d15f) = of_gap(0.1);
+        assert!(limit.beyond_in_words(&rules, d15f).is_none());
     }
 
     #[test]
-    fn with_fewer_fines_no_limit_is_known_and_sands_and_erosion_need_no_statement() {
-        let (found, label) = said(Verdict::None, 25.0, 0.6);
-        let (id, sentence) = found.unwrap();
-        assert_eq!((id, label), ("dispersion_not_known", Confidence::Within));
+    fn with_fewer_fines_no_limit_is_known_and_sands_need_no_statement() {
+        let (id, limit) = note(&with_fines(25.0), 0.6).unwrap();
+        assert_eq!((id, limit.lacks), ("dispersion_not_known", Some(DispersiveLack::AnyLimit)));
         // Of other bases the limit is 0.902 mm: no size that a dispersive one may have.
-        let less = "If it is, D15F is to be less than 0.902 mm, by how much no source that was read says; \
-                    have the pair tested. ";
-        assert!(sentence.contains(less), "{sentence}");
-        assert_eq!(said(Verdict::None, 10.0, 0.6).0, None);
-        for erodes in [Verdict::Some, Verdict::Continuing] {
-            assert_eq!(said(erodes, 45.0, 0.6).0, None);
-        }
-        assert_eq!(said(Verdict::Undecided, 45.0, 0.6).0.unwrap().0, "dispersive_would_not_hold");
-        // What does not hold anyway would not hold the more.
-        let (found, label) = said(Verdict::None, 45.0, 0.9);
-        assert_eq!((found.unwrap().0, label), ("dispersion_not_known", Confidence::Contradicted));
+        assert!((limit.d15f_max_mm - 0.902).abs() < 1e-3, "{limit:?}");
+        assert!(note(&with_fines(10.0), 0.6).is_none());
     }
 }

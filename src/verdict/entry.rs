@@ -3,26 +3,10 @@
 use serde_json::Map;
 
 use super::quantity::FindingValue;
-use super::words::within;
-use crate::outcome::record::{Confidence, Direction, FindingRecord, Topic, Verdict, Weight};
-
-/// The name of the finding of fines that may be cohesive.
-pub const COHESIVE_FINES: &str = "cohesive_fines";
+use crate::outcome::record::{FindingRecord, Topic};
 
 /// The name of the finding that the base is broadly graded.
 pub const BROAD_BASE: &str = "broad_base";
-
-/// The name of the finding that the filter is not internally stable.
-pub const LOSES_FINES: &str = "loses_fines";
-
-/// The name of the finding that the constrictions are guessed from the grains.
-pub const GUESSED_CONSTRICTIONS: &str = "guessed_constrictions";
-
-/// Id of the limit that a filter breaks if its base is dispersive.
-pub const DISPERSIVE_WOULD_NOT_HOLD: &str = "dispersive_would_not_hold";
-
-/// The name of the finding that the walk errs on the unsafe side for soils of this kind.
-pub const EVIDENCE_UNSAFE: &str = "evidence_unsafe";
 
 /// What the table declares of a finding.
 #[derive(Debug)]
@@ -31,14 +15,6 @@ pub struct Entry {
     pub id: &'static str,
     /// What it is about.
     pub about: Topic,
-    /// Which way the walk errs for it.
-    pub direction: Direction,
-    /// What it can do to a verdict.
-    pub weight: Weight,
-    /// The label that it sets where it speaks against the verdict.
-    pub sets: Confidence,
-    /// The verdicts that it speaks against, where its direction does not say them.
-    pub against: Option<&'static [Verdict]>,
     /// Its name in a word or two.
     pub label: &'static str,
     /// The names of its numbers, in order.
@@ -61,9 +37,6 @@ macro_rules! findings {
     (@raw Text) => {
         &str
     };
-    (@raw KnownMm) => {
-        Option<f64>
-    };
     (@raw Reason) => {
         &crate::gradation::RegradeReason
     };
@@ -84,8 +57,7 @@ macro_rules! findings {
     };
     ($(
         $(#[$doc:meta])*
-        $id:ident($($name:ident: $unit:ident),*): $about:ident, $direction:ident, $weight:ident
-            $(, sets $sets:ident)? $(, against $against:ident)? $(, unshown $($unshown:ident)+)?;
+        $id:ident($($name:ident: $unit:ident),*): $about:ident $(, unshown $($unshown:ident)+)?;
             $label:literal, $page:literal, $sentence:expr $(, to do $to_do:literal)?;
     )*) => {
         #[allow(non_upper_case_globals)]
@@ -94,10 +66,6 @@ macro_rules! findings {
             $(pub static $id: Entry = Entry {
                 id: stringify!($id),
                 about: Topic::$about,
-                direction: Direction::$direction,
-                weight: Weight::$weight,
-                sets: findings!(@or Confidence::Outside $(, Confidence::$sets)?),
-                against: findings!(@or None $(, Some($against))?),
                 label: $label,
                 names: &[$(stringify!($name)),*],
                 unshown: &[$($(stringify!($unshown)),+)?],
@@ -115,7 +83,7 @@ macro_rules! findings {
             #[allow(clippy::too_many_arguments)]
             pub fn $id($($name: findings!(@raw $unit)),*) -> Finding {
                 let values = vec![$(findings!(@value $unit $name)),*];
-                Finding { entry: &entries::$id, values, is_settled: false }
+                Finding { entry: &entries::$id, values }
             }
         )*
 
@@ -125,13 +93,12 @@ macro_rules! findings {
             let of = |unit: &str| match unit {
                 "Percent" => FindingValue::Percent(size),
                 "Mm" => FindingValue::Mm(size),
-                "KnownMm" => FindingValue::KnownMm(Some(size)),
                 "Ratio" => FindingValue::Ratio(size),
                 "Points" => FindingValue::Points(size),
                 "Count" => FindingValue::Count(n),
                 _ => FindingValue::Text(text.into()),
             };
-            let finding = |entry, values| Finding { entry, values, is_settled: false };
+            let finding = |entry, values| Finding { entry, values };
             vec![$(finding(&entries::$id, vec![$(of(stringify!($unit))),*])),*]
         }
     };
@@ -145,8 +112,6 @@ pub struct Finding {
     pub entry: &'static Entry,
     /// Its numbers, in the order of the entry's names.
     pub values: Vec<FindingValue>,
-    /// Whether the class rests on tests of soils that had the same, so that it does not limit it.
-    pub is_settled: bool,
 }
 
 impl PartialEq for Finding {
@@ -161,62 +126,25 @@ impl Finding {
         self.entry.id
     }
 
-    /// The same where the class rests on tests of soils that had it too.
-    pub fn settled(self) -> Self {
-        Self { is_settled: true, ..self }
-    }
-
     /// What it says.
     pub fn sentence(&self) -> String {
-        let said = self.filled(self.entry.sentence);
-        // What tests and walks share is no less a gap of the model.
-        let rests = match self.entry.id {
-            _ if !self.is_settled => return said,
-            COHESIVE_FINES => {
-                "The published range of tests is for soils with such fines too, and this class rests on that \
-                 range"
-            }
-            _ => {
-                "The soils of the study had this too, and the class rests on the published range of tests, \
-                 not on the walk alone"
-            }
-        };
-        format!("{rests}: {}.", within(&said))
+        self.filled(self.entry.sentence)
     }
 
     /// The sentence, and which setting changes it.
     pub fn with_to_do(&self) -> String {
-        self.record(false).with_to_do()
+        self.record().with_to_do()
     }
 
-    /// Whether it speaks against this verdict: what makes a verdict surer is no doubt of it.
-    pub fn is_against(&self, verdict: Verdict) -> bool {
-        if self.entry.weight == Weight::Note || self.is_settled {
-            return false;
-        }
-        match (self.entry.against, self.entry.direction) {
-            (Some(verdicts), _) => verdicts.contains(&verdict),
-            (None, Direction::Settled) => false,
-            (None, Direction::Unsafe) => verdict != Verdict::Continuing,
-            (None, Direction::Safe) => verdict != Verdict::None,
-            (None, Direction::Open) => true,
-        }
-    }
-
-    /// As it is written beside a verdict.
-    pub fn record(&self, against: bool) -> FindingRecord {
-        let Entry { about, direction, weight, .. } = *self.entry;
-        let direction = if self.is_settled { Direction::Settled } else { direction };
+    /// As it is written.
+    pub fn record(&self) -> FindingRecord {
         let names = self.entry.names.iter().zip(&self.values);
         let numbers: Map<_, _> =
             names.map(|(name, value)| (format!("{name}{}", value.suffix()), value.json())).collect();
         FindingRecord {
             id: self.entry.id.into(),
-            about,
+            about: self.entry.about,
             label: self.entry.label.into(),
-            direction,
-            weight,
-            against,
             numbers,
             sentence: self.sentence(),
             to_do: self.filled(self.entry.to_do),

@@ -19,11 +19,6 @@ pub const MAY_DRAIN: &str = "may drain: D15B must be tested";
 /// Said where no product fits.
 const NONE_FITS: &str = "None of the standard products fits";
 
-/// What is said of a product that fits, of walk and practice or of practice alone.
-fn fits_in_words(by_practice: bool) -> String {
-    format!("{FITS}{}", if by_practice { " by practice" } else { "" })
-}
-
 /// Said of a product that does not fit, with what its sides do not keep beside D15F.
 fn does_not_fit(not_kept: &str) -> String {
     if not_kept.is_empty() { "does not fit".into() } else { format!("does not fit: {not_kept}") }
@@ -62,10 +57,9 @@ impl Specification {
 impl Design {
     /// What is said of a product.
     pub fn product_in_words(&self, fit: &Fit) -> String {
-        let by_practice = !self.may_fit() && self.fits_by_practice();
         let not_kept = self.not_kept(&fit.name);
-        match (self.fits(fit), self.may_fit() || by_practice) {
-            (true, true) => fits_in_words(by_practice),
+        match (self.fits(fit), self.fits_by_practice()) {
+            (true, true) => format!("{FITS} by practice"),
             (true, false) => "in doubt".into(),
             (false, _) if fit.may_fit() && not_kept.is_empty() => "not known".into(),
             (false, _) => does_not_fit(if fit.fits() { not_kept } else { "" }),
@@ -108,16 +102,14 @@ impl Design {
         if self.products.is_empty() {
             return None;
         }
-        let by_practice = !self.may_fit() && self.fits_by_practice();
-        if !self.may_fit() && !by_practice {
+        if !self.fits_by_practice() {
             return Some("No standard product is said to fit, as the answer is in doubt".into());
         }
         let fitting = self.products.iter().filter(|fit| self.fits(fit));
         let fitting: Vec<&str> = fitting.map(|fit| fit.name.as_str()).collect();
-        let by = if by_practice { " by practice" } else { "" };
         Some(match fitting.is_empty() {
             false => format!(
-                "Standard products that fit{by} (their own shapes were not walked): {}",
+                "Standard products that fit by practice (their own shapes were not walked): {}",
                 fitting.join(", ")
             ),
             true if self.products.iter().any(Fit::may_fit) => {
@@ -133,12 +125,11 @@ mod tests {
     use super::*;
     use crate::outcome::design::band::SetBy;
     use crate::outcome::design::{Boundary, DesignAnswer, Specification};
-    use crate::outcome::record::Confidence;
     use crate::verdict::SpecificationOptions;
 
     /// A core of category 2, whose limit practice sets at 0.7 mm: D15 of C33 sand is 0.178 to 0.424 mm, and
     /// at 1.18 mm it leaves the band.
-    fn core(confidence: Confidence) -> Design {
+    fn core(set_by: SetBy) -> Design {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let of = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let fit = |name: &str, holds| {
@@ -148,14 +139,16 @@ mod tests {
         let text = serde_json::json!({
             "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
             "unit": "mm",
-            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.4, "d95_over_d85": null},
-            "threshold": 0.075, "replicates": 2, "seed": 1, "bracket": [0.5, 100.0], "step": 0.005,
-            "confidence": confidence, "reasons": [], "rules": [], "rules_at": 1.75,
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.4, "d95_over_d85": null,
+                "tail_mass_fraction": 0.0},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
+            "step": 0.005,
+            "rules": [], "rules_at": 1.75,
             "products": [fit("ASTM C33 fine aggregate", true), fit("ASTM C33/D448 No. 8 stone", false)],
-            "products_confidence": confidence, "warnings": [], "model_leaves_out": [], "settings": [],
+            "model_leaves_out": [], "settings": [],
             "seconds": 1.0,
             "answer": DesignAnswer { d15f_max_mm: Some(0.7), d85b_min_mm: None, d15f_over_d85b: Some(1.75),
-                set_by: SetBy::Practice, rule: None, limit: String::new(), margin: None, walk: None,
+                set_by, rule: None, limit: String::new(), margin: None, walk: None,
                 washout: None, if_dispersive: None, said: String::new() },
             "specification": of,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
@@ -169,10 +162,10 @@ mod tests {
     #[test]
     fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
         let said = |of: &Design| of.products.iter().map(|fit| of.product_in_words(fit)).collect::<Vec<_>>();
-        let by_practice = core(Confidence::Outside);
+        let by_practice = core(SetBy::Practice);
         assert_eq!(said(&by_practice), ["fits by practice", "does not fit"]);
         assert!(by_practice.products_in_words().unwrap().ends_with(": ASTM C33 fine aggregate"));
-        assert_eq!(said(&core(Confidence::Within))[0], FITS);
+        assert_eq!(said(&core(SetBy::Walk))[0], "in doubt");
         let given = by_practice.specification.as_ref().unwrap();
         let fits: Vec<_> = given.products.iter().filter(|of| of.fits() == Some(true)).collect();
         assert_eq!(fits.iter().map(|of| &*of.product).collect::<Vec<_>>(), ["ASTM C33 fine aggregate"]);
@@ -184,7 +177,7 @@ mod tests {
         let shape = |points: Vec<[f64; 2]>| Design {
             filter_gradation: points,
             filter_d15_mm: Some(0.35),
-            ..core(Confidence::Within)
+            ..core(SetBy::Practice)
         };
         let long = vec![[0.1, 0.0], [0.35, 15.0], [1.5, 30.0], [6.0, 95.0], [20.0, 100.0]];
         let judged = shape(long).judged_filter_in_words().unwrap();
@@ -195,8 +188,8 @@ mod tests {
         );
         let within = vec![[0.2, 0.0], [0.35, 15.0], [1.7, 60.0], [6.0, 100.0]];
         assert!(shape(within).judged_filter_in_words().unwrap().contains(" It stays within the band. "));
-        assert_eq!(core(Confidence::Within).judged_filter_in_words(), None);
-        let doubted = core(Confidence::Contradicted);
+        assert_eq!(core(SetBy::Practice).judged_filter_in_words(), None);
+        let doubted = core(SetBy::Walk);
         assert_eq!(said(&doubted), ["in doubt", "does not fit"]);
         assert!(doubted.products_in_words().unwrap().ends_with("as the answer is in doubt"));
     }

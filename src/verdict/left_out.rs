@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::quantity::{fixed, given};
@@ -36,7 +37,6 @@ impl ModelLimit {
                  filter",
                 "",
             ),
-            Self::Said(words) => (words, ""),
         }
     }
 }
@@ -60,7 +60,7 @@ impl<'de> Deserialize<'de> for ModelLimit {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let words = String::deserialize(deserializer)?;
         let known = Self::ALL.into_iter().find(|limit| limit.to_string() == words);
-        Ok(known.unwrap_or(Self::Said(words)))
+        known.ok_or_else(|| D::Error::custom(format!("{words:?} is no limit of the model")))
     }
 }
 
@@ -92,14 +92,10 @@ pub enum LeftOut {
     PackingOfShape(String, f64),
     /// The second run.
     SecondRun,
-    /// The study of the number of base particles.
-    Amounts,
     /// Multiples of that number above the cap, and the cap.
     AmountsAboveCap(Vec<f64>, f64),
     /// Multiples of that number that give a number which is walked already.
     AmountsTheSame(Vec<f64>),
-    /// The study of the thickness.
-    Thicknesses,
     /// Another thickness of a network from a file.
     ThicknessOfFile,
     /// A multiple of the thickness, and why it cannot be walked.
@@ -117,13 +113,7 @@ pub enum LayerKind {
     Copy,
 }
 
-/// How what is left out of the study of the number of base particles begins.
-pub const OF_AMOUNTS: &[&str] = &[AMOUNTS];
-
-/// How what is left out of the study of the thickness begins.
-pub const OF_THICKNESS: &[&str] =
-    &["a filter ", "filters of another thickness", "how the verdict moves with the filter"];
-
+/// The study of the number of base particles.
 const AMOUNTS: &str = "sensitivity to the number of base particles";
 
 impl LeftOut {
@@ -151,7 +141,6 @@ impl LeftOut {
                 );
             }
             Self::SecondRun => "the second run: it was not asked for",
-            Self::Amounts => return format!("{AMOUNTS}: it was not asked for"),
             Self::AmountsAboveCap(factors, cap) => {
                 let cap = given(*cap);
                 return format!("{AMOUNTS}, {}: more than base.cap, {cap}, allows", times(factors));
@@ -162,7 +151,6 @@ impl LeftOut {
                     times(factors)
                 );
             }
-            Self::Thicknesses => "how the verdict moves with the filter's thickness: it was not asked for",
             Self::ThicknessOfFile => {
                 "filters of another thickness: a network from a file is as thick as it is"
             }
@@ -266,10 +254,8 @@ mod tests {
             LeftOut::PackingByCurve,
             LeftOut::PackingOfShape(text.into(), number),
             LeftOut::SecondRun,
-            LeftOut::Amounts,
             LeftOut::AmountsAboveCap(vec![number, 2.0], number),
             LeftOut::AmountsTheSame(vec![number]),
-            LeftOut::Thicknesses,
             LeftOut::ThicknessOfFile,
             LeftOut::ThicknessRefused(number, text.into()),
             LeftOut::ThicknessTheSame(number, n, LayerKind::Layer),
@@ -285,10 +271,6 @@ mod tests {
                     let words = item.words();
                     reads_well(&words);
                     assert!(words.contains(": ") && !words.ends_with('.'), "{words}");
-                    let begins = |study: &[&str]| study.iter().any(|begin| words.starts_with(begin));
-                    let name = format!("{item:?}");
-                    assert_eq!(begins(OF_AMOUNTS), name.starts_with("Amounts"), "{words}");
-                    assert_eq!(begins(OF_THICKNESS), name.starts_with("Thickness"), "{words}");
                 }
                 let of_run = |engine| {
                     [false, true].into_iter().flat_map(move |arches| {
@@ -322,10 +304,7 @@ mod tests {
             let text = serde_json::to_string(&limit).unwrap();
             assert_eq!(serde_json::from_str::<ModelLimit>(&text).unwrap(), limit);
         }
-        let old = "\"Hydraulics: no gradient, no flow rate.\"";
-        let read: ModelLimit = serde_json::from_str(old).unwrap();
-        assert!(matches!(read, ModelLimit::Said(_)));
-        assert_eq!(serde_json::to_string(&read).unwrap(), old);
+        assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
         let brief = left_out_in_brief(&leaves_out(Modelled::default()));
         assert!(
             brief.starts_with("The model leaves out: hydraulics; bridging; partial clogging; "),

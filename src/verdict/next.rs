@@ -1,15 +1,12 @@
 //! What to do next: which D15F a filter is to have, what to test, what to find out.
 
 use super::practice::{Standing, broken, standing};
-use super::rule_words::{against, first_clause, listed};
+use super::rule_words::first_clause;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
-use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole, Verdict};
-use crate::outcome::rules::{
-    FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING, authority_in_brief,
-};
-use crate::outcome::undecided::UndecidedBy;
+use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole};
+use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
 
 /// What tells whether a base is dispersive.
 const TEST_OF_DISPERSION: &str = "have the base tested for dispersion by a pinhole or crumb test";
@@ -18,7 +15,7 @@ const TEST_OF_DISPERSION: &str = "have the base tested for dispersion by a pinho
 const DRAIN_D15F_MM: f64 = 5.0;
 
 impl Outcome {
-    /// What to do next, in a sentence without its end.
+    /// What to do next by practice, in a sentence without its end.
     pub fn next_in_words(&self) -> String {
         // Of a filter that is too coarse for a dispersive base alone the line of practice has the limit.
         let test = self.beyond_if_dispersive().map(|_| TEST_OF_DISPERSION.to_owned());
@@ -28,61 +25,27 @@ impl Outcome {
             Standing::WashedOut if !broken(&self.rules, RuleRole::Retention).is_empty() => {
                 self.of_retention() + "; it must be internally stable"
             }
-            Standing::WashedOut | Standing::Unstable => {
-                [Some(self.of_stability()), test].into_iter().flatten().collect::<Vec<_>>().join("; ")
-            }
+            Standing::WashedOut | Standing::Unstable => self.of_stability(),
             Standing::Unknown(needs) => format!("get {needs}"),
             Standing::Open(_) => "test the sieves between".into(),
             Standing::Met | Standing::NoRules => test
                 .or_else(|| self.of_drainage())
                 .or_else(|| self.of_placing())
                 .or_else(|| self.of_fines())
-                .or_else(|| self.of_walk())
-                .unwrap_or_else(|| self.if_nothing().into()),
+                .or_else(|| self.of_missing_drainage())
+                .unwrap_or_else(|| "nothing by these rules".into()),
         }
     }
 
-    /// Where nothing is known that is to be done.
-    fn if_nothing(&self) -> &'static str {
-        match standing(&self.rules) {
-            Standing::Met => "nothing by these rules",
-            _ => "judge the pair by the rules of practice",
-        }
-    }
-
-    /// Which filter to take in the place of one that may lose its finer part; one that may segregate besides
-    /// no test of its stability saves.
+    /// Which filter to take in the place of one that may lose its finer part.
     fn of_stability(&self) -> String {
-        let mut whose: Vec<String> = Vec::new();
-        for rule in broken(&self.rules, RuleRole::Stability) {
-            let name = authority_in_brief(rule);
-            if !whose.iter().any(|of| of == name) {
-                whose.push(name.to_owned());
-            }
-        }
-        let finer = match self.greatest() {
+        let filter = match self.greatest() {
             Some((limit, false)) => {
-                self.sized(limit, [self.if_dispersive_in_brief(limit)]) + " that is stable by "
+                self.sized(limit, [self.if_dispersive_in_brief(limit)]) + " that is internally stable"
             }
-            _ => "take a filter that is stable by ".into(),
+            _ => "take a filter that is internally stable".into(),
         };
-        let stable = finer + &listed(&whose);
-        let placing = broken(&self.rules, RuleRole::Placing).into_iter().map(|rule| {
-            let [value, limit] = against(rule, 3);
-            format!("{} {value}, limit {limit}", rule.quantity)
-        });
-        match placing.collect::<Vec<_>>() {
-            placing if placing.is_empty() => format!("{stable}, or have its internal stability tested"),
-            placing => {
-                let dry = !broken(&self.rules, RuleRole::Drainage).is_empty();
-                format!(
-                    "{stable} and does not segregate ({}); a test of this one's internal stability would not \
-                     settle its {}segregation",
-                    listed(&placing),
-                    if dry { "drainage or " } else { "" }
-                )
-            }
-        }
+        format!("{filter}, or have its internal stability tested")
     }
 
     /// Which D15F a filter is to have that retains the base, and what to do with one that exists.
@@ -182,13 +145,11 @@ impl Outcome {
         let least = of_size.iter().find_map(|rule| Some((rule.limit?, &rule.unit)));
         let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
         match (least, self.greatest()) {
-            // Where a base erodes in the walk no coarser filter is asked for.
-            (Some((least, unit)), Some((most, false))) if most >= least => (self.verdict == Verdict::None)
-                .then(|| {
-                    let [least, upper] = [rounded_up(least), rounded_down(most)];
-                    let dispersive = self.if_dispersive_in_words(most);
-                    format!("take a coarser filter, D15F {least} to {upper} {unit}{dispersive}{clean}")
-                }),
+            (Some((least, unit)), Some((most, false))) if most >= least => {
+                let [least, upper] = [rounded_up(least), rounded_down(most)];
+                let dispersive = self.if_dispersive_in_words(most);
+                Some(format!("take a coarser filter, D15F {least} to {upper} {unit}{dispersive}{clean}"))
+            }
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
             }
@@ -215,27 +176,11 @@ impl Outcome {
         broken(&self.rules, RuleRole::Placing).into_iter().find_map(to_do)
     }
 
-    /// What would tell more where the walk leaves open or denies what practice allows.
-    fn of_walk(&self) -> Option<String> {
-        let drains = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
-        let drainage =
-            drains.filter(|rule| rule.met.is_none()).map(|rule| first_clause(&rule.needs.to_string()));
-        let said = match (self.undecided_by(), self.verdict) {
-            (Some(UndecidedBy::Pan), _) => "have the base's finest part tested with a hydrometer",
-            (Some(UndecidedBy::Curve), _) => {
-                "pack this filter at its density, so that its own constrictions are known"
-            }
-            (Some(UndecidedBy::SecondRun), _) => "walk a second run",
-            (Some(UndecidedBy::Replicates), _) => "walk more replicates",
-            (None, Verdict::None) => {
-                let needs = drainage?;
-                return needs
-                    .strip_prefix("needs ")
-                    .map(|needs| format!("get {needs}: drainage is not known"));
-            }
-            (None, _) => "have this pair tested: practice and walk differ",
-        };
-        Some(said.into())
+    /// What is missing to judge drainage.
+    fn of_missing_drainage(&self) -> Option<String> {
+        let rule = self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
+        let needs = first_clause(&rule.filter(|rule| rule.met.is_none())?.needs.to_string());
+        needs.strip_prefix("needs ").map(|needs| format!("get {needs}: drainage is not known"))
     }
 }
 

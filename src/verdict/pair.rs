@@ -30,22 +30,6 @@ pub struct PairRules {
     pub if_dispersive: Option<IfDispersive>,
     /// What may be wrong with the two tables, and what was taken for what.
     pub warnings: Vec<String>,
-    /// What one authority states of them, where one is asked for; `rules` has all of them all the same.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub by_authority: Option<StatedByAuthority>,
-}
-
-/// The rules of one authority on two soils.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct StatedByAuthority {
-    /// Its word: nrcs, usbr, usace or foster-fell.
-    pub authority: String,
-    /// The `id` of every rule that it states, in the order of `rules`.
-    pub rules: Vec<String>,
-    /// Its limit of D15F, and what is left out: stricter limits, rules that are not met, rules without a
-    /// result.
-    pub said: String,
 }
 
 /// What else the rules are told of two soils.
@@ -208,7 +192,6 @@ impl PairRules {
             if_dispersive,
             rules,
             warnings: found.iter().map(Finding::with_to_do).collect(),
-            by_authority: None,
         }
     }
 }
@@ -216,8 +199,8 @@ impl PairRules {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::RuleRole;
-    use crate::outcome::rules::{Authority, DESIGN};
+    use crate::outcome::record::{Headline, RuleRole};
+    use crate::outcome::rules::DESIGN;
     use crate::verdict::practice::Standing;
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
@@ -247,21 +230,12 @@ mod tests {
             PairRules::of_envelopes(&base, &filter, PairOptions { dispersive, ..PairOptions::default() })
         };
         let pair = said(0.61, false);
-        assert!(
-            pair.practice.starts_with(
-                "met unless the base is dispersive, without a margin in the limit: D15F 0.610 mm"
-            ) && pair
-                .practice
-                .ends_with("; if the base is dispersive, the limit is 0.500 mm, and 0.610 mm is beyond it"),
-            "{}",
-            pair.practice
-        );
-        assert_eq!(pair.if_dispersive.map(|of| of.d15f_max_mm), Some(0.5));
-        let stated = pair.clone().stated_by(Authority::Nrcs).by_authority.unwrap().said;
-        assert!(stated.starts_with("NRCS: met unless the base is dispersive: D15F "), "{stated}");
-        assert!(said(0.45, false).practice.starts_with("met, without a margin in the limit: "));
+        assert!(pair.practice.starts_with(Headline::MeetsUnlessDispersive.words()), "{}", pair.practice);
+        assert!(pair.practice.contains("the limit is 0.500 mm"), "{}", pair.practice);
+        assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
+        assert!(said(0.45, false).practice.starts_with("meets practice: "));
         let stated = said(0.61, true);
-        assert!(stated.practice.starts_with("not met: ") && stated.if_dispersive.is_none());
+        assert!(stated.practice.starts_with("does not meet practice: ") && stated.if_dispersive.is_none());
     }
 
     /// Bases of every category, with gravel, gaps and tails, and filters from too fine to too coarse.

@@ -24,10 +24,8 @@ pub struct PlannedWalk<'a> {
     pub base: &'a Gradation,
     /// The base as it was stated, where it is walked regraded.
     pub regraded_from: Option<&'a Gradation>,
-    /// The least and the most that the Cu of the base may be; `None` where nothing says it.
-    pub base_cu: Option<[f64; 2]>,
-    /// Whether the base's pan fraction is counted by mass alone.
-    pub pan_is_passive: bool,
+    /// The finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
+    pub finest_constriction_mm: f64,
     /// The filter, where it is known.
     pub filter: Option<&'a Gradation>,
     /// Whether the filter's gradation is a sieve curve, and not a straight line that was assumed.
@@ -58,7 +56,7 @@ impl PlannedWalk<'_> {
             self.cu_of_filter(),
             self.cu_of_base(),
             self.unstable_base(),
-            self.passive_pan(),
+            self.pan(),
             self.filter.is_none().then(finding::no_filter),
             self.gap(),
             self.given_voids.map(finding::given_network),
@@ -104,21 +102,16 @@ impl PlannedWalk<'_> {
     }
 
     fn cu_of_filter(&self) -> Option<Finding> {
-        not_as_uniform("filter", "", self.filter?.cu().map(|cu| [cu, cu]), FILTER_CU)
+        not_as_uniform("filter", self.filter?.cu(), FILTER_CU)
     }
 
-    /// Where D10 is finer than the finest sieve and blocks nothing, its size is never looked for: Cu is more
-    /// than with all of that part as coarse as that sieve, and how much more is not known.
+    /// Where D10 is finer than the finest sieve, its size is never looked for: Cu is more than with all of
+    /// that part as coarse as that sieve, and how much more is not known.
     fn cu_of_base(&self) -> Option<Finding> {
-        let [low, high] = BASE_CU;
-        match (self.base.cu(), self.base_cu) {
-            (None, Some([least, most])) if least == most && self.pan_is_passive => {
-                Some(finding::cu_at_least("base", least, self.base.smallest_mm(), low, high))
-            }
-            (_, cu) => {
-                let how = if self.regraded_from.is_some() { " as regraded" } else { "" };
-                not_as_uniform("base", how, cu, BASE_CU)
-            }
+        let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
+        match (self.base.cu(), self.base.d(60.0)) {
+            (None, Some(d60)) => Some(finding::cu_at_least("base", d60 / sieve, sieve, low, high)),
+            (cu, _) => not_as_uniform("base", cu, BASE_CU),
         }
     }
 
@@ -129,9 +122,13 @@ impl PlannedWalk<'_> {
         Some(finding::unstable_base(found.value, found.percent))
     }
 
-    fn passive_pan(&self) -> Option<Finding> {
-        let percent = 100.0 * self.base.pan_fraction();
-        (self.pan_is_passive && percent > 0.0).then(|| finding::pan_passive(percent))
+    fn pan(&self) -> Option<Finding> {
+        let percent = Some(100.0 * self.base.pan_fraction()).filter(|percent| *percent > 0.0)?;
+        let (sieve, finest) = (self.base.smallest_mm(), self.finest_constriction_mm);
+        Some(match sieve > finest {
+            true => finding::pan_counts_as_passing(percent, sieve, finest),
+            false => finding::pan_passive(percent),
+        })
     }
 
     fn gap(&self) -> Option<Finding> {
@@ -167,13 +164,11 @@ fn is_within(cu: f64, [low, high]: [f64; 2]) -> bool {
     (low - 1e-9..=high + 1e-9).contains(&cu)
 }
 
-/// That a soil, whose Cu lies between two bounds, is more or less uniform than those for which the model was
-/// checked; `how` it was read. The greater bound follows from the filter, and is no size of the soil.
-fn not_as_uniform(soil: &str, how: &str, cu: Option<[f64; 2]>, [low, high]: [f64; 2]) -> Option<Finding> {
+/// That a soil is more or less uniform than those for which the model was checked.
+fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<Finding> {
     match cu {
-        Some([least, most]) if is_within(least, [low, high]) && is_within(most, [low, high]) => None,
-        Some([least, most]) if most - least < 0.005 => Some(finding::cu_unchecked(soil, least, low, high)),
-        Some([least, _]) => Some(finding::cu_in_doubt(soil, least, how, low, high)),
+        Some(cu) if is_within(cu, [low, high]) => None,
+        Some(cu) => Some(finding::cu_unchecked(soil, cu, low, high)),
         None => Some(finding::cu_unknown(soil, low, high)),
     }
 }
@@ -199,8 +194,7 @@ mod tests {
         let plan = PlannedWalk {
             base: &sand,
             regraded_from: None,
-            base_cu: Some([2.0, 2.0]),
-            pan_is_passive: true,
+            finest_constriction_mm: 0.4,
             filter: Some(&filter),
             filter_is_measured: true,
             scale_free: false,
@@ -226,8 +220,8 @@ mod tests {
                 vec!["fines_not_sieved", "cu_at_least", "pan_passive"],
                 vec!["cu_at_least", "pan_passive"],
             ),
-            (&till, vec!["not_regraded", "unstable_base"], vec![]),
-            (&broad, vec!["broadly_graded"], vec![]),
+            (&till, vec!["not_regraded", "cu_unchecked", "unstable_base"], vec!["cu_unchecked"]),
+            (&broad, vec!["broadly_graded", "cu_unchecked"], vec!["cu_unchecked"]),
         ] {
             let plan = PlannedWalk { base, ..plan.clone() };
             assert_eq!(ids(&plan), in_mm);
@@ -235,7 +229,7 @@ mod tests {
         }
         assert_eq!(
             ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
-            ["broad_base", "unstable_base"]
+            ["broad_base", "cu_unchecked", "unstable_base"]
         );
         let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
         assert_eq!(ids(&exchanged), ["doubtful_tables"]);
@@ -243,26 +237,13 @@ mod tests {
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
         assert_eq!(of(&|plan| plan.filter = None), ["no_filter"]);
-        assert_eq!(of(&|plan| plan.base_cu = None), ["cu_unknown"]);
-        assert_eq!(of(&|plan| plan.base_cu = Some([4.6, 4.6])), ["cu_unchecked"]);
-        assert_eq!(of(&|plan| plan.base_cu = Some([4.0, 5.0])), ["cu_in_doubt"]);
-        // The end that follows from the filter is not said.
-        let doubt = |regraded_from, most| {
-            let plan = PlannedWalk { regraded_from, base_cu: Some([4.03, most]), ..plan.clone() };
-            let found = plan.findings();
-            found.iter().find(|of| of.id() == "cu_in_doubt").unwrap().sentence()
-        };
-        for most in [9.28, 25.4] {
-            assert_eq!(
-                doubt(Some(&sand), most),
-                "The Cu of the base is at least 4.03 as regraded, and the model was checked for 1.2 to 4.5. \
-                 The D10 of the base is finer than its finest sieve."
-            );
-            assert!(doubt(None, most).starts_with("The Cu of the base is at least 4.03, and the model "));
-        }
+        let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
+        assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
+        let mostly_hidden = soil(&[(0.3, 65.0), (1.0, 100.0)]);
+        assert!(ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown"));
         // 14 % finer than 0.002 mm, D60 0.2 mm.
         let clayey = soil(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
-        let open = PlannedWalk { base: &clayey, base_cu: Some([100.0, 100.0]), ..plan.clone() };
+        let open = PlannedWalk { base: &clayey, ..plan.clone() };
         let found = open.findings();
         let cu = found.iter().find(|of| of.id() == "cu_at_least").unwrap();
         assert_eq!(
@@ -271,7 +252,8 @@ mod tests {
              1.2 to 4.5."
         );
         // A Cu of more than 3 may be beyond 4.5.
-        let within = PlannedWalk { base: &clayey, base_cu: Some([3.0, 3.0]), ..plan.clone() };
+        let narrow = soil(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
+        let within = PlannedWalk { base: &narrow, ..plan.clone() };
         assert!(ids(&within).contains(&"cu_at_least"), "{:?}", ids(&within));
         assert_eq!(of(&|plan| plan.given_voids = Some(7)), ["given_network"]);
         assert_eq!(of(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
@@ -279,7 +261,7 @@ mod tests {
         assert_eq!(of(&|plan| (plan.flows, plan.increments) = (true, 13)), [""; 0]);
         assert_eq!(of(&|plan| plan.replicates = 4), ["few_replicates"]);
         assert_eq!(of(&|plan| plan.replicates = 1), ["one_replicate"]);
-        let hidden_and_walked = PlannedWalk { base: &hidden, pan_is_passive: false, ..plan.clone() };
-        assert_eq!(ids(&hidden_and_walked), ["fines_not_sieved"]);
+        let fine = PlannedWalk { base: &hidden, finest_constriction_mm: 0.2, ..plan.clone() };
+        assert_eq!(ids(&fine), ["fines_not_sieved", "cu_at_least", "pan_counts_as_passing"]);
     }
 }

@@ -1,19 +1,15 @@
-//! What the rules of filter practice say of a pair: findings where they speak against its class, and where
-//! the filter stands by all of them.
+//! What the rules of filter practice say of a pair: where the filter stands by all of them, and findings.
 
 use super::entry::Finding;
 use super::finding;
-use super::rule_words::{
-    against, bounded, credit, first_clause, is_of_dispersive, listed, met_of, size, without_margin,
-};
+use super::rule_words::{against, bounded, first_clause, listed, met_of};
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
-use crate::outcome::comparison::ComparedStanding;
 use crate::outcome::design::band::retaining;
 use crate::outcome::record::{
-    AppliedRule, LimitOfDesign, Practice, PracticeClass, RuleQuantity, RuleRole, TestedClass, Verdict,
+    AppliedRule, Headline, Practice, PracticeClass, RuleQuantity, RuleRole, TestedClass, Verdict,
 };
-use crate::outcome::rules::{DESIGN, PAPER_NO_EROSION, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// Said where the rule of drainage has no result.
 pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
@@ -26,16 +22,10 @@ pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule>
     }
 }
 
-/// What rules that are not kept say of a class. What several authors say alike is one finding, and rules of
-/// retention that agree with the class say nothing: the line of practice has them.
-pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
-    let of_role = |role| rules.iter().filter(move |rule| rule.role == role && rule.is_broken());
-    let each = [RuleRole::Retention, RuleRole::Continuation].into_iter().flat_map(of_role);
-    // One number is one finding, and of a filter that practice does not call too coarse its line has the
-    // tests.
-    let counts = without_margin(rules).is_none() && !broken(rules, RuleRole::Retention).is_empty();
-    let each = each.filter(|rule| rule.id != TESTS_NO_EROSION || counts);
-    let mut all: Vec<Finding> = each.map(of_rule).filter(|of| of.is_against(verdict)).collect();
+/// What rules of stability, drainage and placing that are not kept say; what several authors say alike is
+/// one finding. Rules of retention stand in the line of practice.
+pub fn findings(rules: &[AppliedRule]) -> Vec<Finding> {
+    let mut all = Vec::new();
     let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
         listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())
     };
@@ -51,25 +41,7 @@ pub fn findings(verdict: Verdict, rules: &[AppliedRule]) -> Vec<Finding> {
     if !placing.is_empty() {
         all.push(finding::may_segregate(&list(&placing, asked)));
     }
-    all.extend(stricter(verdict, rules));
     all
-}
-
-fn of_rule(rule: &AppliedRule) -> Finding {
-    let [value, limit] = against(rule, 3);
-    let limit = limit + if rule.limit_at_most { " at most" } else { "" };
-    match (rule.id.as_str(), rule.role) {
-        (DESIGN | TESTS_NO_EROSION, _) if is_of_dispersive(rule) => {
-            finding::rule_of_retention(rule.quantity.name(), &limit, &value, credit(rule))
-        }
-        (DESIGN, _) => finding::limit_of_design(&limit, &value),
-        (TESTS_NO_EROSION, _) => finding::tests_no_erosion(&limit, &value),
-        (TESTS_CONTINUING, _) => finding::tests_continuing(&limit, &value),
-        (_, RuleRole::Continuation) => {
-            finding::rule_of_continuation(rule.quantity.name(), &limit, &value, authority(rule))
-        }
-        _ => finding::rule_of_retention(rule.quantity.name(), &limit, &value, authority(rule)),
-    }
 }
 
 /// A quantity, and what practice asks for.
@@ -109,30 +81,35 @@ fn too_many_fines(rules: &[AppliedRule]) -> Option<String> {
     (!all.is_empty()).then(|| listed(&all))
 }
 
-/// Whether the walk is stricter than tests for this pair: they found no erosion where it has some.
-fn stricter(verdict: Verdict, rules: &[AppliedRule]) -> Option<Finding> {
-    let find = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies);
-    let tests = find(TESTS_NO_EROSION).filter(|rule| rule.met == Some(true))?;
-    let ratio = find(PAPER_NO_EROSION).filter(|rule| rule.met == Some(false))?;
-    matches!(verdict, Verdict::Some | Verdict::Continuing).then(|| {
-        let [value, holds] = [ratio.value, ratio.limit].map(|number| size(number, ""));
-        finding::stricter_than_tests(&value, &size(tests.limit, &tests.unit), &holds)
+/// What practice says of a pair, for programs; `None` where no rule of design was applied.
+pub fn record(rules: &[AppliedRule], range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
+    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies)?;
+    Some(Practice {
+        class: standing(rules).class(),
+        d15f_mm: design.needs.d15f_between().or(design.value.map(|d15f| [d15f, d15f])),
+        limit_mm: design.limit,
+        limit_at_most: design.limit_at_most,
+        tests: tested(rules),
+        range_of_tests_mm,
     })
 }
 
-/// The limit of design of a pair, for programs; `None` where its rule is not among them.
-pub fn record(rules: &[AppliedRule]) -> Option<Practice> {
-    let rule = rules.iter().find(|rule| rule.id == DESIGN)?;
-    Some(Practice {
-        class: standing(rules).class(),
-        design: LimitOfDesign {
-            rule: rule.id.clone(),
-            limit_mm: rule.limit,
-            limit_at_most: rule.limit_at_most,
-            value_mm: rule.value,
-            met: rule.met,
-        },
-        foster_fell: tested(rules),
+/// The answer of practice, which is on the condition that the base is not dispersive where it would not hold
+/// such a base; `None` where no rule of design was applied.
+pub fn headline(rules: &[AppliedRule], breaks_if_dispersive: bool) -> Option<Headline> {
+    let breaks = |role| !broken(rules, role).is_empty();
+    Some(match standing(rules) {
+        Standing::NoRules => return None,
+        Standing::Fails => Headline::DoesNotMeet,
+        Standing::WashedOut => Headline::TooCoarseWithoutFiner,
+        Standing::NoMargin => Headline::BeyondDesign,
+        Standing::Unstable => Headline::MayLoseFiner,
+        Standing::Unknown(_) => Headline::TestMissing,
+        Standing::Open(_) => Headline::SievesMissing,
+        Standing::Met if breaks_if_dispersive => Headline::MeetsUnlessDispersive,
+        Standing::Met if breaks(RuleRole::Drainage) => Headline::MayNotDrain,
+        Standing::Met if breaks(RuleRole::Placing) => Headline::MaySegregate,
+        Standing::Met => Headline::Meets,
     })
 }
 
@@ -164,18 +141,6 @@ impl Standing {
             Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
             Self::Unstable | Self::Unknown(_) | Self::Open(_) | Self::NoRules => PracticeClass::NotKnown,
             Self::Met => PracticeClass::Meets,
-        }
-    }
-
-    /// The same as a record keeps it.
-    pub fn recorded(&self) -> ComparedStanding {
-        match self {
-            Self::Fails | Self::WashedOut => ComparedStanding::Fails,
-            Self::NoMargin => ComparedStanding::NoMargin,
-            Self::Unstable => ComparedStanding::Unstable,
-            Self::Unknown(_) | Self::Open(_) => ComparedStanding::Unknown,
-            Self::Met => ComparedStanding::Met,
-            Self::NoRules => ComparedStanding::NoRules,
         }
     }
 }
@@ -234,16 +199,6 @@ pub fn counts_as(rules: &[AppliedRule]) -> Option<Verdict> {
     }
 }
 
-/// 0 no erosion, 1 some, 2 continuing; `None` where it is undecided.
-pub(super) fn severity(verdict: Verdict) -> Option<u8> {
-    match verdict {
-        Verdict::None => Some(0),
-        Verdict::Some => Some(1),
-        Verdict::Continuing => Some(2),
-        Verdict::Undecided => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,7 +206,7 @@ mod tests {
     use crate::outcome::design::Specification;
     use crate::outcome::rules::NamedCurve;
     use crate::outcome::with_inches;
-    use crate::verdict::practice_words::practice_in_words;
+    use crate::verdict::practice_words::practice_line;
     use crate::verdict::{BatchRow, PairOptions, PairRules, SpecificationOptions};
 
     fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
@@ -279,11 +234,9 @@ mod tests {
             assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
             assert_eq!(standing(&rules), Standing::Met);
             assert_eq!(counts_as(&rules), Some(Verdict::None));
-            assert!(findings(Verdict::None, &rules).is_empty());
-            let line = practice_in_words(&rules);
-            let (first, second) = line.split_once(". ").unwrap();
-            assert!(first.starts_with("met") && first.contains(design), "{line}");
-            assert!(second.starts_with("Foster and Fell") && second.contains(tests), "{line}");
+            assert!(findings(&rules).is_empty());
+            let line = practice_line(&rules, None, None);
+            assert!(line.contains(design) && line.contains(tests), "{line}");
             let sample = crate::gradation::SoilSample {
                 name: "s".into(),
                 path: "s".into(),
@@ -292,7 +245,7 @@ mod tests {
             assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
             // Beyond the limit of design it is not met.
             let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options).rules;
-            assert_eq!(record(&coarse).unwrap().class, PracticeClass::DoesNotMeet);
+            assert_eq!(record(&coarse, None).unwrap().class, PracticeClass::DoesNotMeet);
         }
     }
 
@@ -311,7 +264,7 @@ mod tests {
             (&hidden, filter(1.0), PracticeClass::NotKnown, Verdict::Undecided),
         ] {
             let rules = PairRules::of_envelopes(base, &filter, PairOptions::default()).rules;
-            assert_eq!((record(&rules).unwrap().class, counts_as(&rules)), (class, Some(counts)));
+            assert_eq!((record(&rules, None).unwrap().class, counts_as(&rules)), (class, Some(counts)));
         }
         assert_eq!(counts_as(&[]), None);
     }
@@ -338,7 +291,7 @@ mod tests {
                     let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
                     let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
                     let mut said: Vec<String> = vec![pair.practice.clone()];
-                    said.extend(findings(Verdict::None, &pair.rules).iter().map(Finding::sentence));
+                    said.extend(findings(&pair.rules).iter().map(Finding::sentence));
                     said.extend(pair.if_dispersive.map(|of| of.words()));
                     let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
                     said.extend(

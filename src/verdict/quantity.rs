@@ -11,8 +11,6 @@ pub enum FindingValue {
     Percent(f64),
     /// A length (mm).
     Mm(f64),
-    /// A length (mm); `None` where it is not known.
-    KnownMm(Option<f64>),
     /// A difference of two percents, which may be small: with three decimals.
     Points(f64),
     /// A number without unit.
@@ -30,7 +28,7 @@ impl FindingValue {
     pub fn suffix(&self) -> &'static str {
         match self {
             Self::Percent(_) => "_percent",
-            Self::Mm(_) | Self::KnownMm(_) => "_mm",
+            Self::Mm(_) => "_mm",
             Self::Points(_) => "_pp",
             Self::Ratio(_) | Self::LeastRatio(_) | Self::Count(_) | Self::Text(_) => "",
         }
@@ -44,7 +42,6 @@ impl FindingValue {
             | Self::Mm(value)
             | Self::Ratio(value)
             | Self::LeastRatio(value) => (*value).into(),
-            Self::KnownMm(value) => (*value).into(),
             Self::Count(count) => (*count).into(),
             Self::Text(text) => text.as_str().into(),
         }
@@ -55,7 +52,6 @@ impl FindingValue {
         match self {
             Self::Percent(value) => number(*value) + " %",
             Self::Mm(value) => number(*value) + " mm",
-            Self::KnownMm(value) => number(value.unwrap_or(f64::NAN)) + " mm",
             Self::Points(value) if value.abs() < 1e6 => format!("{value:.3} percentage points"),
             Self::Points(value) => number(*value) + " percentage points",
             Self::Ratio(value) => number(*value),

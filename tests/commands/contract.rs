@@ -1,4 +1,4 @@
-//! What scripts rely on: how JSON begins, `--fail-on`, and `reproduce`.
+//! What scripts rely on: how JSON begins, `--fail-on`, and the digest of an outcome.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +8,7 @@ use std::process::Output;
 use serde_json::Value;
 
 use crate::judge::{SMALL, soils};
-use crate::program::{call, done, refused, voidwalk};
+use crate::program::{call, done, refused};
 use crate::schemas::{beginning, json_files, keep_to_schema, problems, schema_of};
 
 fn text(bytes: &[u8]) -> String {
@@ -35,7 +35,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
     let filter = "[filter]\ncu = 1.5\ndensity = \"loose\"\n[packing]\ngrains = 300\nstiffness_ratio = 0.01\n";
     fs::write(at.join("filter.toml"), filter).unwrap();
     let small = |args: &[&'static str]| [args, &SMALL].concat();
-    let commands: [(Vec<&str>, &str); 14] = [
+    let commands: [(Vec<&str>, &str); 13] = [
         (small(&["judge", "base.csv", "fine.csv", "--quick", "--json"]), "outcome"),
         (small(&["run", "--set", "replicates=2", "--set", "record.sensitivity=[]", "--json"]), "outcome"),
         (
@@ -53,7 +53,6 @@ fn every_json_file_begins_with_its_form_and_the_version() {
         (vec!["percolation", "--sizes", "4,6", "--realisations", "3", "--json"], "percolation"),
         (vec!["pack", "filter.toml", "--out", "packing", "--json"], "packing"),
         (vec!["constrictions", "packing/grains.csv", "--json"], "constrictions"),
-        (vec!["reproduce", "voidwalk-run", "--json"], "reproduced"),
         (vec!["check", "plan.toml", "--json"], "plan-check"),
         (vec!["campaign", "plan.toml"], ""),
     ];
@@ -78,26 +77,26 @@ fn every_json_file_begins_with_its_form_and_the_version() {
 }
 
 #[test]
-fn files_without_a_beginning_are_read_and_newer_ones_refused() {
+fn files_without_a_beginning_or_in_another_form_are_refused() {
     let (_root, at) = soils();
     done(&call(&at, &[&["judge", "base.csv", "fine.csv", "--quick", "--out", "a"][..], &SMALL].concat()));
     let file = at.join("a/outcome.json");
     let whole = fs::read_to_string(&file).unwrap();
-    let page = || fs::read_to_string(at.join("a/report.html")).unwrap();
-    let before = page();
-    let mut earlier: Value = serde_json::from_str(&whole).unwrap();
-    earlier.as_object_mut().unwrap().retain(|name, _| !["format", "voidwalk"].contains(&name.as_str()));
-    fs::write(&file, earlier.to_string()).unwrap();
-    done(&call(&at, &["report", "a"]));
-    assert_eq!(page(), before);
+    let report = |content: &str| {
+        fs::write(&file, content).unwrap();
+        ended(&call(&at, &["report", "a"]))
+    };
+    let mut bare: Value = serde_json::from_str(&whole).unwrap();
+    bare.as_object_mut().unwrap().retain(|name, _| !["format", "voidwalk"].contains(&name.as_str()));
+    let (code, said) = report(&bare.to_string());
+    assert!(code == 2 && said.contains("does not begin with the name and number of its form"), "{said}");
     let version = format!("\"voidwalk\": \"{}\"", env!("CARGO_PKG_VERSION"));
-    let newer = whole
-        .replace("voidwalk-outcome/1", "voidwalk-outcome/2")
-        .replace(&version, "\"voidwalk\": \"7.0.0\"");
-    fs::write(&file, newer).unwrap();
-    let output = call(&at, &["report", "a"]);
-    let said = text(&output.stderr);
-    assert!(!output.status.success() && said.contains("voidwalk-outcome/2 of voidwalk 7.0.0"), "{said}");
+    for number in ["0", "2"] {
+        let form = format!("voidwalk-outcome/{number}");
+        let other = whole.replace("voidwalk-outcome/1", &form).replace(&version, "\"voidwalk\": \"7.0.0\"");
+        let (code, said) = report(&other);
+        assert!(code == 2 && said.contains(&format!("{form} of voidwalk 7.0.0")), "{said}");
+    }
 }
 
 /// Exit code and what is said on stderr.
@@ -113,41 +112,40 @@ fn a_verdict_that_is_not_accepted_ends_with_code_4_and_the_same_output() {
         call(&at, &[&args[..], &["--set", "record.sensitivity=[]"], &SMALL, more].concat())
     };
     // The built-in base erodes continuously, one at Dc90 is held, and a run alone leaves a verdict open.
-    let cases: [(&[&str], &str, [i32; 3]); 3] = [
-        (&[], "continuing erosion", [4, 4, 4]),
-        (&["--set", "base.d85_at_dc=90"], "no erosion", [0, 0, 4]),
-        (&["--set", "runs=1"], "undecided", [4, 4, 4]),
+    let cases: [(&[&str], &str, [i32; 2]); 3] = [
+        (&[], "continuing erosion", [4, 4]),
+        (&["--set", "base.d85_at_dc=90"], "no erosion", [0, 0]),
+        (&["--set", "runs=1"], "undecided", [4, 4]),
     ];
     for (more, verdict, codes) in cases {
-        for (word, code) in ["some", "continuing", "doubt"].into_iter().zip(codes) {
+        for (word, code) in ["some", "continuing"].into_iter().zip(codes) {
             let output = run(&[more, &["--fail-on", word, "--json"]].concat());
             let (found, said) = ended(&output);
             assert_eq!(found, code, "{more:?} {word}: {said}");
             let outcome = fs::read_to_string(at.join("r/outcome.json")).unwrap();
             assert_eq!(text(&output.stdout), outcome, "stdout is what it was without --fail-on");
             let record: Value = serde_json::from_str(&outcome).unwrap();
-            assert_eq!(record["verdict"], verdict);
-            let confidence = record["confidence"].as_str().unwrap();
-            let expected = format!("not accepted: {verdict} ({confidence}), with --fail-on {word}; ");
-            assert_eq!(said.contains(&expected), code == 4, "{said}");
+            assert_eq!(record["model"]["class"], verdict);
+            let is_named = said.contains("not accepted: ") && said.contains(&format!("--fail-on {word}; "));
+            assert_eq!(is_named, code == 4, "{said}");
         }
         assert_eq!(ended(&run(&[more, &["--json"]].concat())).0, 0);
     }
     let wrong = run(&["--fail-on", "none"]);
-    refused(&wrong, "some, continuing, doubt");
+    refused(&wrong, "some, continuing");
 }
 
 #[test]
 fn judge_and_compare_name_the_cases_that_are_not_accepted() {
     let (_root, at) = soils();
-    let judge = ["judge", "base.csv", "coarse.csv", "--quick", "-q", "--out", "a", "--fail-on", "doubt"];
+    let judge = ["judge", "base.csv", "coarse.csv", "--quick", "-q", "--out", "a", "--fail-on", "some"];
     let (code, said) = ended(&call(&at, &[&judge[..], &SMALL].concat()));
     assert!(code == 4 && said.contains("not accepted: ") && at.join("a/report.html").is_file(), "{said}");
     // A finished folder is refused, whatever its verdict.
     assert_eq!(ended(&call(&at, &[&judge[..], &SMALL].concat())).0, 2);
     let compare = ["compare", "--base", "base.csv", "fine.csv", "coarse.csv", "--quick", "-q", "--out", "c"];
-    let (code, said) = ended(&call(&at, &[&compare[..], &["--fail-on", "doubt"], &SMALL].concat()));
-    assert!(code == 4 && said.contains("fine: ") && said.contains("; coarse: "), "{said}");
+    let (code, said) = ended(&call(&at, &[&compare[..], &["--fail-on", "some"], &SMALL].concat()));
+    assert!(code == 4 && said.contains("coarse: "), "{said}");
     assert!(at.join("c/compare.html").is_file());
     for command in ["judge", "run", "resume", "compare"] {
         let help = text(&call(&at, &[command, "--help"]).stdout);
@@ -171,103 +169,67 @@ fn help_and_manual_pages_list_every_exit_code() {
     }
 }
 
-/// The names in a folder.
-fn names(folder: &Path) -> BTreeSet<String> {
-    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+/// The outcome of a folder.
+fn outcome(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("outcome.json")).unwrap()).unwrap()
 }
 
 #[test]
-fn runs_are_reproduced_and_every_difference_is_named() {
+fn a_scene_has_one_digest_on_any_threads_from_any_folder_and_another_with_another_seed() {
     let (_root, at) = soils();
     let judge = ["judge", "base.csv", "fine.csv", "--quick", "-q", "--threads", "1", "--out", "j"];
     done(&call(&at, &[&judge[..], &SMALL].concat()));
-    let voids =
-        ["run", "-q", "--threads", "2", "--set", "replicates=2", "--set", "record.voids=[3]", "--out", "r"];
-    done(&call(&at, &[&voids[..], &["--set", "record.sensitivity=[2.0]"], &SMALL].concat()));
+    let first = outcome(&at.join("j"));
     // Neither the tables nor the place where it was walked is needed.
     fs::remove_file(at.join("base.csv")).unwrap();
     fs::rename(at.join("j"), at.join("moved")).unwrap();
-    let before = names(&at);
-    let files = |folder: &str| -> Vec<(String, Vec<u8>)> {
-        let inside = |name: String| Some((name.clone(), fs::read(at.join(folder).join(&name)).ok()?));
-        names(&at.join(folder)).into_iter().filter_map(inside).collect()
+    let again = |more: &[&str]| {
+        let run = ["run", "moved/scene.toml", "-q", "--out", "again", "--overwrite"];
+        done(&call(&at, &[&run[..], more].concat()));
+        outcome(&at.join("again"))
     };
-    let kept = [files("moved"), files("r")];
-    for folder in ["moved", "r"] {
-        let output = call(&at, &["reproduce", folder, "--threads", "2"]);
-        assert_eq!(ended(&output).0, 0, "{}{}", text(&output.stdout), text(&output.stderr));
-        let said = text(&output.stdout);
-        assert!(said.starts_with("The same: ") && said.contains(" values in "), "{said}");
-    }
-    assert!([files("moved"), files("r")] == kept, "the folders stay as they are");
-    assert_eq!(names(&at), before, "nothing is left beside them");
+    let three = again(&["--threads", "3"]);
+    assert_eq!(first["digest"], three["digest"]);
+    assert_ne!(first["seconds"], three["seconds"]);
+    let digest = first["digest"].as_str().unwrap();
+    assert!(digest.len() == 32 && digest.chars().all(|c| "0123456789abcdef".contains(c)), "{digest}");
+    assert_ne!(first["digest"], again(&["--set", "seed=2"])["digest"]);
+}
 
-    // A number of the outcome, a cell, a verdict, an input and a whole file.
-    let change = |name: &str, from: &str, to: &str| {
-        let file = at.join("r").join(name);
-        let text = fs::read_to_string(&file).unwrap();
-        assert!(text.contains(from), "{name}: {from}");
-        fs::write(&file, text.replacen(from, to, 1)).unwrap();
-    };
-    let mut outcome: Value = serde_json::from_slice(&fs::read(at.join("r/outcome.json")).unwrap()).unwrap();
-    let mean = outcome["summary"][0]["eroded_mass_fraction"]["mean"].as_f64().unwrap();
-    outcome["summary"][0]["eroded_mass_fraction"]["mean"] = mean.next_up().into();
-    outcome["verdict"] = "no erosion".into();
-    outcome["seconds"] = 1e9.into();
-    outcome["reasons"][0] = "worded anew".into();
-    fs::write(at.join("r/outcome.json"), outcome.to_string()).unwrap();
-    change("layers.csv", "\n1,1,", "\n1,9,");
-    change("manifest.json", "\"seed\": 1", "\"seed\": 2");
-    fs::remove_file(at.join("r/eroded.csv")).unwrap();
-    let output = call(&at, &["reproduce", "r", "--json", "-q"]);
-    let (code, said) = ended(&output);
-    assert!(code == 1 && said.contains("\nerror: not the same: 5 of "), "{said}");
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!((&found["same"], &found["different"]), (&false.into(), &5.into()));
-    let places: Vec<String> = found["differences"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|of| format!("{} {}", of["file"].as_str().unwrap(), of["place"].as_str().unwrap()))
-        .collect();
-    assert_eq!(
-        places,
-        [
-            "outcome.json verdict",
-            "outcome.json summary[0].eroded_mass_fraction.mean",
-            "manifest.json seed",
-            "eroded.csv ",
-            "layers.csv line 2, run",
-        ]
-    );
-    let words = text(&call(&at, &["reproduce", "r"]).stdout);
-    assert!(words.contains(&format!("mean: {:?}; {mean:?}\n", mean.next_up())), "{words}");
-    assert!(words.contains("eroded.csv: no such file; the file\n"), "{words}");
+/// The places of all values of JSON that are neither text nor made of others.
+fn places(place: &str, value: &Value, all: &mut Vec<String>) {
+    match value {
+        Value::Object(fields) => {
+            fields.iter().for_each(|(name, value)| places(&format!("{place}/{name}"), value, all));
+        }
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(at, item)| places(&format!("{place}/{at}"), item, all));
+        }
+        Value::String(_) => {}
+        Value::Null | Value::Bool(_) | Value::Number(_) => all.push(place.to_owned()),
+    }
 }
 
 #[test]
-fn what_is_no_finished_run_is_not_reproduced() {
+fn every_number_of_an_outcome_but_wall_time_changes_its_digest() {
     let (_root, at) = soils();
-    let reproduce = |folder: &str| call(&at, &["reproduce", folder]);
-    refused(&reproduce("nosuch"), "nosuch: holds no outcome.json; name the folder of a finished run");
-    refused(&reproduce("."), "holds no outcome.json");
-    done(&call(&at, &["percolation", "-q", "--sizes", "4,6", "--realisations", "3", "--out", "p"]));
-    refused(&reproduce("p"), "p: holds a percolation study, which is not reproduced");
-    let compare = ["compare", "--base", "base.csv", "fine.csv", "coarse.csv", "--quick", "-q", "--out", "c"];
-    done(&call(&at, &[&compare[..], &SMALL].concat()));
-    refused(&reproduce("c"), "c: holds several cases; name the folder of one of them");
-    done(&reproduce("c/walks/cases/fine"));
-    fs::write(at.join("c/walks/cases/fine/.voidwalk.unfinished"), "{}").unwrap();
-    refused(&reproduce("c/walks/cases/fine"), "this run is not finished; continue it with voidwalk resume");
-    let mut stopped = voidwalk(&at, &["reproduce", "c/walks/cases/coarse"]);
-    let beside = names(&at.join("c/walks/cases"));
-    let stopped = stopped.spawn().unwrap();
-    // A signal before it listens ends it; both leave nothing but, at worst, the temporary folder.
-    rustix::process::kill_process(rustix::process::Pid::from_child(&stopped), rustix::process::Signal::TERM)
-        .unwrap();
-    let output = stopped.wait_with_output().unwrap();
-    if output.status.code() == Some(3) {
-        assert!(text(&output.stderr).contains("nothing of it is kept"), "{}", text(&output.stderr));
-        assert_eq!(names(&at.join("c/walks/cases")), beside);
+    let run = ["run", "-q", "--out", "r", "--set", "replicates=2", "--set", "record.sensitivity=[2.0]"];
+    done(&call(&at, &[&run[..], &SMALL].concat()));
+    let whole = outcome(&at.join("r"));
+    let digest = whole["digest"].as_str().unwrap();
+    assert_eq!(voidwalk::outcome::digest::digest(&whole).unwrap(), digest, "of what is written");
+    let mut all = Vec::new();
+    places("", &whole, &mut all);
+    assert!(all.len() > 200, "{}", all.len());
+    for place in all {
+        let mut changed = whole.clone();
+        let value = changed.pointer_mut(&place).unwrap();
+        *value = match (value.as_u64(), value.as_f64()) {
+            (Some(number), _) => (number + 1).into(),
+            (None, Some(number)) => number.next_up().into(),
+            (None, None) => value.as_bool().map_or(0.into(), |is| (!is).into()),
+        };
+        let is_same = voidwalk::outcome::digest::digest(&changed).unwrap() == digest;
+        assert_eq!(is_same, place.ends_with("/seconds") || place == "/studies_to_come", "{place}");
     }
 }

@@ -71,17 +71,10 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     assert_eq!(least["governs"], 1);
     let governing = format!("Governing sample {}: D15F up to ", least["sample"].as_str().unwrap());
     let page = fs::read_to_string(at.join("d/designs.html")).unwrap();
-    for words in [governing.as_str(), "The maximum D15F is set for ", "Outside checked range: 3 of 3 samples"]
-    {
+    for words in [governing.as_str(), "The maximum D15F is set for "] {
         assert!(said.contains(words) && page.contains(words), "{words}: {said}");
     }
     assert!(page.contains("/design.html\"") && page.contains("No erosion by walk up to"));
-    // How far it can be relied on, and what was walked, as in the design of one.
-    for row in rows {
-        let reason = row["design"]["reason"].as_str().unwrap();
-        assert!(said.contains(reason) && row["design"]["confidence"] == "outside checked range", "{said}");
-    }
-    assert!(page.contains("Outside checked range</td>") || page.contains("Outside checked range<br"));
     let walks = &all["walks"];
     assert_eq!((&walks["networks"], &walks["seed"]), (&1.into(), &1.into()));
     for name in ["filter", "densities", "thicknesses"] {
@@ -114,7 +107,6 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     fs::remove_file(at.join("d/designs.html")).unwrap();
     designed(at, &["report", "d"]);
     assert_eq!(tables(&at.join("d")), before);
-    refused(&call(at, &["reproduce", "d"]), "is not reproduced");
     // Other samples in its place.
     designed(at, &[&words("other.csv", "d")[..], &["--overwrite"]].concat());
     assert_ne!(tables(&at.join("d"))[0], before[0]);
@@ -223,10 +215,8 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
     let none = call(at, &["design", "samples.csv", "--each", "--filter", "nowhere.csv", "--out", "d"]);
     refused(&none, "no sample can be walked");
     refused(&call(at, &["design", "gone.csv", "--each"]), "gone.csv");
-    for more in [["--inverse", "-q"], ["--authority", "nrcs"]] {
-        let words = [&["design", "samples.csv", "--each"][..], &more].concat();
-        assert_eq!(call(at, &words).status.code(), Some(2), "{more:?}");
-    }
+    let inverse = ["design", "samples.csv", "--each", "--inverse", "-q"];
+    assert_eq!(call(at, &inverse).status.code(), Some(2));
     assert!(!at.join("d").exists() && !at.join("voidwalk-designs").exists());
 }
 

@@ -37,8 +37,8 @@ fn cells(table: &Value, heading: &str) -> Vec<String> {
 /// Whether a rule of retention is not kept, the filter may lose its fines, or the walk erodes.
 fn is_doubted(row: &Value) -> bool {
     let erodes = ["some erosion", "continuing erosion"].iter().any(|class| row["walk"]["verdict"] == *class);
-    let label = row["walk"]["confidence"].as_str().unwrap_or_default().to_owned();
-    let against = ["contradicted by practice", "may lose its own fines"].contains(&label.as_str());
+    let practice = &row["walk"]["by_practice"];
+    let against = practice.is_string() && practice != "no erosion";
     row["met"] == false || row["may_lose_fines"] == true || erodes || against
 }
 

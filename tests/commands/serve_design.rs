@@ -52,8 +52,6 @@ fn a_design_finds_the_boundaries_of_the_command_line() {
         assert!(least.is_some() && least <= low && most >= high, "{name}: {shown} {written}");
     }
     assert!(rows[0]["no_erosion"]["d15f_mm"]["median"].as_f64().unwrap() > 0.1, "{rows}");
-    assert_eq!(job["result"]["confidence"], told["confidence"]);
-    assert_eq!(job["result"]["reasons"], told["reasons"]);
     assert_eq!(job["result"]["base"], "narrow.csv", "no folder");
     let (status, head, zip) = served.get(&format!("zip/design-{id}.zip"));
     assert!(status == 200 && head.contains("attachment") && zip.starts_with(b"PK"), "{head}");
@@ -164,7 +162,7 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
     let [listed, values] = ["listed", "value_begins"].map(|name| pair[name].as_array().unwrap());
     assert_eq!([listed.len(), values.len()], [all.len(); 2]);
     assert_eq!((&listed[0][0], &values[0]), (&all[0]["name"], &"=".into()));
-    assert!(pair["practice"].as_str().unwrap().starts_with("met: D15F "), "{pair}");
+    assert!(pair["practice"].as_str().unwrap().starts_with("meets "), "{pair}");
     for ((rule, found), begin) in all.iter().zip(found).zip(begins) {
         let is_boundary = rule["role"] == "continuation";
         match rule["met"].as_bool() {

@@ -119,7 +119,7 @@ fn every_page_has_the_cover_that_was_stated() {
     let said = String::from_utf8(again.stdout).unwrap();
     assert!(said.contains("walks were kept from an earlier call; their own pages have the cover"), "{said}");
     // What would have no effect on a specification is no setting of it.
-    for other in ["base.cu=3", "about.authority=nrcs", "about.coarse_left=true"] {
+    for other in ["base.cu=3", "about.coarse_left=true"] {
         let steps = ["design", "samples.csv", "--steps", "--out", "x", "--set", other];
         let takes = "--steps walks nothing, and takes no other settings than about.project, about.number, \
                      about.purpose, about.client, about.author, about.checker, about.revision, about.date, \

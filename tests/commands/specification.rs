@@ -72,11 +72,7 @@ fn steps_limits_and_products_fill_a_folder() {
 #[test]
 fn what_needs_a_walk_or_a_base_is_refused_beside_steps() {
     let root = root();
-    for args in [
-        &["design", "--steps"][..],
-        &["design", "sands.csv", "--steps", "--filter", "3"],
-        &["design", "sands.csv", "--steps", "--authority", "nrcs"],
-    ] {
+    for args in [&["design", "--steps"][..], &["design", "sands.csv", "--steps", "--filter", "3"]] {
         assert_eq!(call(root.path(), args).status.code(), Some(2), "{args:?}");
     }
     refused(&call(root.path(), &["design", "nowhere.csv", "--steps"]), "nowhere.csv");

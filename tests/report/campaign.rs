@@ -6,11 +6,13 @@ use std::path::Path;
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made, leaves_out};
 use voidwalk::outcome::record::{
-    Classed, Confidence, CurveEnd, CurveRange, FindingRecord, ModelLimit, Outcome, Stopping, Verdict, Weight,
+    Classed, CurveEnd, CurveRange, FindingRecord, ModelLimit, Outcome, Stopping, Verdict,
 };
 use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
+use voidwalk::store::format::CAMPAIGN;
 
+use super::folder::finding;
 use super::{folder, words};
 
 fn line(case: &str, place: &str, outcome: &Outcome) -> LedgerLine {
@@ -34,7 +36,7 @@ fn page(lines: &[LedgerLine], root: &Path) -> String {
         missing: Vec::new(),
     };
     let ledger: Vec<String> = lines.iter().map(|line| serde_json::to_string(line).unwrap()).collect();
-    fs::write(root.join("campaign.json"), serde_json::to_string(&about).unwrap()).unwrap();
+    fs::write(root.join("campaign.json"), CAMPAIGN.json(&about).unwrap()).unwrap();
     fs::write(root.join("ledger.jsonl"), ledger.join("\n") + "\n").unwrap();
     fs::read_to_string(report::write_campaign(root).unwrap().page).unwrap()
 }
@@ -59,36 +61,30 @@ fn the_class_comes_first_and_leads_to_the_page_of_its_case() {
     assert_eq!(links, 1, "only to a page that is there, inside the folder");
     assert!(page.contains("<th><a href=\"cases/fine,cu=1.5/report.html\"><b>some erosion</b></a>"), "{page}");
     assert!(page.contains("Two &lt;b&gt;filters&lt;/b&gt;") && !page.contains("<b>filters"));
-    assert!(words(&page).contains("ClassfilterConfidenceRules not metWarnings"));
+    assert!(words(&page).contains("ClassfilterRules not metWarnings"));
 }
 
 #[test]
 fn doubts_are_counted_and_said_once() {
     let root = TempDir::new().unwrap();
     let mut outcome = folder::outcome(3);
-    let odd = FindingRecord { weight: Weight::Limits, ..FindingRecord::of_earlier("the base is <i>odd</i>") };
-    outcome.findings = vec![odd];
-    outcome.confidence = Confidence::Contradicted;
+    outcome.findings = vec![finding("the base is <i>odd</i>")];
     outcome.rules[0].id = "terzaghi".into();
     (outcome.rules[0].applies, outcome.rules[0].met) = (true, Some(false));
     outcome.rules[1].id = "a-rule-of-tomorrow".into();
     (outcome.rules[1].applies, outcome.rules[1].met) = (true, Some(false));
     outcome.rules[2].met = Some(true);
     let first = line("one", "cases/one", &outcome);
-    // as an earlier version wrote it
-    let old = LedgerLine { confidence: None, rules_not_met: None, ..line("two", "cases/two", &outcome) };
-    assert!(!serde_json::to_string(&old).unwrap().contains("confidence"));
-    let page = page(&[first, old], root.path());
-    assert!(page.contains("<span class=\"amber\">contradicted</span>") && page.contains("<td>–</td>"));
+    let kept = LedgerLine { rules_not_met: Vec::new(), ..line("two", "cases/two", &outcome) };
+    let page = page(&[first, kept], root.path());
     assert!(page.contains("<td class=\"n\"><span class=\"amber\">2</span></td>"));
     let text = words(&page);
-    assert!(text.contains("1 case: contradicted by practice"), "{text}");
     assert!(text.contains("Terzaghi: the filter retains the base (1 case)"));
     assert!(text.contains("a-rule-of-tomorrow (1 case)"));
     assert!(page.contains("the base is &lt;i&gt;odd&lt;/i&gt; (2 cases)"));
 }
 
-/// More replicates do not decide what the curve or the pan fraction leaves open.
+/// More replicates do not decide what the curve leaves open.
 #[test]
 fn why_cases_are_undecided_is_said_of_each() {
     let root = TempDir::new().unwrap();
@@ -96,7 +92,7 @@ fn why_cases_are_undecided_is_said_of_each() {
     let more = "more replicates may decide it";
     let decided = line("decided", "cases/decided", &outcome);
     assert!(!words(&page(&[decided], root.path())).contains(more));
-    outcome.verdict = Verdict::Undecided;
+    outcome.model.class = Verdict::Undecided;
     let by_replicates = line("one", "cases/one", &outcome);
     let text = words(&page(std::slice::from_ref(&by_replicates), root.path()));
     assert!(
@@ -121,32 +117,26 @@ fn why_cases_are_undecided_is_said_of_each() {
         !text.contains(more) && text.contains("Undecided, 1 case: the constriction curve is known"),
         "{text}"
     );
-    // As an earlier version wrote it.
-    let old = LedgerLine { undecided_by: None, reason: None, thickness: None, with_flow: None, ..by_curve };
-    let text = words(&page(&[by_replicates, old], root.path()));
-    assert!(text.contains("Undecided, 1 case: the page of the case says why."), "{text}");
-    assert!(text.contains("1 of these cases was walked by an earlier version"), "{text}");
 }
 
-/// What some case of a ledger contains is not said to be left out; lines of earlier versions do not say.
+/// What some case of a ledger contains is not said to be left out.
 #[test]
 fn openings_of_a_case_are_in_its_line() {
     let outcome = folder::outcome(3);
     let closed = line("closed", "cases/closed", &outcome);
     let mut with = outcome.clone();
-    with.findings.push(FindingRecord { id: "openings".into(), ..FindingRecord::of_earlier("open") });
+    with.findings.push(FindingRecord { id: "openings".into(), ..finding("open") });
     let open = line("open", "cases/open", &with);
-    assert_eq!((closed.with_openings, open.with_openings), (Some(false), Some(true)));
+    assert_eq!((closed.with_openings, open.with_openings), (false, true));
     let says = |lines: &[LedgerLine]| leaves_out(lines).contains(&ModelLimit::PartialClogging);
-    let old = LedgerLine { with_openings: None, with_arches: None, ..open.clone() };
-    assert!(says(std::slice::from_ref(&closed)) && says(&[old]) && !says(&[closed, open]));
+    assert!(says(std::slice::from_ref(&closed)) && !says(&[closed, open]));
 }
 
 /// A rule that added replicates until the error was small says nothing of the verdict.
 #[test]
 fn what_would_decide_is_said_after_a_target_error_was_met() {
     let mut outcome = folder::outcome(3);
-    outcome.verdict = Verdict::Undecided;
+    outcome.model.class = Verdict::Undecided;
     let met = Stopping {
         target_error_pp: Some(5.0),
         decide_percent: None,
@@ -155,11 +145,11 @@ fn what_would_decide_is_said_after_a_target_error_was_met() {
         met: true,
         verdict: None,
         half_width_pp: Some(4.0),
-        sentence: None,
         short_of: None,
     };
     outcome.stopping = Some(met.clone());
-    assert!(outcome.beside_the_verdict().iter().any(|said| said.contains("--decide 99%")));
-    outcome.stopping = Some(Stopping { met: false, sentence: Some("Inconclusive".into()), ..met });
-    assert!(!outcome.beside_the_verdict().iter().any(|said| said.contains("--decide 99%")));
+    let says = |outcome: &Outcome| outcome.found().iter().any(|of| of.with_to_do().contains("--decide 99%"));
+    assert!(says(&outcome));
+    outcome.stopping = Some(Stopping { met: false, decide_percent: Some(99.0), ..met });
+    assert!(!says(&outcome));
 }

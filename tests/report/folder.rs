@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use voidwalk::outcome::record::*;
+use voidwalk::store::format::{MANIFEST, OUTCOME};
 
 /// A number between 0 and 1 that depends on three others and on nothing else.
 fn scatter(a: u64, b: u64, c: u64) -> f64 {
@@ -23,6 +24,18 @@ fn statistic(mean: f64, sd: f64, replicates: u64) -> Statistic {
     }
     let half = 2.0 * sd / (replicates as f64).sqrt();
     Statistic { mean, sd: Some(sd), low: Some(mean - half), high: Some(mean + half) }
+}
+
+/// A finding that changes nothing.
+pub fn finding(sentence: &str) -> FindingRecord {
+    FindingRecord {
+        id: String::new(),
+        about: Topic::Walk,
+        label: String::new(),
+        numbers: serde_json::Map::new(),
+        sentence: sentence.to_owned(),
+        to_do: String::new(),
+    }
 }
 
 /// The outcome of `replicates` replicates of two runs.
@@ -131,14 +144,16 @@ pub fn outcome(replicates: u64) -> Outcome {
             }
         });
     Outcome {
-        headline: String::new(),
-        verdict: Verdict::Some,
-        confidence: Confidence::Within,
-        findings: Vec::new(),
-        reasons: Vec::new(),
-        notes: Vec::new(),
+        headline: None,
+        model: Model {
+            class: Verdict::Some,
+            eroded_percent: vec![[10.0, 12.0], [1.0, 3.0]],
+            replicates,
+            network: NetworkKind::Cubic,
+        },
+        findings: vec![finding("18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.")],
         practice: None,
-        constrictions: None,
+        constrictions: ConstrictionsRecord { origin: CurveOrigin::Given },
         seed: 2016,
         n_base: 21_443_871,
         n_base_eq2: Some(21_443_871),
@@ -155,22 +170,11 @@ pub fn outcome(replicates: u64) -> Outcome {
             met: true,
             verdict: Some(Verdict::Some),
             half_width_pp: Some(1.2),
-            sentence: None,
             short_of: None,
         }),
-        pan_bounds: None,
         threshold: 0.075,
-        warnings: vec!["18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.".into()],
         left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],
-        model_leaves_out: [
-            "Hydraulics: no gradient, no flow rate, no time. A step is chosen by constriction area alone.",
-            "Bridging of several particles over one constriction.",
-            "Partial clogging: a constriction is open or blocked.",
-            "Cohesion, particle shape, and segregation of the filter.",
-            "The class “excessive erosion” of Foster and Fell.",
-        ]
-        .map(|words| ModelLimit::Said(words.into()))
-        .to_vec(),
+        model_leaves_out: ModelLimit::ALL.to_vec(),
         inputs: Inputs {
             filter: FilterRecord {
                 name: "Loose filter gravel".into(),
@@ -248,6 +252,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 id: String::new(),
                 name,
                 authority: String::new(),
+                stated_by: Vec::new(),
                 role: RuleRole::Retention,
                 applies: true,
                 quantity,
@@ -292,13 +297,12 @@ pub fn outcome(replicates: u64) -> Outcome {
             eroded_without_blocking: 0.873,
         }),
         curve_range: None,
-        margin: None,
         if_dispersive: None,
-        evidence: None,
         arching: None,
         sensitivity: sensitivity.collect(),
         thickness: thickness.collect(),
         studies_to_come: false,
+        digest: String::new(),
         seconds: 239.4,
     }
 }
@@ -324,8 +328,8 @@ impl Plan {
     /// Writes the folder.
     pub fn write(&self, folder: &Path) {
         let put = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
-        put("outcome.json", &serde_json::to_string_pretty(&self.outcome).unwrap());
-        put("manifest.json", &serde_json::to_string_pretty(&manifest()).unwrap());
+        put("outcome.json", &OUTCOME.json(&self.outcome).unwrap());
+        put("manifest.json", &MANIFEST.json(&manifest()).unwrap());
         put("scene.toml", &self.scene);
         put("series.csv", &self.series());
         put("layers.csv", &self.layers());

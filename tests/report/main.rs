@@ -11,8 +11,9 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{ModelLimit, Outcome, RuleQuantity, RuleText, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, RuleQuantity, RuleText, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
+use voidwalk::store::format::OUTCOME;
 
 /// Writes a folder and its report; the page, the figures, and the folder that holds them.
 fn made(plan: &Plan) -> (String, Vec<(String, String)>, TempDir) {
@@ -50,21 +51,17 @@ fn the_page_says_what_an_engineer_reads_first() {
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
         "Model (“the walk”): base particles are moved through voids",
-        "Some erosion",
-        "Practice: ",
-        "Walk: some erosion; eroded ",
-        "Next: ",
+        "Model (research): some erosion; ",
         "18 % of the base is finer than 0.075 mm",
         "Figure 1.",
         "Group by ASTM D2487",
         "Rules of practice, in short",
-        "The walk models 296 mm",
         "The model leaves out: ",
-        "Hydraulics: no gradient",
+        "hydraulics; ",
         "What the model found",
         "What the model leaves out",
         "Figure 2.",
-        "Figure 5.",
+        "Figure 4.",
         "Filter rules beside the verdict",
         "Largest particle eroded, over D15F",
         "Inputs",
@@ -107,11 +104,11 @@ fn every_class_has_its_words() {
     ];
     for (verdict, expected) in cases {
         let mut plan = Plan::usual();
-        plan.outcome.verdict = verdict;
+        plan.outcome.model.class = verdict;
         assert!(words(&made(&plan).0).contains(expected), "{verdict:?}");
     }
     let mut plan = Plan::usual();
-    plan.outcome.verdict = Verdict::Undecided;
+    plan.outcome.model.class = Verdict::Undecided;
     plan.outcome.summary[1].eroded_mass_fraction =
         Statistic { mean: 0.074, sd: Some(0.01), low: Some(0.066), high: Some(0.082) };
     let rule = "to decide the verdict at the 99.9 % confidence level, corrected for repeated looks. That was \
@@ -121,6 +118,7 @@ fn every_class_has_its_words() {
     let next = "more replicates may decide it";
     assert!(!words(&made(&plan).0).contains(next), "they were added already");
     plan.outcome.stopping = None;
+    plan.outcome.findings = plan.outcome.found().iter().map(|finding| finding.record()).collect();
     assert!(words(&made(&plan).0).contains(next));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
@@ -147,7 +145,7 @@ fn nothing_may_run_or_be_fetched() {
     for forbidden in ["<script", "style=\"", "src=", "href=", "@import", "url(http", "http://", "https://"] {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
-    assert_eq!(figures.len(), 7);
+    assert_eq!(figures.len(), 5);
     for (name, figure) in figures {
         assert!(
             figure.starts_with("<?xml") && figure.contains("viewBox=") && figure.contains("<title"),
@@ -174,13 +172,12 @@ fn hostile_names_are_inert() {
         &mut outcome.engine,
         &mut rule.name,
         &mut rule.source,
-        &mut outcome.warnings[0],
+        &mut outcome.findings[0].sentence,
         &mut outcome.left_out[0],
     ] {
         *text = EVIL.to_owned();
     }
     rule.quantity = RuleQuantity::Named(EVIL.into());
-    outcome.model_leaves_out[0] = ModelLimit::Said(EVIL.into());
     let (page, figures, _folder) = made(&plan);
     for text in figures.iter().map(|(_, text)| text).chain([&page]) {
         for live in ["<script", "<img", "</pre>\"", "\u{0}", "\u{202e}"] {
@@ -195,7 +192,7 @@ fn hostile_names_are_inert() {
 fn without_a_scale_every_size_says_so() {
     let mut plan = Plan::usual();
     plan.outcome.inputs.scale_free = true;
-    plan.outcome.warnings.clear();
+    plan.outcome.findings.clear();
     let (page, figures, _folder) = made(&plan);
     let text = words(&page);
     assert!(text.contains("Size / D0F (–)") && text.contains("296 D0F") && text.contains("largest (D0F)"));
@@ -207,11 +204,10 @@ fn without_a_scale_every_size_says_so() {
 fn the_outcome_itself_stands_among_its_variations() {
     let mut plan = Plan::usual();
     plan.outcome.sensitivity.retain(|case| case.factor != 1.0);
-    let (_, figures, _folder) = made(&plan);
-    let (_, figure) = figures.iter().find(|(name, _)| name == "sensitivity.svg").unwrap();
-    assert!(figure.contains(">×1</text>") && figure.contains(">×0.5</text>"));
+    let rows = |plan: &Plan| words(&made(plan).0).matches("Amount of base×").count();
+    assert_eq!(rows(&plan), plan.outcome.sensitivity.len() + 1);
     plan.outcome.sensitivity.clear();
-    assert!(!made(&plan).1.iter().any(|(name, _)| name == "sensitivity.svg"));
+    assert_eq!(rows(&plan), 0);
 }
 
 #[test]
@@ -219,32 +215,15 @@ fn one_replicate_has_no_interval_and_says_so() {
     let mut plan = Plan::usual();
     plan.outcome = folder::outcome(1);
     plan.outcome.sensitivity.clear();
-    plan.outcome.warnings.clear();
-    let (page, figures, _folder) = made(&plan);
-    let text = words(&page);
+    plan.outcome.findings.clear();
+    let text = words(&made(&plan).0);
     assert!(text.contains("One replicate: the scatter is unknown"));
-    assert!(text.contains("Sensitivity to the number of base particles was not asked for"));
     assert!(!text.contains("Other findings") && !text.contains("more below"));
-    assert!(!figures.iter().any(|(name, _)| name == "sensitivity.svg"));
-    // Ended before the studies were walked, which is not that nobody asked for them.
+    // Ended before the studies were walked.
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
     let text = words(&made(&plan).0);
-    assert!(text.contains("thickness is not walked yet; voidwalk resume goes on with it"));
-    assert!(!text.contains("not asked for"));
-}
-
-#[test]
-fn a_cap_is_never_silent() {
-    let mut plan = Plan::usual();
-    plan.outcome.warnings.clear();
-    plan.outcome.capped = true;
-    plan.outcome.n_base_eq2 = Some(970_000_000);
-    assert!(
-        words(&made(&plan).0).contains(
-            "The base is capped at 21 443 871 of the 970 000 000 particles that its mass asks for."
-        )
-    );
+    assert!(text.contains("Amount of base and thickness: not walked yet; voidwalk resume goes on with them"));
 }
 
 #[test]
@@ -261,7 +240,7 @@ fn a_run_in_which_nothing_erodes_or_is_retained_has_a_page() {
     let written = report::write(folder.path()).unwrap();
     let text = words(&fs::read_to_string(written.page).unwrap());
     assert!(text.contains("nothing eroded") && text.contains("series.csv has no rows"));
-    assert_eq!(written.figures.len(), 4);
+    assert_eq!(written.figures.len(), 2);
 }
 
 #[test]
@@ -328,10 +307,10 @@ fn a_malformed_file_is_named_with_its_line() {
     let cases = [
         (
             "outcome.json",
-            "{\"verdict\": \"perhaps\"}".to_owned(),
+            "{\"format\": \"voidwalk-outcome/1\", \"headline\": \"perhaps\"}".to_owned(),
             "outcome.json:1: unknown variant `perhaps`",
         ),
-        ("manifest.json", "{}".to_owned(), "manifest.json:1: missing field `version`"),
+        ("manifest.json", "{}".to_owned(), "manifest.json:1: this file does not begin with"),
         ("layers.csv", format!("{header}1,1,0,10,11,0,0\n"), "layers.csv:2: blocked is 11, allowed: at most"),
         ("layers.csv", format!("{header}1,1,0,10,x,0,0\n"), "layers.csv:2: column 5"),
         (
@@ -383,7 +362,7 @@ fn an_outcome_that_contradicts_itself_is_refused() {
         let folder = TempDir::new().unwrap();
         plan.write(folder.path());
         spoil(&mut plan.outcome);
-        fs::write(folder.path().join("outcome.json"), serde_json::to_string(&plan.outcome).unwrap()).unwrap();
+        fs::write(folder.path().join("outcome.json"), OUTCOME.json(&plan.outcome).unwrap()).unwrap();
         let error = report::write(folder.path()).unwrap_err().to_string();
         assert!(error.contains("outcome.json") && error.contains(expected), "{error}");
     }
@@ -392,7 +371,7 @@ fn an_outcome_that_contradicts_itself_is_refused() {
 #[test]
 fn the_names_of_the_folder_are_a_contract() {
     let value = serde_json::to_value(folder::outcome(2)).unwrap();
-    assert_eq!(value["verdict"], "some erosion");
+    assert_eq!(value["model"]["class"], "some erosion");
     assert_eq!(value["inputs"]["network"]["kind"], "cubic");
     assert!(value["replicates"][1]["runs"][0]["blocked_first_three_layers_fraction"].is_f64());
     assert!(value["summary"][0]["eroded_mass_fraction"]["low"].is_f64());

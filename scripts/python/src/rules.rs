@@ -1,33 +1,23 @@
 //! What filter practice says of two soils.
 
 use pyo3::prelude::*;
-use voidwalk::outcome::rules::{Authority, NamedCurve};
+use voidwalk::outcome::rules::NamedCurve;
 use voidwalk::store::format;
 use voidwalk::verdict::{PairOptions, PairRules};
 
 use crate::problem::{failed, refused};
 use crate::soil::Gradation;
 
-/// An authority by its word; all of them without one.
-fn authority_named(word: Option<&str>) -> PyResult<Authority> {
-    let Some(word) = word else { return Ok(Authority::All) };
-    let words: Vec<&str> = Authority::ALL.iter().map(|of| of.word()).collect();
-    let problem = || refused(format!("authority = {word} is not allowed; one of {}", words.join(", ")));
-    Authority::named(word).ok_or_else(problem)
-}
-
 /// Every rule of practice on the curves of a base and of a filter: the JSON of `voidwalk rules --json`.
 #[pyfunction]
-#[pyo3(signature = (bases, filters, dispersive, joint_mm, as_given, authority))]
+#[pyo3(signature = (bases, filters, dispersive, joint_mm, as_given))]
 pub fn rules(
     bases: Vec<(String, Py<Gradation>)>,
     filters: Vec<(String, Py<Gradation>)>,
     dispersive: bool,
     joint_mm: Option<f64>,
     as_given: bool,
-    authority: Option<&str>,
 ) -> PyResult<String> {
-    let by = authority_named(authority)?;
     if let Some(mm) = joint_mm.filter(|mm| !(*mm > 0.0 && mm.is_finite())) {
         return Err(refused(format!("joint_mm = {mm} is not allowed: a number of millimetres above 0")));
     }
@@ -40,5 +30,5 @@ pub fn rules(
     let options = PairOptions { dispersive, joint_mm, as_given };
     let pair = PairRules::guarded(&named(bases), &named(filters), options)
         .map_err(|mistake| refused(mistake.refusal_unless("as_given=True")))?;
-    format::RULES.json(&pair.stated_by(by)).map_err(failed)
+    format::RULES.json(&pair).map_err(failed)
 }

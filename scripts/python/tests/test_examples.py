@@ -13,15 +13,15 @@ from conftest import ROOT
 
 #: What each says of its results, and the modules besides NumPy and matplotlib that it cannot do without.
 SAID: Dict[str, List[str]] = {
-    "first_verdict": ["Result(continuing erosion", "run 2:"],
+    "first_verdict": ["model: continuing erosion", "run 2:"],
     "sieve_curves": ["D15F / D85B", "Result("],
     "dem_packing": ["Packing(2000 grains", "grains per void", "Dc85"],
-    "openpnm_clogging": ["Network(", "Result("],
+    "openpnm_clogging": ["Network(", "WalkResult("],
     "parameter_study": ["Cu of the base", "continuing erosion"],
     "paper_figure_13": [
-        "continuing erosion: Result(continuing erosion",
-        "some erosion: Result(some erosion",
-        "no erosion: Result(no erosion",
+        "continuing erosion: WalkResult(continuing erosion",
+        "some erosion: WalkResult(some erosion",
+        "no erosion: WalkResult(no erosion",
     ],
 }
 NEEDS = {"parameter_study": "pandas"}

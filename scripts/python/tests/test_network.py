@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pickle
-from html import unescape
 from pathlib import Path
 from typing import Any, Tuple
 
@@ -154,7 +153,7 @@ def test_a_network_is_written_as_a_scene_reads_it(tmp_path: Any, small: Any) -> 
         assert ours.keys() == theirs.keys()
         for key in ours:
             assert np.array_equal(ours[key], theirs[key]), (table, key)
-    assert given.verdict == named.verdict
+    assert given.verdict == named.model["class"]
     with pytest.raises(ValueError, match="this network has none"):
         random_network(1, "flux")[0].to_file(tmp_path / "other.csv")
 
@@ -242,23 +241,11 @@ def test_the_number_of_base_particles_is_never_guessed() -> None:
     assert rows[0] == rows[1] and rows[0]["d15f_mm"] == pytest.approx(vw.Gradation(sizes, percents).d(15))
 
 
-def test_what_speaks_against_a_verdict_stands_beside_it() -> None:
+def test_what_a_reader_must_know_of_a_walk_stands_beside_it() -> None:
     made, base = vw.Network.cubic([10, 10, 12]), vw.Gradation.linear(1.5, 0.25, 85)
-    result = vw.walk(made, base, replicates=6)
-    assert result.confidence == "outside checked range"
-    assert any("nothing of it was checked against tests" in reason for reason in result.reasons)
-    assert not any("The base has" in reason for reason in result.reasons)
     few = vw.walk(made, base, n_base=1000, replicates=6)
-    assert any(reason.startswith("The base has 1 000 of the") for reason in few.reasons)
-    assert few.reasons == [of["sentence"] for of in few.findings if of["against"]] and few.findings[0]["against"]
-    assert few.warnings == [of["sentence"] for of in few.findings if not of["against"]]
-    for result in (result, few):
-        box = result._repr_html_()
-        assert "Confidence: outside checked range" in box and result.confidence in repr(result)
-        assert result.reasons[0] in repr(result) and all(said[1:] in unescape(box) for said in result.reasons)
-    # A filter ten times as coarse as the network's: practice speaks against a verdict that says that it holds.
-    coarse = vw.walk(made, vw.Gradation.linear(1.5, 0.9, 85), n_base=500, filter=vw.Gradation.linear(1.5, 10.0))
-    assert (coarse.verdict, coarse.confidence) == ("no erosion", "contradicted by practice")
+    assert few.findings and all(finding["id"] and finding["sentence"] for finding in few.findings)
+    assert few.verdict in repr(few) and few.verdict in few._repr_html_()
 
 
 def test_a_flow_that_cannot_be_told_is_refused() -> None:

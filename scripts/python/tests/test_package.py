@@ -100,4 +100,4 @@ def test_what_the_readme_shows_runs_without_a_warning() -> None:
     (block,) = re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL)
     done = subprocess.run([sys.executable, "-W", "error", "-c", block], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("continuing erosion 0.") and "outside checked range" in done.stdout
+    assert done.stdout.startswith("continuing erosion 0.")

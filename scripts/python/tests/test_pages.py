@@ -84,19 +84,20 @@ def test_a_page_that_cannot_be_written_leaves_the_older_one(tmp_path: Path, monk
 
 
 def test_results_show_themselves_in_a_notebook(small: Dict[str, Any]) -> None:
-    for result in (vw.run(small), vw.walk(lattice(), 0.2, n_base=1000, replicates=2)):
+    run, walk = vw.run(small), vw.walk(lattice(), 0.2, n_base=1000, replicates=2)
+    for result, words in ((run, run.model["class"]), (walk, walk.verdict)):
         shown = result._repr_html_()
-        assert f"<b>{result.verdict.capitalize()}" in shown and "data:image/svg+xml;base64," in shown
+        assert f"<b>Model (research)</b>: {words}" in shown and "data:image/svg+xml;base64," in shown
         assert "95 % interval" in shown and "The model leaves out: " in shown and "<script" not in shown
         percent = 100 * result.summary[0]["eroded_mass_fraction"]["mean"]
         assert f"{percent:.3g}"[:3] in shown
 
 
 def test_a_result_that_was_changed_is_refused(tmp_path: Path) -> None:
-    def walked() -> vw.Result:
+    def walked() -> vw.WalkResult:
         return vw.walk(lattice(), 0.2, n_base=1000, replicates=2)
 
-    def refused(result: vw.Result, words: str) -> None:
+    def refused(result: vw.WalkResult, words: str) -> None:
         with pytest.raises(ValueError, match=words):
             result.report(tmp_path / "page.html")
         assert not (tmp_path / "page.html").exists()
@@ -145,7 +146,7 @@ def test_scenes_walk_as_their_files_do(small: Dict[str, Any]) -> None:
     assert vw.run(scene, settings={"seed": 12}).summary != walked[0].summary
 
 
-def walked_elsewhere(scene: vw.Scene) -> Tuple[vw.Result, vw.Result, vw.Scene]:
+def walked_elsewhere(scene: vw.Scene) -> Tuple[vw.Result, vw.WalkResult, vw.Scene]:
     """What a child process makes of a scene that it is handed."""
     return vw.run(scene), vw.walk(lattice(), 0.25, n_base=2000, replicates=2), scene
 
@@ -180,7 +181,7 @@ def test_a_pickle_is_read_by_another_interpreter(small: Dict[str, Any], tmp_path
         "scene, result = pickle.load(open('both.pickle', 'rb'))\n"
         "import voidwalk as vw\n"
         "again = vw.run(scene)\n"
-        "print(again.summary == result.summary, result.verdict)\n"
+        "print(again.summary == result.summary, result.model['class'])\n"
     )
     said = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert said.stdout == f"True {result.verdict}\n"
+    assert said.stdout == f"True {result.model['class']}\n"

@@ -30,29 +30,6 @@ def test_rules_are_those_of_the_command_line(tmp_path: Path) -> None:
         assert json.loads(said.stdout) == of_files
 
 
-def test_an_authority_names_its_rules_and_what_it_leaves_out(tmp_path: Path) -> None:
-    whole = vw.rules(TILL, SAND)
-    assert "by_authority" not in whole and vw.rules(TILL, SAND, authority="all") == whole
-    pair = vw.rules(TILL, SAND, authority="nrcs")
-    stated = pair["by_authority"]
-    assert stated is not None and pair["rules"] == whole["rules"] and stated["authority"] == "nrcs"
-    ids = [rule["id"] for rule in pair["rules"]]
-    assert stated["said"].startswith("NRCS: ") and 0 < len(stated["rules"]) < len(ids)
-    assert stated["rules"] == [of for of in ids if of in stated["rules"]]
-    with pytest.raises(ValueError, match="authority = NRCS is not allowed; one of all, nrcs, usbr, usace, foster-fell"):
-        vw.rules(TILL, SAND, authority="NRCS")
-    program = os.environ.get("VOIDWALK_PROGRAM")
-    if program:
-        for name, (sizes, percents) in {"base": TILL, "filter": SAND}.items():
-            rows = "".join(f"{size},{percent}\n" for size, percent in zip(sizes, percents))
-            (tmp_path / f"{name}.csv").write_text("opening_mm,percent_finer\n" + rows)
-        words = [program, "rules", "base.csv", "filter.csv", "--authority", "nrcs"]
-        said = subprocess.run([*words, "--json"], capture_output=True, check=True, cwd=tmp_path)
-        assert json.loads(said.stdout) == pair
-        text = subprocess.run(words, capture_output=True, check=True, cwd=tmp_path, text=True).stdout
-        assert stated["said"] in text
-
-
 def test_exchanged_soils_are_refused_unless_they_are_as_given() -> None:
     base, filter = vw.Gradation(*TILL), vw.Gradation(*SAND)
     with pytest.raises(ValueError, match="are the two files exchanged.*as_given=True"):

@@ -94,7 +94,7 @@ def test_a_scene_gives_the_same_files_as_the_command_line(
     for file in left:
         assert left[file] == right[file], file
     said = json.loads((tmp_path / "ours" / "run" / "outcome.json").read_text())
-    assert (ours.verdict, ours.summary, ours.outcome) == (said["verdict"], said["summary"], said)
+    assert (ours.model, ours.summary, ours.outcome) == (said["model"], said["summary"], said)
     # Once more from the dict, in memory: the same columns.
     memory = vw.run(scene, threads=1)
     assert memory.summary == ours.summary and memory.folder is None
@@ -186,7 +186,7 @@ def test_results_are_read_pickled_and_tabulated(small: Dict[str, Any], tmp_path:
     assert isinstance(read, vw.Result)
     for result in (read, pickle.loads(pickle.dumps(made))):
         assert result.outcome == made.outcome and np.array_equal(result.series["eroded"], made.series["eroded"])
-    assert made.verdict in repr(made)
+    assert made.model["class"] in repr(made)
     pandas = pytest.importorskip("pandas")
     frame = made.to_pandas()
     assert isinstance(frame, pandas.DataFrame) and len(frame) == len(made.series["eroded"])

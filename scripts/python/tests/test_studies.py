@@ -58,7 +58,7 @@ def test_judge_is_that_of_the_command_line(program: str, tmp_path: Path) -> None
     assert answer(of_files.outcome) == answer(wanted)
     assert answer(of_arrays.outcome) == answer(wanted) and of_arrays.outcome["inputs"]["base"]["name"] == "base"
     row, eroded = of_arrays.row(), wanted["summary"][0]["eroded_mass_fraction"]
-    assert row["verdict"] == wanted["verdict"] and row["eroded_1"] == eroded["mean"]
+    assert row["verdict"] == wanted["model"]["class"] and row["headline"] == wanted["headline"] and row["eroded_1"] == eroded["mean"]
     assert row["d15f_over_d85b"] == pytest.approx(wanted["ratios"]["d15f_over_d85b"])
     # A second call finds its results there.
     with pytest.raises(ValueError, match="overwrite=True"):

@@ -28,16 +28,15 @@ pub struct Band {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub least_at_most: bool,
     /// Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
-    /// of networks, and practice. Files of earlier versions hold that of the walk alone.
+    /// of networks, and practice.
     pub greatest: f64,
-    /// Which of the two set it; `None` in files of earlier versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub set_by: Option<SetBy>,
+    /// Which of the two set it.
+    pub set_by: SetBy,
     /// Maximum D15F that the strictest rule of retention allows, which was made for this base.
     pub practice: Option<f64>,
     /// Name of that rule.
     pub practice_rule: String,
-    /// Its name for programs; `None` without one, and in files of earlier versions.
+    /// Its name for programs; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice_rule_id: Option<String>,
     /// Unit: `mm`, or `D85B`.
@@ -108,13 +107,6 @@ pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)
     // Of limits that differ by rounding alone the first counts, which is that of design.
     let stricter = |least: f64, limit: f64| limit < least * (1.0 - TIE);
     retaining_limits(rules, d15f).reduce(|least, next| if stricter(least.1, next.1) { next } else { least })
-}
-
-impl Band {
-    /// Maximum D15F that both walk and practice allow.
-    pub fn greatest_of_both(&self) -> f64 {
-        self.practice.map_or(self.greatest, |practice| practice.min(self.greatest))
-    }
 }
 
 #[cfg(test)]

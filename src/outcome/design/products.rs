@@ -197,7 +197,7 @@ pub fn fits(band: &Band) -> Vec<Fit> {
             d15_mm: [fine, coarse],
             drains: fine >= band.least,
             may_drain: band.least_at_most && fine < band.least,
-            holds: coarse <= band.greatest_of_both(),
+            holds: coarse <= band.greatest,
             practice: band.practice.map(|practice| coarse <= practice),
             source: product.source.into(),
         }
@@ -208,6 +208,7 @@ pub fn fits(band: &Band) -> Vec<Fit> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::design::band::SetBy;
 
     #[test]
     fn limits_rise_and_end_at_all() {
@@ -259,7 +260,7 @@ mod tests {
             least,
             least_at_most: false,
             greatest,
-            set_by: None,
+            set_by: SetBy::Walk,
             practice: Some(0.4),
             practice_rule: String::new(),
             practice_rule_id: None,
@@ -269,7 +270,7 @@ mod tests {
         };
         let sand = |least, greatest| fits(&band(least, greatest)).remove(0);
         // Practice allows 0.4 mm.
-        assert!(sand(0.17, 0.43).drains && !sand(0.17, 0.43).holds && !sand(0.17, 0.43).fits());
+        assert!(sand(0.17, 0.4).drains && !sand(0.17, 0.4).holds && !sand(0.17, 0.4).fits());
         let allowed = Band { practice: Some(0.43), ..band(0.17, 0.43) };
         assert!(fits(&allowed)[0].fits() && fits(&Band { practice: None, ..allowed })[0].fits());
         assert!(!sand(0.18, 0.43).drains && !sand(0.17, 0.42).holds);

@@ -8,7 +8,7 @@ use super::products::Fit;
 use super::specification::Specification;
 use super::spread::{Beyond, are_few, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, Confidence, InputFile, ModelLimit, SheetCover};
+use crate::outcome::record::{AppliedRule, InputFile, ModelLimit, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -20,12 +20,11 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
-    /// versions, of which [`Design::answer()`] works it out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked
+    /// out.
     pub answer: Option<DesignAnswer>,
     /// One per density and thickness, in the order in which they were asked for.
     pub boundaries: Vec<DesignRow>,
@@ -40,10 +39,10 @@ pub struct Design {
     /// The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
     pub filter_d15_mm: Option<f64>,
     /// Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
-    /// where its sizes are not given, and in files of earlier versions.
+    /// where its sizes are not given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub filter_gradation: Vec<[f64; 2]>,
-    /// Every file that was read; empty in files of earlier versions.
+    /// Every file that was read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
     /// Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
@@ -56,42 +55,29 @@ pub struct Design {
     /// The user's seed.
     pub seed: u64,
     /// Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
-    /// Empty in files of earlier versions.
-    #[serde(default)]
     pub engine: String,
     /// D15F/D85B between which boundaries were searched.
     pub bracket: [f64; 2],
     /// Steps of the search, as a part of D15F/D85B.
     pub step: f64,
-    /// How far "no erosion" at the coarsest filter that holds can be relied on, of the row that can be relied
-    /// on least; never within the checked range where a row has no such filter, or an empty band.
-    pub confidence: Confidence,
-    /// What was found about "no erosion" there, the weightiest first; empty in files of earlier versions.
+    /// What a reader must know besides, the weightiest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<DesignFinding>,
-    /// The sentences of those that speak against it, in order.
-    pub reasons: Vec<String>,
     /// Every rule of practice, of the coarsest filter that holds; of another where none is known.
     pub rules: Vec<AppliedRule>,
     /// D15F/D85B that the rules are read at.
     pub rules_at: f64,
     /// Standard products beside the narrowest band.
     pub products: Vec<Fit>,
-    /// How far it can be relied on that a product fits: as `confidence`, but at the maximum D15F that walk
-    /// and practice both allow; `None` without products.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub products_confidence: Option<Confidence>,
-    /// The sentences of all others.
-    pub warnings: Vec<String>,
     /// The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-    /// mm, and in files of earlier versions.
+    /// mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub specification: Option<Specification>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
-    /// What the sheet says of itself; without a day in files of earlier versions.
+    /// What the sheet says of itself.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
     /// Whether inches stand beside mm on its page.
@@ -117,9 +103,7 @@ pub struct DesignAnswer {
     pub set_by: SetBy,
     /// Name of the rule for programs, where practice set it.
     pub rule: Option<String>,
-    /// The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in
-    /// files of earlier versions, whose text is all in `said`.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    /// The limit, and what sets it: a sentence without its full stop, as each of the next three.
     pub limit: String,
     /// That the filter as given is not internally stable, and too coarse without the finer part that it may
     /// lose.
@@ -156,13 +140,11 @@ pub struct BaseStated {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regraded_at_mm: Option<f64>,
     /// The part of its mass that is finer than its finest sieve, as it was walked.
-    #[serde(default)]
     pub tail_mass_fraction: f64,
     /// D85 (mm) before regrading, where it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d85_as_sampled_mm: Option<f64>,
-    /// Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
-    /// earlier versions.
+    /// Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradation: Vec<[f64; 2]>,
     /// The same as it was walked after regrading; empty where it was walked as sampled.
@@ -319,9 +301,7 @@ pub struct WalkRow {
     pub eroded_first: f64,
     /// The same in the second run; empty where it was not walked.
     pub eroded_second: Option<f64>,
-    /// Which base D85B is of: `as sampled`, or the size that it was regraded on; empty without a size, and in
-    /// files of earlier versions.
-    #[serde(default)]
+    /// Which base D85B is of: `as sampled`, or the size that it was regraded on; empty without a size.
     pub d85b_of: String,
 }
 
@@ -354,25 +334,19 @@ impl Design {
         all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Whether nothing stands against saying that a product fits.
-    pub fn may_fit(&self) -> bool {
-        // An earlier version knew one confidence for all.
-        self.products_confidence.unwrap_or(self.confidence) == Confidence::Within
-    }
-
-    /// Whether products fit by practice: it alone set the answer, the walk has one that is no tighter, and
-    /// nothing is in doubt but whether the walk was checked for such soils.
+    /// Whether products fit by practice: it alone set the answer, the walk has one that is no tighter, and no
+    /// rule of practice speaks against the filter there.
     pub fn fits_by_practice(&self) -> bool {
-        let is_set = self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice);
-        let confidence = self.products_confidence.unwrap_or(self.confidence);
-        is_set && confidence == Confidence::Outside && self.least_held().is_some()
+        self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice)
+            && !self.rules.iter().any(AppliedRule::is_broken)
+            && self.least_held().is_some()
     }
 
     /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
     pub fn says_fit(&self, product: &str) -> Option<bool> {
         let of = self.products.iter().find(|of| of.name == product)?;
         let fit = self.fits(of);
-        (!of.may_fit() && (!fit || self.may_fit())).then_some(fit)
+        (!of.may_fit() && (!fit || self.fits_by_practice())).then_some(fit)
     }
 
     /// Whether a product fits by walk and practice, with both its sides.

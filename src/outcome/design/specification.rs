@@ -18,7 +18,7 @@ use crate::outcome::record::{IfDispersive, InputFile, SheetCover};
 pub struct Specification {
     /// Version of voidwalk.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+    /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Name of the base.
@@ -27,20 +27,19 @@ pub struct Specification {
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
+    /// What its sheet says of itself; nothing as a part of a design.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
     /// Whether inches stand beside mm on its page.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// Every file that was read; empty as a part of a design, which has them itself, and in files of earlier
-    /// versions.
+    /// Every file that was read; empty as a part of a design, which has them itself.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
     /// What a reader must know of the base itself, each of its curve where there are several, and of a side
-    /// of the band that is not stable; empty in files of earlier versions.
+    /// of the band that is not stable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<DesignFinding>,
     /// Every step, with its numbers.
@@ -96,7 +95,7 @@ pub struct SpecifiedCurve {
     /// The rule that sets it.
     pub d15f_max_rule: String,
     /// Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
-    /// it. `false` in files of earlier versions.
+    /// it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub without_margin: bool,
     /// Minimum D15F (mm) that drains it.
@@ -176,7 +175,6 @@ pub struct ProductMargin {
     pub holds_by: Option<f64>,
     /// What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
     /// empty where they keep all.
-    #[serde(default)]
     pub not_kept: String,
     /// Where its limits were read.
     pub source: String,

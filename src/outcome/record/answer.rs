@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::inputs::NetworkKind;
+
 /// The paper's three classes, after Foster and Fell, and a fourth for what these replicates leave open.
 ///
 /// ```
@@ -40,6 +42,21 @@ impl Verdict {
     }
 }
 
+/// What the walks say together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Model {
+    /// The class that the replicates together support.
+    pub class: Verdict,
+    /// Mass eroded (%) of each run, least and most: the 95 % interval of the mean over the replicates, or the
+    /// range of the constriction curve; the mean twice with one replicate.
+    pub eroded_percent: Vec<[f64; 2]>,
+    /// Replicates.
+    pub replicates: u64,
+    /// The network that was walked.
+    pub network: NetworkKind,
+}
+
 /// What a rule that adds replicates until they are enough arrived at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -59,9 +76,6 @@ pub struct Stopping {
     pub verdict: Option<Verdict>,
     /// Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
     pub half_width_pp: Option<f64>,
-    /// Why it is not reached, in folders of earlier versions.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sentence: Option<String>,
     /// Why it is not reached.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short_of: Option<ShortOf>,

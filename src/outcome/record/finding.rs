@@ -1,26 +1,18 @@
-//! What was found about a verdict, as it is written.
+//! A finding, as it is written.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// A finding about a verdict: what it is about, which way it points, and its sentence.
+/// A finding: what it is about, and its sentence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FindingRecord {
-    /// Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
-    #[serde(default)]
+    /// Its name for programs, as `cohesive_fines`.
     pub id: String,
     /// What it is about.
     pub about: Topic,
     /// Its name in a word or two.
-    #[serde(default)]
     pub label: String,
-    /// Which way the walk errs for it.
-    pub direction: Direction,
-    /// What it can do to the verdict.
-    pub weight: Weight,
-    /// Whether it speaks against the verdict beside which it stands.
-    pub against: bool,
     /// Its numbers by name, with the unit in the name.
     #[serde(default, skip_serializing_if = "Map::is_empty")]
     pub numbers: Map<String, Value>,
@@ -38,21 +30,6 @@ impl FindingRecord {
             self.sentence.clone()
         } else {
             format!("{} {}", self.sentence, self.to_do)
-        }
-    }
-
-    /// A sentence of an earlier version, of which nothing else is known.
-    pub fn of_earlier(sentence: &str) -> Self {
-        Self {
-            id: String::new(),
-            about: Topic::Walk,
-            label: String::new(),
-            direction: Direction::Open,
-            weight: Weight::Note,
-            against: false,
-            numbers: Map::new(),
-            sentence: sentence.to_owned(),
-            to_do: String::new(),
         }
     }
 }
@@ -84,32 +61,4 @@ pub enum Topic {
     Study,
     /// Files that were read.
     Files,
-}
-
-/// Which way a walk errs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Direction {
-    /// On the safe side: the real filter erodes at most as much.
-    Safe,
-    /// On the unsafe side: the real filter erodes at least as much.
-    Unsafe,
-    /// Nobody knows.
-    Open,
-    /// Both ends of what is not known were looked at, and agree.
-    Settled,
-}
-
-/// What a finding can do to a verdict, the most first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Weight {
-    /// Leaves the class open.
-    Decides,
-    /// Costs the checked range.
-    Limits,
-    /// Nothing.
-    Note,
 }

@@ -15,7 +15,6 @@
 
 mod answer;
 mod cover;
-mod evidence;
 mod finding;
 mod inputs;
 mod manifest;
@@ -26,23 +25,21 @@ mod voids;
 
 use serde::{Deserialize, Serialize};
 
-pub use answer::{ShortOf, Statistic, Stopping, Verdict};
+pub use answer::{Model, ShortOf, Statistic, Stopping, Verdict};
 pub use cover::SheetCover;
-pub use evidence::{Bound, Evidence};
-pub use finding::{Direction, FindingRecord, Topic, Weight};
+pub use finding::{FindingRecord, Topic};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,
 };
 pub use manifest::{InputFile, Manifest, commit};
-pub use practice::{DispersiveLack, IfDispersive, LimitOfDesign, Practice, PracticeClass, TestedClass};
+pub use practice::{DispersiveLack, Headline, IfDispersive, Practice, PracticeClass, TestedClass};
 pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
-pub use varied::{Classed, CurveEnd, CurveRange, Margin, MarginWalk, OfThickness, Sensitivity};
+pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
-pub use super::applied::{AppliedRule, Confidence, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
+pub use super::applied::{AppliedRule, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
 pub use super::model_limit::ModelLimit;
-pub use super::pan::{PanBounds, PanReading, PanSize};
 pub use super::rule_note::{RuleNote, RuleText};
 
 /// The whole of `outcome.json`.
@@ -61,34 +58,23 @@ pub use super::rule_note::{RuleNote, RuleText};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Outcome {
-    /// Whether the filter holds, in the line with which every face begins; empty in folders of earlier
-    /// versions.
-    #[serde(default)]
-    pub headline: String,
-    /// The class that the replicates together support: that of the walk alone.
-    pub verdict: Verdict,
-    /// How far it can be relied on; folders of earlier versions do not say, and are outside.
-    #[serde(default)]
-    pub confidence: Confidence,
-    /// What was found about the verdict: what speaks against it first, of which the first sets the label.
-    #[serde(default)]
-    pub findings: Vec<FindingRecord>,
-    /// The sentences of those that speak against it, in the same order.
-    #[serde(default)]
-    pub reasons: Vec<String>,
-    /// What folders of earlier versions say besides; now in `findings`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    /// What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
+    /// The answer of filter practice; `None` without two sieve curves in mm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub headline: Option<Headline>,
+    /// What filter practice says of the pair, without the walk; `None` likewise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice: Option<Practice>,
+    /// What the walk says, without practice.
+    pub model: Model,
+    /// What a reader must know besides, in the order of every face.
+    #[serde(default)]
+    pub findings: Vec<FindingRecord>,
     /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
     /// where it has few fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// Where the constrictions come from; folders of earlier versions do not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub constrictions: Option<ConstrictionsRecord>,
+    /// Where the constrictions come from.
+    pub constrictions: ConstrictionsRecord,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.
@@ -109,14 +95,8 @@ pub struct Outcome {
     /// Why there are so many replicates, where a rule added them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<Stopping>,
-    /// Both readings of a pan fraction that need not be passive.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pan_bounds: Option<PanBounds>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
-    /// What folders of earlier versions say of their inputs; now in `findings`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
     /// Parts of the program that this scene did not need.
     pub left_out: Vec<String>,
     /// What the model does not contain, for any scene.
@@ -137,14 +117,6 @@ pub struct Outcome {
     /// given, or measured on the whole filter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_range: Option<CurveRange>,
-    /// How much coarser the filter could be before the base begins to erode; `None` where that was not asked
-    /// for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub margin: Option<Margin>,
-    /// What soils of its kind say of the walk's boundary; `None` where no margin was asked for, or for a base
-    /// of no group.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub evidence: Option<Evidence>,
     /// The law by which particles arched; `None` where they did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arching: Option<ArchingRecord>,
@@ -157,22 +129,12 @@ pub struct Outcome {
     /// Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub studies_to_come: bool,
+    /// Digest of its numbers, equal wherever a scene and seed give the same numbers: XXH3 with 128 bits,
+    /// in hexadecimal, of every number, `true`, `false` and `null` with its place. Left out are text,
+    /// `seconds` and `studies_to_come`.
+    pub digest: String,
     /// Wall time of everything, s; in a campaign beside other cases on the same threads.
     pub seconds: f64,
-}
-
-impl Outcome {
-    /// What a reader of one line must know: all findings but those on rules, which have a column of their
-    /// own, and what results say elsewhere.
-    pub fn known(&self) -> impl Iterator<Item = &FindingRecord> {
-        let is_of_inputs = |topic| {
-            matches!(topic, Topic::Files | Topic::Base | Topic::Filter | Topic::Network | Topic::Amount)
-        };
-        self.findings.iter().filter(move |finding| {
-            finding.about != Topic::Practice
-                && (finding.weight != Weight::Note || is_of_inputs(finding.about))
-        })
-    }
 }
 
 /// A law by which particles arch in a constriction that they fit.
@@ -262,10 +224,8 @@ pub struct Run {
     /// Particles retained in any way, over voids.
     pub retained_per_void: f64,
     /// Deepest layer in which a particle of this run is retained; `None` where none is.
-    #[serde(default)]
     pub deepest_retained_layer: Option<u64>,
     /// The layer down to which 95 % of the particles of this run that a layer retains lie.
-    #[serde(default)]
     pub retained_95_layer: Option<u64>,
     /// Increments until nothing moved.
     pub increments: u64,

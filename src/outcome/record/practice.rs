@@ -6,18 +6,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Practice {
-    /// All of it, as the line of practice and the headline have it; folders of earlier versions do not say.
-    #[serde(default)]
+    /// All of it, as the headline has it.
     pub class: PracticeClass,
-    /// The limit of design.
-    pub design: LimitOfDesign,
-    /// What tests of Foster and Fell showed for such a pair; folders of earlier versions do not say.
-    #[serde(default)]
-    pub foster_fell: TestedClass,
+    /// D15F (mm), twice; of one that lies between two sieves that stand far apart their openings. `None`
+    /// where it lies in the filter's finest part.
+    pub d15f_mm: Option<[f64; 2]>,
+    /// The limit of design (mm): the most that D15F may be; `None` where that is not known.
+    pub limit_mm: Option<f64>,
+    /// Whether the true limit is not known, and is at most `limit_mm`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub limit_at_most: bool,
+    /// Class of such pairs in tests, by the boundaries of Foster and Fell.
+    pub tests: TestedClass,
+    /// D15F (mm) between which tests of bases with such fines began to erode (Fell et al., Table 9.2); `None`
+    /// of a dispersive base, which had other tests, and where fines or D85B are not known.
+    pub range_of_tests_mm: Option<[f64; 2]>,
 }
 
 /// Whether a filter meets practice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum PracticeClass {
     /// The limit of design is kept, and the filter holds its own finer part. Whether it drains, and holds a
@@ -28,9 +35,91 @@ pub enum PracticeClass {
     #[serde(rename = "does not meet")]
     DoesNotMeet,
     /// A limit or a size that is needed is not known, or the filter may lose its finer part.
-    #[default]
     #[serde(rename = "not known")]
     NotKnown,
+}
+
+/// The answer of filter practice, with which every face begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub enum Headline {
+    /// The limit of design is kept, and no other rule of retention, stability, drainage or placing is broken.
+    #[serde(rename = "meets practice")]
+    Meets,
+    /// The same, unless the base is dispersive, of which nobody has said whether it is.
+    #[serde(rename = "meets practice unless the base is dispersive")]
+    MeetsUnlessDispersive,
+    /// The limit of design is kept by a filter that breaks a rule of drainage.
+    #[serde(rename = "meets the limit of retention, but may not drain")]
+    MayNotDrain,
+    /// The limit of design is kept by a filter that breaks a rule of placing.
+    #[serde(rename = "meets the limit of retention, but may segregate")]
+    MaySegregate,
+    /// Beyond the limit of design, within the boundary of no erosion of tests.
+    #[serde(rename = "does not meet the limit of design")]
+    BeyondDesign,
+    /// Beyond a limit of retention.
+    #[serde(rename = "does not meet practice")]
+    DoesNotMeet,
+    /// Not internally stable, and beyond a limit of retention without its finer part.
+    #[serde(rename = "does not meet practice: it may lose its finer part, and is too coarse without it")]
+    TooCoarseWithoutFiner,
+    /// Not internally stable.
+    #[serde(rename = "not known: the filter may lose its finer part")]
+    MayLoseFiner,
+    /// A result depends on sizes between two sieves that lie far apart.
+    #[serde(rename = "not known: sieves are missing")]
+    SievesMissing,
+    /// A limit that decides is not known.
+    #[serde(rename = "not known: a test is missing")]
+    TestMissing,
+}
+
+impl Headline {
+    /// Every headline.
+    pub const ALL: [Self; 10] = [
+        Self::Meets,
+        Self::MeetsUnlessDispersive,
+        Self::MayNotDrain,
+        Self::MaySegregate,
+        Self::BeyondDesign,
+        Self::DoesNotMeet,
+        Self::TooCoarseWithoutFiner,
+        Self::MayLoseFiner,
+        Self::SievesMissing,
+        Self::TestMissing,
+    ];
+
+    /// Its words, on every face and in every file.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Meets => "meets practice",
+            Self::MeetsUnlessDispersive => "meets practice unless the base is dispersive",
+            Self::MayNotDrain => "meets the limit of retention, but may not drain",
+            Self::MaySegregate => "meets the limit of retention, but may segregate",
+            Self::BeyondDesign => "does not meet the limit of design",
+            Self::DoesNotMeet => "does not meet practice",
+            Self::TooCoarseWithoutFiner => {
+                "does not meet practice: it may lose its finer part, and is too coarse without it"
+            }
+            Self::MayLoseFiner => "not known: the filter may lose its finer part",
+            Self::SievesMissing => "not known: sieves are missing",
+            Self::TestMissing => "not known: a test is missing",
+        }
+    }
+
+    /// Whether practice is met.
+    pub fn class(self) -> PracticeClass {
+        match self {
+            Self::Meets | Self::MeetsUnlessDispersive | Self::MayNotDrain | Self::MaySegregate => {
+                PracticeClass::Meets
+            }
+            Self::BeyondDesign | Self::DoesNotMeet | Self::TooCoarseWithoutFiner => {
+                PracticeClass::DoesNotMeet
+            }
+            Self::MayLoseFiner | Self::SievesMissing | Self::TestMissing => PracticeClass::NotKnown,
+        }
+    }
 }
 
 /// What practice allows if a base is dispersive, of which nobody has said whether it is.
@@ -42,7 +131,7 @@ pub struct IfDispersive {
     /// Whether the true limit is not known, and is at most that.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_most: bool,
-    /// Why it is not known; `None` where it is, and in files of earlier versions.
+    /// Why it is not known; `None` where it is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lacks: Option<DispersiveLack>,
 }
@@ -67,7 +156,7 @@ pub enum DispersiveLack {
 ///
 /// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
 /// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum TestedClass {
     /// Within the boundary of no erosion.
@@ -83,24 +172,6 @@ pub enum TestedClass {
     #[serde(rename = "continuing erosion")]
     Continuing,
     /// A boundary that is needed is not known for these soils.
-    #[default]
     #[serde(rename = "unknown")]
     Unknown,
-}
-
-/// A limit of D15F, and whether the filter keeps it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct LimitOfDesign {
-    /// The name of its rule for programs.
-    pub rule: String,
-    /// The most that D15F may be; `None` where that is not known.
-    pub limit_mm: Option<f64>,
-    /// Whether the true limit is not known, and is at most `limit_mm`.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub limit_at_most: bool,
-    /// D15F.
-    pub value_mm: Option<f64>,
-    /// Whether the filter keeps it; `None` where that is not known.
-    pub met: Option<bool>,
 }

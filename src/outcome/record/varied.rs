@@ -57,57 +57,6 @@ pub struct OfThickness {
     pub walked: Classed,
 }
 
-impl OfThickness {
-    /// Whether it has as many times the base particles of `own`, the row of the scene itself, as it is thick,
-    /// as by Eq. (2): not where a cap or a number in the scene holds them.
-    pub fn has_its_base(&self, own: &Self) -> bool {
-        // Copies of a packing have not quite as many times the layers.
-        let times = match (self.thickness_mm, own.thickness_mm) {
-            (Some(thick), Some(own)) => thick / own,
-            _ => self.factor,
-        };
-        (self.n_base as f64 - times * own.n_base as f64).abs() <= 0.5 + 0.5 * times + 1e-6
-    }
-}
-
-/// How much coarser the filter could be before the base begins to erode: its first replicate's first run,
-/// walked with the filter larger or smaller.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Margin {
-    /// What was walked, by rising size.
-    pub walks: Vec<MarginWalk>,
-}
-
-/// One size of the filter.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct MarginWalk {
-    /// Times as large as the filter itself.
-    pub factor: f64,
-    /// Eroded part of the base's mass.
-    pub eroded_mass_fraction: f64,
-    /// Whether that is less than the threshold.
-    pub holds: bool,
-}
-
-impl Margin {
-    /// The smallest size that erodes.
-    pub fn erodes_from(&self) -> Option<f64> {
-        self.walks.iter().find(|walk| !walk.holds).map(|walk| walk.factor)
-    }
-
-    /// The largest size that holds, of those below all that erode.
-    pub fn holds_to(&self) -> Option<f64> {
-        self.walks.iter().take_while(|walk| walk.holds).last().map(|walk| walk.factor)
-    }
-
-    /// The size at which erosion begins, between these two; `None` where it was not found.
-    pub fn boundary(&self) -> Option<f64> {
-        Some((self.holds_to()? * self.erodes_from()?).sqrt())
-    }
-}
-
 /// The walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

@@ -1,6 +1,5 @@
 //! The table of rules.
 
-use super::authority::Authority::{FosterFell, Nrcs, Usace, Usbr};
 use super::rule::{FilterRule, Pairing, RuleUnit};
 use super::{drainage, exit, retention, stability, walk};
 use crate::outcome::applied::{RuleQuantity, RuleRole};
@@ -65,7 +64,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: DESIGN,
         authority: "Sherard and Dunnigan",
-        stated_by: &[Nrcs, Usbr, Usace],
+        stated_by: &["NRCS", "USBR", "USACE"],
         says: "the filter retains the base (design)",
         role: RuleRole::Retention,
         applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
@@ -86,7 +85,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TESTS_NO_EROSION,
         authority: "Foster and Fell",
-        stated_by: &[FosterFell],
+        stated_by: &[],
         says: "no erosion rather than some",
         role: RuleRole::Retention,
         applies_to: "filters of existing dams: a criterion proposed from tests, without a margin of safety",
@@ -102,7 +101,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: TESTS_CONTINUING,
         authority: "Foster and Fell",
-        stated_by: &[FosterFell, Usace],
+        stated_by: &["USACE"],
         says: "boundary of continuing erosion",
         role: RuleRole::Continuation,
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading; not \
@@ -135,7 +134,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: CONSTRICTED_EXIT,
         authority: "",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "Constricted exit: probability of continuing erosion into an open joint",
         role: RuleRole::Continuation,
         applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
@@ -152,7 +151,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: PERMEABILITY,
         authority: "",
-        stated_by: &[Nrcs, Usbr, Usace],
+        stated_by: &["NRCS", "USBR", "USACE"],
         says: "Permeability: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "design of filters; D15B before regrading",
@@ -168,7 +167,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: PERMEABILITY_LEAST,
         authority: "",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "filters of which this older manual is asked; D15B before regrading",
@@ -244,7 +243,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: KEZDI,
         authority: "Kézdi (1979)",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
@@ -259,7 +258,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: KENNEY_LAU,
         authority: "Kenney and Lau (1986)",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
@@ -274,7 +273,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: LI_FANNIN,
         authority: "Li and Fannin (2008)",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
@@ -289,7 +288,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "burenkova",
         authority: "Burenkova (1993)",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "internal stability of the filter",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
@@ -306,7 +305,7 @@ pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: "wan-fell",
         authority: "Wan and Fell (2004)",
-        stated_by: &[Usace],
+        stated_by: &["USACE"],
         says: "probability that the filter loses its fines",
         role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded soils",

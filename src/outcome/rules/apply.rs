@@ -1,7 +1,6 @@
 //! Every rule, applied to two soils, or to two envelopes of curves.
 
 use super::all::{DESIGN, RULES};
-use super::authority::Authority;
 use super::base::BaseSoil;
 use super::judging::margin;
 use super::open::{OpenBase, OpenFilter, judged_over};
@@ -21,34 +20,12 @@ pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
 
 /// Whose rule it is, as a sentence cites it; its name where nobody is cited.
 pub fn authority(rule: &AppliedRule) -> &str {
-    // Files of earlier versions have the name alone.
-    let listed = || RULES.iter().find(|of| of.id == rule.id).map_or("", |of| of.authority);
-    let known = [rule.authority.as_str(), listed()];
-    known.into_iter().find(|of| !of.is_empty()).unwrap_or(&rule.name)
+    if rule.authority.is_empty() { &rule.name } else { &rule.authority }
 }
 
 /// The same without the year of its source, which stands in the table of rules.
 pub(crate) fn authority_in_brief(rule: &AppliedRule) -> &str {
     authority(rule).split(" (").next().unwrap_or_default()
-}
-
-/// Whether an authority states a rule, by the rule's own entry in [`RULES`]. All authorities together state
-/// every rule.
-///
-/// ```
-/// use voidwalk::Gradation;
-/// use voidwalk::outcome::rules::{Authority, RuleInputs, apply, is_stated_by};
-/// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
-/// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
-/// let rules = apply(&RuleInputs::of_soils(&base, &filter));
-/// let find = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
-/// let is_of_nrcs = |id: &str| is_stated_by(find(id), Authority::Nrcs);
-/// assert!(is_of_nrcs("permeability") && !is_of_nrcs("foster-fell-continuing"));
-/// # Ok::<(), voidwalk::gradation::GradationError>(())
-/// ```
-pub fn is_stated_by(rule: &AppliedRule, by: Authority) -> bool {
-    let entry = || RULES.iter().find(|of| of.id == rule.id);
-    by == Authority::All || entry().is_some_and(|of| of.stated_by.contains(&by))
 }
 
 /// A curve of a soil, with its name.
@@ -175,6 +152,7 @@ fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
         id: rule.id.into(),
         name: rule.name(),
         authority: rule.authority.into(),
+        stated_by: rule.stated_by.iter().map(|name| (*name).into()).collect(),
         role: rule.role,
         applies: judged.applies,
         quantity: rule.quantity.clone(),

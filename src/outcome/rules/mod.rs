@@ -6,7 +6,6 @@
 
 mod all;
 mod apply;
-mod authority;
 mod base;
 mod drainage;
 mod exit;
@@ -23,12 +22,11 @@ pub use all::{
     TESTS_NO_EROSION,
 };
 pub(crate) use apply::authority_in_brief;
-pub use apply::{NamedCurve, apply, apply_and_decide, apply_to_envelopes, authority, is_stated_by};
-pub use authority::Authority;
+pub use apply::{NamedCurve, apply, apply_and_decide, apply_to_envelopes, authority};
 pub use base::BaseSoil;
 pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
 pub(crate) use open::{OpenBase, sieved_limit};
-pub use retention::{DESIGN_FLOOR_MM, range_of_tests};
+pub use retention::{DESIGN_FLOOR_MM, range_of_tests, tested_range};
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
 
 #[cfg(doc)]

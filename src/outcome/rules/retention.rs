@@ -82,6 +82,18 @@ pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
     }
 }
 
+/// That range for the base of these inputs; `None` for a dispersive base, which had other tests, and where
+/// fines, D85B or the unit of sizes are not known.
+pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
+    let d85b = inputs.size_of_base(85.0);
+    let fines = match inputs.fines() {
+        Fines::Percent(percent) => percent,
+        Fines::Few => 0.0,
+        Fines::Assumed | Fines::Unknown => return None,
+    };
+    (d85b.is_known && !inputs.dispersive).then(|| range_of_tests(fines, d85b.most))
+}
+
 /// A limit of D15F that follows from fines and D85B of the regraded base.
 ///
 /// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,

@@ -1,6 +1,5 @@
 //! What a rule is, and what it reads.
 
-use super::authority::Authority;
 use super::base::BaseSoil;
 use crate::gradation::Gradation;
 use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
@@ -11,8 +10,8 @@ pub struct FilterRule {
     pub id: &'static str,
     /// Whose rule it is, as sentences cite it; empty where nobody is cited.
     pub authority: &'static str,
-    /// Authorities whose texts state it, for a sheet that lists those of one alone.
-    pub stated_by: &'static [Authority],
+    /// Authorities whose texts state it besides.
+    pub stated_by: &'static [&'static str],
     /// What it says.
     pub says: &'static str,
     /// What it is a rule of.

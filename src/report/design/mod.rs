@@ -21,7 +21,6 @@ use super::shell::{citation, clean, unbroken};
 use super::specification::{Stated, cautions, still_to_set, to_specify};
 use super::written::Written;
 use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow, share_of_networks};
-use crate::outcome::record::Confidence;
 use crate::verdict::FOREMOST;
 use crate::verdict::beside::NOT_COUNTED;
 use crate::verdict::left_out::left_out_in_brief;
@@ -110,7 +109,7 @@ fn as_given(design: &Design) -> Option<String> {
 /// What stands between the names of a filter and of its curve.
 const CURVE: &str = ", constrictions ";
 
-/// What was found, without the names of settings: what speaks against the answer first.
+/// What was found, without the names of settings.
 fn told(design: &Design) -> Vec<String> {
     // Why a row has no band stands in the answer itself.
     let notes = design.boundaries.iter().filter_map(|row| row.band_note.as_ref());
@@ -124,13 +123,7 @@ fn told(design: &Design) -> Vec<String> {
         let said = &of.finding.sentence;
         of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
     };
-    let (against, others): (Vec<&DesignFinding>, Vec<&DesignFinding>) =
-        design.findings.iter().filter(|of| !is_said(of)).partition(|of| of.finding.against);
-    // What no finding says: of an authority's rules, and in files of earlier versions.
-    let is_found = |said: &&String| !design.findings.iter().any(|of| of.words() == **said);
-    let more = |said: &'_ [String]| said.iter().filter(is_found).cloned().collect::<Vec<String>>();
-    let against = more(&design.reasons).into_iter().chain(against.into_iter().map(words));
-    against.chain(more(&design.warnings)).chain(others.into_iter().map(words)).collect()
+    design.findings.iter().filter(|of| !is_said(of)).map(words).collect()
 }
 
 /// What is said of a part of the filter that the mass eroded does not know of, once.
@@ -151,16 +144,18 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     let others = design.boundaries.iter().filter(|row| row.no_erosion.is_none() || row.band_note.is_some());
     let others = others.count();
     let is_empty = |row: &DesignRow| row.band.as_ref().is_some_and(|band| band.is_empty);
-    let class = match (design.confidence, &found) {
-        (_, None) => "undecided",
-        (Confidence::Within, Some(_))
-            if others == 0 && said.d15f_over_d85b.is_some() && !design.boundaries.iter().any(is_empty) =>
+    // Never in green where the walk sets the answer, a rule of practice is broken, or a row has no answer.
+    let class = match &found {
+        None => "undecided",
+        Some(_)
+            if others == 0
+                && design.fits_by_practice()
+                && said.d15f_over_d85b.is_some()
+                && !design.boundaries.iter().any(is_empty) =>
         {
             "none"
         }
-        // Never in green where the model was not checked, practice does not agree or has a limit of which
-        // only the most is known, or a row has no answer.
-        (_, Some(_)) => "doubted",
+        Some(_) => "doubted",
     };
     html! {
         section class=(format!("verdict {class}")) {
@@ -168,9 +163,6 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
             @if let Some(washout) = &said.washout { p { b { (unbroken(washout)) "." } } }
             @if let Some(margin) = &said.margin { p { (unbroken(margin)) "." } }
             @if let Some(dispersive) = &said.if_dispersive { p { b { (clean(dispersive)) "." } } }
-            @if design.confidence != Confidence::Within {
-                p { "Of the walk: " b { (design.confidence.words()) } "." }
-            }
             @if let Some((row, held)) = &found {
                 @if let Some(base) = design.base.size() { p.lead { (base.words()) "." } }
                 p {
@@ -204,11 +196,11 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
                     p.counted { (unbroken(said)) }
                 }
                 @if design.specification.is_none() && let Some(band) = design.band_of(row) {
-                    p { b { "Band: " (clean(&band.words())) } "." }
+                    p { b { "Band: " (clean(&band.said)) } "." }
                 }
                 @if let Some(band) = design.band_of(row) {
                     // Where practice sets the coarse side, the band says so.
-                    @let of_walk = |limit: &f64| !band.is_empty && *limit != band.greatest_of_both();
+                    @let of_walk = |limit: &f64| !band.is_empty && *limit != band.greatest;
                     @if let Some(practice) = band.practice.filter(of_walk) {
                         p {
                             "Practice allows up to "
@@ -254,16 +246,11 @@ fn answer(design: &Design, foremost: &[String], more: usize) -> Markup {
     }
 }
 
-/// How far limits can be relied on that follow from the answer, where they are in doubt.
+/// What the walk is worth beside limits that follow from practice.
 fn in_doubt(design: &Design) -> Markup {
-    let is_shown = design.specification.is_some() && design.confidence != Confidence::Within;
-    let by_practice = is_shown && design.fits_by_practice();
     html! {
-        @if by_practice {
+        @if design.specification.is_some() && design.fits_by_practice() {
             p { "The limit of practice sets them. " (design.walk_beside_practice()) }
-        }
-        @if is_shown {
-            p { "Of the walk: " b { (design.confidence.words()) } "; the findings say why." }
         }
     }
 }

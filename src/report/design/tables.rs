@@ -76,7 +76,6 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
              first run. Continuing: at least as much in the second run, too. Between the two is some \
              erosion."
-            @if let Some(said) = design.thickness_in_words() { " " (said) "." }
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
                  draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
@@ -94,7 +93,7 @@ pub(super) fn bands(design: &Design) -> Markup {
         let limit = |value| shown_in(design, &band.unit).limit(value, &band.unit, at_least);
         of(band).map_or_else(|| "–".to_owned(), limit)
     };
-    let set_by = |row: &DesignRow| match row.band.as_ref().map(|band| band.greatest_of_both()) {
+    let set_by = |row: &DesignRow| match row.band.as_ref().map(|band| band.greatest) {
         Some(greatest) if row.band.as_ref().and_then(|band| band.practice) == Some(greatest) => "practice",
         _ => "the walk",
     };
@@ -115,7 +114,7 @@ pub(super) fn bands(design: &Design) -> Markup {
                     let least = size(row, true, |band| Some(band.least));
                     if is_open { format!("at most {least}, not known") } else { least }
                 })
-                .number("Greatest", |row| size(row, false, |band| Some(band.greatest_of_both())))
+                .number("Greatest", |row| size(row, false, |band| Some(band.greatest)))
                 .text("Set by", |row| set_by(row))
                 .number("Practice allows", |row| size(row, false, |band| band.practice))
                 .text("Result", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
@@ -146,10 +145,7 @@ pub(super) fn products(design: &Design) -> Markup {
                 "A product fits if the D15 of both sides of its specification lies within the narrowest band \
                  and practice agrees. D15 is interpolated between sieves. The products’ own shapes were not \
                  walked: another shape holds to another D15."
-                @if design.may_fit() {
-                    " Judged at the maximum D15F that both walk and practice allow, as none that fits is \
-                     coarser."
-                } @else if design.fits_by_practice() {
+                @if design.fits_by_practice() {
                     " The limit of practice sets the answer: a product fits by practice. "
                     (design.walk_beside_practice())
                 } @else {

@@ -8,7 +8,7 @@ use crate::report::numbers::SizeUnit;
 use crate::report::shell::clean;
 use crate::verdict::words::capital;
 
-/// A note as a sentence; in files of earlier versions it is a part of one.
+/// A note as a sentence.
 pub(super) fn sentence(note: &str) -> String {
     clean(&format!("{}.", capital(note.trim_end_matches('.'))))
 }

@@ -122,10 +122,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     let mut symbols = Vec::new();
     for (index, mark) in figure.marks.iter().enumerate() {
         if let Mark::Point(point) = mark {
-            let title = is_pointed_at.then(|| {
-                let said = (point.true_x.unwrap_or(point.at.0), point.at.1);
-                hover::title(figure, point.label.as_deref(), said)
-            });
+            let title = is_pointed_at.then(|| hover::title(figure, point.label.as_deref(), point.at));
             in_group(&mut svg, &classes[index], |svg| {
                 title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
                 symbols.extend(draw_point(svg, &mut canvas, &frame, point, index));

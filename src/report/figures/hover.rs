@@ -39,11 +39,8 @@ pub(super) fn draw(
         let inside = |(x, y): &(f64, f64)| {
             (area.left..=area.right).contains(x) && (area.top..=area.bottom).contains(y)
         };
-        let said = |(i, &(x, y)): (usize, &(f64, f64))| {
-            let true_x = line.true_x.as_ref().and_then(|values| values.get(i).copied());
-            Some(((true_x.unwrap_or(x), y), at((x, y)).filter(inside)?))
-        };
-        let seen: Vec<((f64, f64), (f64, f64))> = line.points.iter().enumerate().filter_map(said).collect();
+        let drawn = |&point: &(f64, f64)| Some((point, at(point).filter(inside)?));
+        let seen: Vec<((f64, f64), (f64, f64))> = line.points.iter().filter_map(drawn).collect();
         let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
         let stride = seen.len().div_ceil(few).max(1);
         let mut last: Option<(f64, f64)> = None;
@@ -69,14 +66,14 @@ mod tests {
     use super::super::{Axis, BLUE, Line, Point, Shape, Size};
     use super::*;
 
-    /// Of marks that are drawn beside their place the place is said, in the words of the first line.
+    /// In the words of the first line of the axis.
     #[test]
-    fn a_pointer_shows_the_true_place() {
-        let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0).within(0.4, 2.5);
+    fn a_pointer_shows_the_place_of_a_mark() {
+        let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0);
         let mut figure = Figure::new("title", "what", "", x, Axis::linear("Eroded (%)", 0.0, 100.0));
-        let line = Line::new(vec![(0.985, 20.0), (1.97, 60.0)], BLUE).true_x(vec![1.0, 2.0]);
+        let line = Line::new(vec![(1.0, 20.0), (2.0, 60.0)], BLUE);
         figure.add(line.label("first"));
-        figure.add(Point::new(0.985, 20.0, BLUE, Shape::Circle).true_x(1.0));
+        figure.add(Point::new(1.0, 20.0, BLUE, Shape::Circle));
         let drawn = figure.inline("one", Size::Wide);
         for values in ["Times the grains 1.00; Eroded (%) 20.0", "Times the grains 2.00; Eroded (%) 60.0"] {
             assert!(drawn.contains(&format!("<title>first: {values}</title>")), "{values}: {drawn}");

@@ -17,7 +17,6 @@ pub enum Dash {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     pub(super) points: Vec<(f64, f64)>,
-    pub(super) true_x: Option<Vec<f64>>,
     pub(super) colour: Colour,
     pub(super) width: f64,
     pub(super) dash: Dash,
@@ -30,18 +29,12 @@ impl Line {
     /// A solid line, 2 pixels wide.
     pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
         let (width, dash, opacity) = (2.0, Dash::Solid, 1.0);
-        Line { points, true_x: None, colour, width, dash, opacity, stays: false, label: None }
+        Line { points, colour, width, dash, opacity, stays: false, label: None }
     }
 
     /// The same through rows as records hold them: x, y.
     pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
         Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
-    }
-
-    /// With the values along x that a pointer shows, where the points are drawn beside them.
-    pub fn true_x(mut self, values: Vec<f64>) -> Line {
-        self.true_x = Some(values);
-        self
     }
 
     /// Another width in pixels.
@@ -114,7 +107,6 @@ pub enum Shape {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     pub(super) at: (f64, f64),
-    pub(super) true_x: Option<f64>,
     pub(super) colour: Colour,
     pub(super) shape: Shape,
     pub(super) filled: bool,
@@ -128,14 +120,7 @@ impl Point {
     /// A filled symbol.
     pub fn new(x: f64, y: f64, colour: Colour, shape: Shape) -> Point {
         let (x_interval, y_interval) = (None, None);
-        let (true_x, label) = (None, None);
-        Point { at: (x, y), true_x, colour, shape, filled: true, x_interval, y_interval, drop: false, label }
-    }
-
-    /// With the value along x that a pointer shows, where the symbol is drawn beside it.
-    pub fn true_x(mut self, value: f64) -> Point {
-        self.true_x = Some(value);
-        self
+        Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
     }
 
     /// Hollow.

@@ -34,7 +34,6 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     sheet.item("No band, because", of.no_band.as_deref(), "");
     of.findings.iter().for_each(|found| sheet.item("Warning", found.words(), ""));
     sheet.item("Still to be set", of.still_to_set(), "");
-    sheet.item("Confidence", design.map(Design::confidence_said), "");
     let basis = match design {
         Some(_) => "By the rules of practice and a walk.",
         None => "By the rules of practice alone, without a walk.",

@@ -1,7 +1,7 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole, Run, Statistic, ValueBound};
+use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
 use crate::verdict::rule_words::result_of;
@@ -29,32 +29,19 @@ fn verdict(outcome: &Outcome) -> Sheet {
     for (name, said) in outcome.first_lines() {
         sheet.item(name, said, "");
     }
-    sheet.item("Class of the walk", outcome.verdict.words(), "");
-    sheet.item("Confidence", outcome.confidence.words(), "");
-    let practice = outcome.practice.as_ref().map(|practice| &practice.design);
-    sheet.item("Limit of design of D15F", practice.and_then(|design| design.limit_mm), unit(outcome));
-    sheet.item("D15F", practice.and_then(|design| design.value_mm), unit(outcome));
-    sheet.item("Limit of design met, as placed", practice.and_then(|design| design.met), "");
+    let practice = outcome.practice.as_ref();
+    sheet.item("Practice", outcome.headline.map(Headline::words), "");
+    sheet.item("Class of the model", outcome.model.class.words(), "");
+    sheet.item("Limit of design of D15F", practice.and_then(|practice| practice.limit_mm), unit(outcome));
+    let d15f = practice.and_then(|practice| practice.d15f_mm);
+    sheet.item("D15F, at least", d15f.map(|ends| ends[0]), unit(outcome));
+    sheet.item("D15F, at most", d15f.map(|ends| ends[1]), unit(outcome));
     sheet.item("D15F/D85B", outcome.ratios.d15f_over_d85b, "-");
     sheet.item("D15F/D95B", outcome.ratios.d15f_over_d95b, "-");
     sheet.item("Mass eroded from which a run erodes", outcome.threshold, "fraction of the base");
     for run in &outcome.summary {
         let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
-    }
-    match &outcome.evidence {
-        Some(evidence) if outcome.shows_probabilities() => {
-            let of = |by: &str| format!("Probability that a test shows no erosion, by {by}");
-            let by_range = of("the published range (log-uniform between its ends; not for a risk analysis)");
-            sheet.item(&by_range, evidence.probability_by_tests, "-");
-            let by_walk = of("the walk (not for a risk analysis)");
-            sheet.item(&by_walk, evidence.probability_no_erosion, "-");
-        }
-        _ => {
-            if let Some(said) = outcome.beside_tests() {
-                sheet.item("Beside tests on such soils (not for a risk analysis)", said, "");
-            }
-        }
     }
     for (index, finding) in outcome.findings.iter().enumerate() {
         sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");
@@ -158,7 +145,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
     };
     [
         (&rule.name).into(),
-        (&rule.authority).into(),
+        rule.authorities().join(", ").into(),
         rule.quantity.name().into(),
         rule.value.into(),
         value_is.into(),

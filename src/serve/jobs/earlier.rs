@@ -12,6 +12,7 @@ use crate::run::FolderKind;
 use crate::serve::batches::of_batch;
 use crate::serve::designs::of_design;
 use crate::serve::job_file::JobFile;
+use crate::store::format::from_json;
 use crate::store::read_whole;
 use crate::verdict::WalkedBatch;
 
@@ -59,17 +60,17 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let record = |kind: FolderKind| read_whole(&path.join(kind.record())).ok();
     let done = match FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false)) {
         Some(FolderKind::Run) => record(FolderKind::Run)
-            .and_then(|bytes| serde_json::from_slice::<Outcome>(&bytes).ok())
+            .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
             .map(|outcome| of_run(&outcome)),
         // Without its page it is not whole, and the same call writes it.
         Some(FolderKind::Design) if path.join("design.html").is_file() => record(FolderKind::Design)
-            .and_then(|bytes| serde_json::from_slice::<Design>(&bytes).ok())
+            .and_then(|bytes| from_json::<Design>(&bytes).ok())
             .and_then(|design| of_design(&design).ok()),
         Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
-            .and_then(|bytes| serde_json::from_slice::<WalkedBatch>(&bytes).ok())
+            .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())
             .map(|batch| of_batch(&batch)),
         Some(FolderKind::Design | FolderKind::Batch) | None => None,
-        Some(kind) => record(kind).and_then(|bytes| serde_json::from_slice(&bytes).ok()),
+        Some(kind) => record(kind).and_then(|bytes| from_json(&bytes).ok()),
     };
     let ended = file.as_ref().and_then(|file| file.ended.clone());
     let title =

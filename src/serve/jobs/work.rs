@@ -161,15 +161,10 @@ fn often() -> CheckpointInterval {
 /// What the page shows of an outcome.
 pub fn of_run(outcome: &Outcome) -> Value {
     json!({
-        "headline": outcome.headline(),
-        "practice": outcome.practice_in_words(),
-        "walk": outcome.walk_in_words(),
-        "next": outcome.next_in_words(),
-        "verdict": outcome.verdict.words(),
+        "lines": outcome.first_lines(),
+        "model": outcome.model.class.words(),
         "colour": colour_of(outcome),
-        "confidence": outcome.confidence.words(),
-        "reasons": outcome.reasons,
-        "findings": outcome.ordered().iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
+        "findings": outcome.findings.iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
     })

@@ -27,9 +27,9 @@ pub enum CheckpointError {
     },
     /// The file is of another version of the format.
     #[error(
-        "{}: was written by {} version of voidwalk (checkpoint format {found}; this one reads {expected}), \
-         which can finish it",
-        file.display(), if found < expected { "an earlier" } else { "a later" }
+        "{}: was written by another version of voidwalk (checkpoint format {found}; this one reads \
+         {expected}), which can finish it",
+        file.display()
     )]
     OtherVersion {
         /// The file.

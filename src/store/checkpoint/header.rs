@@ -12,7 +12,7 @@ use super::section::{PIECE, Section};
 use crate::store::disk::{Call, ask};
 
 const MAGIC: [u8; 8] = *b"vwcheckp";
-const VERSION: u32 = 2;
+const VERSION: u32 = 1;
 const BYTE_ORDER: u32 = 0x0a0b_0c0d;
 const MOST_SECTIONS: u64 = 64;
 /// A longer header is no header (bytes): that of 8 TB of columns.

@@ -1,12 +1,12 @@
 //! Checkpoints: columns in a file that is whole, or refused.
 //!
-//! # Format 2
+//! # Format 1
 //! A file holds, in this order (numbers are little-endian, as on every machine that voidwalk is built for):
 //!
 //! | bytes | field | what |
 //! |---|---|---|
 //! | 8 | `magic` | `vwcheckp` |
-//! | 4 | `version` | of this format: 2 |
+//! | 4 | `version` | of this format: 1; another is refused as [`CheckpointError::OtherVersion`] |
 //! | 4 | `byte_order` | 0x0a0b0c0d, which a machine of another byte order reads the other way round |
 //! | 8 | `header_length` | bytes of the header, its checksum included |
 //! | 8 | `file_length` | bytes of the file |
@@ -41,9 +41,6 @@
 //! | a finished replicate | `done`: a record of its figures and rows, `run::checkpoints::Done` |
 //! | a study | `found`: a record of its tiers, networks or lattices that are done |
 //! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
-//!
-//! Format 1 (until 2026-11-21) held its scalars as numbered words; it is refused as
-//! [`CheckpointError::OtherVersion`].
 //!
 //! # Slots
 //! A checkpoint called `x` lives in `x.0` or `x.1`, whichever is older, and is written whole before it has

@@ -17,12 +17,10 @@ use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::rules::Authority;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
-use crate::verdict::by_authority::{ON_ALL_RULES, of_pair};
-use crate::verdict::practice::{counts_as, standing};
+use crate::verdict::practice::counts_as;
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -68,8 +66,7 @@ pub fn found(plan: &ComparePlan, options: &CampaignOptions) -> Result<Option<Com
         let folders = cases.iter().filter_map(|case| Some(walks.join(case.line(&walks)?.folder)));
         let folders: Vec<PathBuf> = folders.collect();
         let day = last_day(folders.iter().map(PathBuf::as_path));
-        // Earlier versions wrote no date.
-        let cover = plan.cover.clone().dated(day.filter(|_| there.cover.date.is_some()));
+        let cover = plan.cover.clone().dated(day);
         there.of == plan.of
             && (&there.cover, there.inches) == (&cover, plan.inches)
             && there.cases.iter().map(|case| case.name.as_str()).eq(plan.names())
@@ -96,12 +93,6 @@ impl ComparePlan {
         hash_of(&format!("{} {all:?}{}", self.of, of_sheet(&self.cover, self.inches)))
     }
 
-    /// Whose rules the sheet of a case lists.
-    fn authority_of(&self, case: &str) -> Authority {
-        let planned = self.campaign.cases.iter().find(|planned| planned.name == case);
-        planned.and_then(|planned| planned.scene.about.authority).unwrap_or_default()
-    }
-
     /// The cases that were walked, side by side.
     fn compared(&self, folder: &Folder, walked: &FinishedCampaign) -> Result<Comparison, RunError> {
         let mut outcomes = Vec::new();
@@ -115,18 +106,10 @@ impl ComparePlan {
         let day = last_day(folders.iter().map(PathBuf::as_path));
         (comparison.cover, comparison.inches) = (self.cover.clone().dated(day), self.inches);
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
-            case.headline = outcome.headline();
-            case.practice = outcome.practice_in_words();
-            case.standing = Some(standing(&outcome.rules).recorded());
             case.by_practice = counts_as(&outcome.rules);
-            case.walk = outcome.walk_in_words();
-            case.next = outcome.next_in_words();
-            case.beside = outcome.beside_the_verdict();
-            case.found = outcome.ordered().into_iter().map(|finding| finding.sentence).collect();
-            let d15f = Some(outcome.inputs.filter.d15_mm);
-            let of_authority =
-                of_pair(&outcome.rules, self.authority_of(&case.name), d15f, outcome.if_dispersive);
-            case.by_authority = of_authority.map_or(String::new(), |said| format!("{said} {ON_ALL_RULES}"));
+            let lines = outcome.first_lines().into_iter();
+            case.first_lines = lines.map(|(name, words)| (name.to_owned(), words)).collect();
+            case.found = outcome.findings.iter().map(|finding| finding.sentence.clone()).collect();
         }
         Ok(comparison)
     }

@@ -2,8 +2,8 @@
 
 use super::tests::{found, of_base, options, tiny};
 use super::*;
+use crate::outcome::design::DesignFinding;
 use crate::outcome::design::band::SetBy;
-use crate::outcome::record::Confidence;
 
 #[test]
 fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
@@ -16,9 +16,9 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
     assert!(thin.layers == 1 && thin.thickness_mm.unwrap() > 0.1, "{thin:?}");
     assert!(thin.no_erosion_note.as_ref().unwrap().contains("a filter of 0.05 mm holds less"), "{thin:?}");
     assert!(row.thickness_mm == Some(0.9) && row.no_erosion_note.is_none(), "{row:?}");
-    assert_ne!(design.confidence, Confidence::Within);
-    let said = |reason: &String| reason.contains("loose, 0.05 mm: One layer of voids is thicker");
-    assert!(design.reasons.iter().any(said), "{:?}", design.reasons);
+    let thicker: Vec<_> =
+        design.findings.iter().filter(|found| found.finding.id == "layer_thicker").collect();
+    assert!(thicker.len() == 1 && thicker[0].row.as_deref() == Some("loose, 0.05 mm"), "{thicker:?}");
 }
 
 /// An end of the range of a curve that holds more than was searched does not take the band away.
@@ -40,7 +40,6 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     let short = of("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
     let row = &short.boundaries[0];
     assert!(row.band.is_none() && row.band_note.is_some() && row.held().is_some(), "{row:?}");
-    assert_eq!(short.confidence, Confidence::Outside.max(short.confidence));
     let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
     let row = &high.boundaries[0];
     assert!(
@@ -60,15 +59,11 @@ fn products_are_judged_at_what_walk_and_practice_both_allow() {
     let band = design.boundaries[0].band.as_ref().unwrap();
     let walked = design.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.unwrap().median;
     assert!(band.practice == Some(band.greatest) && band.greatest < walked && !band.is_empty, "{band:?}");
-    assert_eq!(
-        (band.set_by, design.answer.as_ref().unwrap().d15f_max_mm),
-        (Some(SetBy::Practice), band.practice)
-    );
-    assert_eq!((design.confidence, design.may_fit()), (Confidence::Within, true), "{:?}", design.reasons);
-    let doubted = of("few", &["replicates=4"]);
-    let said = doubted.products_in_words().unwrap();
+    assert_eq!((band.set_by, design.answer.as_ref().unwrap().d15f_max_mm), (SetBy::Practice, band.practice));
     // Practice alone set the limit, so that a doubt of the walk is none of the products.
-    assert!(!doubted.may_fit() && doubted.fits_by_practice() && !said.contains("doubt"), "{said}");
+    for design in [design, of("few", &["replicates=4"])] {
+        assert!(design.fits_by_practice(), "{:?}", design.findings);
+    }
 }
 
 #[test]
@@ -81,10 +76,12 @@ fn a_base_that_is_regraded_and_scaled_says_its_share_and_that_practice_would_cut
     let settings = options.settings.iter().cloned().chain(settings.map(String::from));
     let settings = settings.filter(|one| !one.contains("=9")).collect();
     let design = found(&DesignOptions { inverse: true, base: Some(base), settings, ..options });
-    let said = design.warnings.iter().find(|said| said.contains("as practice regrades it"));
-    assert!(said.unwrap().contains("the 58 % of it"), "{said:?}");
-    let doubted = |reason: &String| reason.contains("regraded on 4.75 mm in the size in which it is stated");
-    assert!(design.reasons.iter().any(doubted), "{:?}", design.reasons);
+    let numbers = |id: &str| {
+        let found = design.findings.iter().find(|found| found.finding.id == id);
+        found.map(|found| found.finding.numbers.clone())
+    };
+    assert_eq!(numbers("regraded").unwrap()["part_percent"], 58.0, "{:?}", design.findings);
+    assert!(numbers("regraded_elsewhere").is_some(), "{:?}", design.findings);
 }
 
 #[test]
@@ -92,12 +89,12 @@ fn a_real_thickness_is_compared_in_mm_alone() {
     let folder = tempfile::tempdir().unwrap();
     let of = |name: &str, more: &[&str]| {
         let all = [&["network.nz=20", "filter.thickness_mm=1"], more].concat();
-        found(&tiny(&folder.path().join(name), &all)).reasons.join("; ")
+        let design = found(&tiny(&folder.path().join(name), &all));
+        let has = |id: &str| design.findings.iter().any(|found| found.finding.id == id);
+        [has("thickness_without_unit"), has("layers_thicker")]
     };
-    let said = of("no-size", &[]);
-    assert!(said.contains("sizes are multiples of D85B") && !said.contains("20 layers of voids"), "{said}");
-    let said = of("sized", &["base.d85_mm=0.2"]);
-    assert!(said.contains("20 layers of voids are") && !said.contains("cannot be compared"), "{said}");
+    assert_eq!(of("no-size", &[]), [true, false]);
+    assert_eq!(of("sized", &["base.d85_mm=0.2"]), [false, true]);
     // What was asked for is rounded to layers.
     let base = Some(of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]));
     for mm in [10.0, 10.3, 10.6, 10.9] {
@@ -105,7 +102,8 @@ fn a_real_thickness_is_compared_in_mm_alone() {
         let plain = options(&folder.path().join(&name), &["no layers", &format!("filter.thickness_mm={mm}")]);
         let design =
             found(&DesignOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
-        assert!(!design.reasons.join("; ").contains("thicker than the real one"), "{:?}", design.reasons);
+        let is_thicker = |found: &DesignFinding| found.finding.id == "layers_thicker";
+        assert!(!design.findings.iter().any(is_thicker), "{:?}", design.findings);
     }
 }
 

@@ -2,12 +2,11 @@
 
 use super::row::Row;
 use crate::case::{Case, StatedBase};
-use crate::outcome::record::{AppliedRule, Verdict};
+use crate::outcome::record::{AppliedRule, FindingRecord};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
-use crate::run::evidence;
 use crate::scene::{Amount, BaseGradation, D85};
-use crate::verdict::{Finding, Judgement, finding, judge};
+use crate::verdict::{Finding, finding, ordered};
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
@@ -68,7 +67,7 @@ impl Judged {
         let stated = if has_size && !row.inverse { row.stated.clone() } else { scaled(&row.stated)? };
         let mut case = row.case.enlarged(ratio * d85 / row.d15f(), &stated)?;
         if let Ok(walked) = row.at(ratio) {
-            (case.pan_size, case.counts) = (walked.pan_size, walked.counts);
+            case.counts = walked.counts;
             (case.n_base, case.n_base_eq2, case.capped) = (walked.n_base, walked.n_base_eq2, walked.capped);
         }
         let base_name = case.record().base.name;
@@ -112,24 +111,20 @@ impl Judged {
         rules
     }
 
-    /// What "no erosion" is worth, with what else was found about it.
-    pub fn answer(&self, row: &Row, rules: &[AppliedRule], others: Vec<Finding>) -> Judgement {
+    /// What a reader must know besides, with what else was found.
+    pub fn findings(&self, row: &Row, rules: &[AppliedRule], others: Vec<Finding>) -> Vec<FindingRecord> {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
-        let of_case = self.case.to_be_walked().into_iter().chain(self.case.findings());
-        // Without rules no filter is said to hold.
-        let of_kind = evidence::of_kind(&self.case, None).filter(|_| !rules.is_empty());
-        let errs_unsafely = of_kind.and_then(|of| of.against_holding(rules));
         let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
         let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, self.unit()));
+        let of_case = self.case.findings().into_iter();
         let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
         let found = found
             .chain(self.case.unchecked_clogging())
             .chain(coarse)
             .chain(not_compared)
             .chain(of_search(row))
-            .chain(errs_unsafely)
             .chain(others);
-        judge(Verdict::None, rules, found.collect())
+        ordered(rules, found.collect())
     }
 }

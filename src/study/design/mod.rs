@@ -40,7 +40,6 @@ pub use specified::{SpecifyOptions, specify};
 
 use super::kept::{self, Kept};
 use crate::outcome::design::Design;
-use crate::outcome::rules::Authority;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim};
@@ -124,13 +123,6 @@ fn drafts(options: &DesignOptions) -> Result<Vec<DraftedRow>, RunError> {
         return Err(RunError::Refused(format!(
             "bracket {low},{high}: allowed: two D15F/D85B that rise, from {from} to {to}, the second at \
              least {NARROWEST} times the first"
-        )));
-    }
-    if options.inverse && options.authority != Authority::All {
-        return Err(RunError::Refused(format!(
-            "--authority {}: goes without --inverse, as it states a limit of D15F, and --inverse asks for \
-             the finest base; leave it out",
-            options.authority.word()
         )));
     }
     wanted(options)?.into_iter().map(|wanted| DraftedRow::new(wanted, options)).collect()

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use crate::outcome::design::SieveSeries;
 use crate::outcome::record::SheetCover;
-use crate::outcome::rules::Authority;
 use crate::run::prepare::PrepareOptions;
 use crate::scene::Scene;
 use crate::schema::length::{LENGTHS, millimetres};
@@ -34,8 +33,6 @@ pub struct DesignOptions {
     pub as_given: bool,
     /// Whether the finest base that the filter holds is looked for, the filter being as large as it is.
     pub inverse: bool,
-    /// Whose limit is said beside the answer.
-    pub authority: Authority,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
     /// The sieves at which the limits of the specification are stated.
@@ -60,7 +57,6 @@ impl Default for DesignOptions {
             as_sampled: false,
             as_given: false,
             inverse: false,
-            authority: Authority::All,
             bracket: BRACKET,
             sieves: SieveSeries::default(),
             out: "voidwalk-design".into(),

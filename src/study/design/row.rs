@@ -8,7 +8,6 @@ use super::search::{Begun, Found, Hint, Start, Trial, USUAL_ACROSS, Walker, hold
 use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::{Network, Passage};
-use crate::outcome::Eroded;
 use crate::outcome::design::Beyond;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
@@ -228,13 +227,13 @@ pub(super) struct OneNetwork<'a> {
     seed: u64,
     /// The network that was walked last, and its exits.
     network: Option<(Network, PlainExits)>,
-    /// What the first run left of the constrictions, by step, of each reading of the base.
-    clogged: BTreeMap<i64, Vec<Clogged>>,
+    /// What the first run left of the constrictions, by step.
+    clogged: BTreeMap<i64, Clogged>,
     callbacks: &'a Callbacks<'a>,
 }
 
 impl OneNetwork<'_> {
-    /// Run `run` at a ratio. Of the bounds of a base's finest part the one that erodes more counts.
+    /// Run `run` at a ratio.
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError> {
         let case = match self.row.at(ratio) {
             Ok(case) => case,
@@ -258,26 +257,15 @@ impl OneNetwork<'_> {
                 (network, open)
             }
         };
-        let before = self.clogged.remove(&step);
-        let (mut all, mut left): (Option<Eroded>, Vec<Clogged>) = (None, Vec::new());
-        for (reading, case) in case.bounds().enumerate() {
-            let before = before.as_ref().and_then(|before| before.get(reading)).filter(|_| run > 1);
-            let clogged = before.cloned().unwrap_or_else(|| Clogged::none(&network));
-            let walked = (&network, Some(&open));
-            let (found, clogged) = eroded(case, walked, (self.seed, run), clogged, self.callbacks)?;
-            left.push(clogged);
-            let worse = |all: Eroded| Eroded {
-                mass_fraction: all.mass_fraction.max(found.mass_fraction),
-                below_threshold: all.below_threshold && found.below_threshold,
-            };
-            all = Some(all.map_or(found, worse));
-        }
+        let before = self.clogged.remove(&step).filter(|_| run > 1);
+        let clogged = before.unwrap_or_else(|| Clogged::none(&network));
+        let walked = (&network, Some(&open));
+        let (eroded, left) = eroded(&case, walked, (self.seed, run), clogged, self.callbacks)?;
         self.network = Some((network, open));
-        let all = all.expect("a case has a reading");
-        if run == 1 && !all.below_threshold {
+        if run == 1 && !eroded.below_threshold {
             self.clogged.insert(step, left);
         }
-        Ok(Trial::Eroded(all))
+        Ok(Trial::Eroded(eroded))
     }
 }
 

@@ -17,13 +17,12 @@ use crate::outcome::design::{
     NetworkBoundaries, Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{Confidence, FindingRecord, InputFile, commit};
+use crate::outcome::record::{FindingRecord, InputFile, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::study::days::today;
-use crate::verdict::by_authority::of_design;
-use crate::verdict::{Finding, Judgement, SpecificationOptions, design_answer, finding};
+use crate::verdict::{Finding, SpecificationOptions, design_answer, finding};
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -79,7 +78,7 @@ pub(super) fn design(
     };
     let shown = found.iter().zip(rows).filter(is_shown);
     let boundaries: Vec<DesignRow> = shown.map(|(found, _)| found.of.clone()).collect();
-    let (confidence, findings) = all_judged(judgements, &boundaries);
+    let findings = all_found(judgements, &boundaries);
     let known = asked().filter_map(|at| Some((at, held[at]?)));
     // Rules are shown of the coarsest filter that is said to hold: there they fail first.
     let (at, ratio) = known.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, USUAL_RATIO));
@@ -90,14 +89,8 @@ pub(super) fn design(
     let bands = boundaries.iter().filter_map(|of| of.band.as_ref());
     let narrowest = bands.min_by(|a, b| a.greatest.total_cmp(&b.greatest));
     let products = narrowest.filter(|band| band.unit == "mm").map(fits).unwrap_or_default();
-    // None that fits is coarser than the answer.
-    let products_confidence = (!products.is_empty()).then_some(confidence);
     let first = &rows[0];
     let record = judged.case.record();
-    let words = |against: bool| {
-        let of_kind = findings.iter().filter(|of| of.finding.against == against);
-        of_kind.map(DesignFinding::words).collect()
-    };
     let design = Design {
         answer: None,
         specification: None,
@@ -117,13 +110,9 @@ pub(super) fn design(
         engine: first.case.scene.walk.engine.name().into(),
         bracket: options.bracket,
         step: BETWEEN_STEPS,
-        confidence,
-        reasons: words(true),
         rules,
         rules_at: ratio,
         products,
-        products_confidence,
-        warnings: words(false),
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
@@ -134,10 +123,8 @@ pub(super) fn design(
     };
     let answer = design_answer(&design, finest.as_ref());
     let specification = specification(first, &design.base.name, &answer, options);
-    let answer = answer.specified(&design, specification.as_ref());
-    let of_authority = of_design(&design.rules, options.authority, &design.unit);
-    let warnings = of_authority.into_iter().chain(design.warnings.iter().cloned()).collect();
-    Ok(Design { answer: Some(answer), warnings, specification, ..design })
+    let answer = answer.specified(specification.as_ref());
+    Ok(Design { answer: Some(answer), specification, ..design })
 }
 
 /// The specification of a filter that practice and the answer allow; `None` without an answer in mm.
@@ -266,20 +253,13 @@ fn curve(row: &Row, found: &FoundRow) -> String {
     if *density == row.wanted.density { String::new() } else { format!(" ({density})") }
 }
 
-/// What the answers of all rows are worth: as much as the worst of them. What was found about them, the
-/// worst first: what not all of them have with the row's name.
-fn all_judged(
-    mut each: Vec<(String, Judgement)>,
-    boundaries: &[DesignRow],
-) -> (Confidence, Vec<DesignFinding>) {
-    each.sort_by_key(|(_, answer)| std::cmp::Reverse(answer.confidence));
-    let worst = each.first().map_or(Confidence::Outside, |(_, answer)| answer.confidence);
-    let same =
-        |a: &FindingRecord, b: &FindingRecord| (a.against, a.with_to_do()) == (b.against, b.with_to_do());
+/// What was found about all rows: what not all of them have with the row's name.
+fn all_found(each: Vec<(String, Vec<FindingRecord>)>, boundaries: &[DesignRow]) -> Vec<DesignFinding> {
+    let same = |a: &FindingRecord, b: &FindingRecord| a.with_to_do() == b.with_to_do();
     let mut findings: Vec<DesignFinding> = Vec::new();
-    for (name, answer) in &each {
-        for finding in &answer.findings {
-            let by_all = each.iter().all(|(_, other)| other.findings.iter().any(|of| same(of, finding)));
+    for (name, found) in &each {
+        for finding in found {
+            let by_all = each.iter().all(|(_, other)| other.iter().any(|other| same(other, finding)));
             let row = (!by_all).then(|| name.clone());
             if !findings.iter().any(|of| of.row == row && same(&of.finding, finding)) {
                 findings.push(DesignFinding { row, finding: finding.clone() });
@@ -288,10 +268,10 @@ fn all_judged(
     }
     let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
     if not_monotone > 0 {
-        let finding = finding::not_monotone(not_monotone).record(false);
+        let finding = finding::not_monotone(not_monotone).record();
         findings.push(DesignFinding { row: None, finding });
     }
-    (worst, findings)
+    findings
 }
 
 /// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its
@@ -301,12 +281,12 @@ fn judged(
     (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
     held: Option<f64>,
     no_band: Option<Finding>,
-) -> Result<Judgement, RunError> {
+) -> Result<Vec<FindingRecord>, RunError> {
     let of = &own.of;
     let Some(held) = held else {
         // No filter is said to hold, and no rule speaks against one.
         let why = no_band.into_iter().chain(own.of_boundary.iter().cloned());
-        return Ok(Judged::new(row, USUAL_RATIO)?.answer(row, &[], why.collect()));
+        return Ok(Judged::new(row, USUAL_RATIO)?.findings(row, &[], why.collect()));
     };
     let ratio = allowed(row, held, finest_base(row)?.as_ref())?;
     let judged = Judged::new(row, ratio)?;
@@ -318,7 +298,7 @@ fn judged(
         None => own.of_boundary.clone(),
     };
     let why = [unsteady, of.band.as_ref().and_then(Band::empty), no_band].into_iter().flatten();
-    Ok(judged.answer(row, &judged.rules(), why.chain(of_boundary).collect()))
+    Ok(judged.findings(row, &judged.rules(), why.chain(of_boundary).collect()))
 }
 
 /// `design.csv`.

@@ -45,7 +45,6 @@ use std::time::{Duration, Instant, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::precision::{NetworkRow, Precision};
-use crate::packing::is_wide;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim};
@@ -110,11 +109,7 @@ pub fn run(scene: Scene, options: &PrecisionOptions, callbacks: &Callbacks) -> R
     let is_wanted = |tier: &Tier| options.tiers.is_empty() || options.tiers.contains(tier);
     let tiers: Vec<Tier> = Tier::ALL.into_iter().filter(is_wanted).collect();
     let kind = FolderKind::Precision;
-    let mut work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
-    if is_wide(&case.filter) {
-        // Earlier versions packed such filters otherwise.
-        work += " heavier grains";
-    }
+    let work = format!("{} {tiers:?} {:?}", case.fingerprint(), options.budget);
     let study = PrecisionStudy {
         case: &case,
         tiers: &tiers,

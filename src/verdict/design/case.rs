@@ -93,15 +93,12 @@ pub(super) fn strictest<'a>(design: &'a Design, sizes: &Sizes) -> Option<(&'a Ap
 
 impl<'a> Case<'a> {
     pub fn of(design: &'a Design, sizes: &Sizes, finest: Option<&'a FinestBase>) -> Self {
-        // Files of an earlier version know only whether the base that the walk holds breaks a rule.
-        let broken = retaining(&design.rules).find(|rule| rule.is_broken());
-        let known = broken.filter(|_| design.inverse && sizes.has_unit && finest.is_none());
         let none = finest.filter(|of| of.ratio.is_none());
         if let Some(of) = none.filter(|of| of.is_open) {
             return Self::OpenBase(&of.rule, design.least_held().map(|(_, held)| held));
         }
-        if let Some(rule) = known.or(none.map(|of| &of.rule)) {
-            return Self::Forbidden(rule);
+        if let Some(of) = none {
+            return Self::Forbidden(&of.rule);
         }
         let limit = match design.inverse {
             true => finest

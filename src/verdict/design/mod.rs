@@ -4,7 +4,6 @@
 //! Dunnigan's limit of design, and Foster and Fell's boundary of no erosion where that is lower, as for 35 to
 //! 40 % fines. No specification allows a filter with which tests saw erosion.
 
-mod beside_tests;
 mod case;
 mod sizes;
 #[cfg(test)]
@@ -12,20 +11,14 @@ mod tests;
 mod words;
 
 use super::specification::DESIGN_AGAIN;
-use super::thickness::WITH_AMOUNT;
 use super::washout::washout;
-use super::words::capital;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, DesignAnswer, Specification};
 use crate::outcome::record::{AppliedRule, WithoutFiner};
-use beside_tests::BeyondTests;
 use case::Case;
 pub use case::FinestBase;
 use sizes::Sizes;
 use words::{CaseWords, words};
-
-/// The finding of a design whose base does not grow with the filter.
-const AMOUNT_HELD: &str = "amount_held";
 
 /// The answer of a design whose boundaries and rules are known; `finest` is what practice says for the
 /// inverse, where that was searched.
@@ -70,13 +63,11 @@ fn of_washout(case: &Case, design: &Design, finest: Option<&FinestBase>) -> Opti
 
 impl DesignAnswer {
     /// The same, with what stands beside it where the specification knows the base: that its limit has no
-    /// margin, what the walk is worth beside tests, and what holds if the base is dispersive.
-    pub fn specified(self, design: &Design, specification: Option<&Specification>) -> Self {
+    /// margin, and what holds if the base is dispersive.
+    pub fn specified(self, specification: Option<&Specification>) -> Self {
         let margin = specification.and_then(Specification::without_margin_in_words);
         let if_dispersive = specification.and_then(|of| of.if_dispersive_in_words(DESIGN_AGAIN));
-        let beyond = BeyondTests::of(design, specification).filter(|_| self.set_by == SetBy::Practice);
-        let walk = beyond.map(|of| of.words()).or(self.walk);
-        Self { margin, walk, if_dispersive, ..self }.joined()
+        Self { margin, if_dispersive, ..self }.joined()
     }
 
     fn joined(self) -> Self {
@@ -87,45 +78,14 @@ impl DesignAnswer {
 }
 
 impl Design {
-    /// The answer, of files of earlier versions too, whose text is all in the limit.
+    /// The answer, worked out where it is not yet.
     pub fn answer(&self) -> DesignAnswer {
-        match &self.answer {
-            Some(answer) if answer.limit.is_empty() => {
-                DesignAnswer { limit: answer.said.clone(), ..answer.clone() }
-            }
-            Some(answer) => answer.clone(),
-            None => design_answer(self, None).specified(self, self.specification.as_ref()),
-        }
-    }
-
-    /// How far the answer can be relied on, in a sentence, with the weightiest reason.
-    pub fn confidence_said(&self) -> String {
-        let label = capital(self.confidence.words());
-        match self.reasons.first() {
-            Some(reason) => format!("{label}: {}.", reason.trim_end_matches('.')),
-            None => format!("{label}."),
-        }
+        let specified = || design_answer(self, None).specified(self.specification.as_ref());
+        self.answer.clone().unwrap_or_else(specified)
     }
 
     /// What the walk is worth beside a limit of practice that sets the answer, in short: a sentence.
     pub fn walk_beside_practice(&self) -> String {
-        match (self.beyond_tests(), self.answer().walk) {
-            (Some(_), _) => "The walk is no guide here.".into(),
-            (None, walk) => walk.map_or_else(String::new, |said| format!("{said}.")),
-        }
-    }
-
-    /// What was varied with the thickness, where several were walked: a sentence without its full stop.
-    pub fn thickness_in_words(&self) -> Option<&'static str> {
-        let first = self.boundaries.first()?;
-        let varies = self.boundaries.iter().any(|row| row.thickness != first.thickness);
-        let is_held = self.findings.iter().any(|of| of.finding.id == AMOUNT_HELD);
-        (varies && !is_held).then_some(WITH_AMOUNT)
-    }
-
-    /// The walk's D15F of no erosion over the centre of the range in which erosion began in tests on soils
-    /// with such fines, where it lies beyond that range: the walk is then no guide.
-    pub fn beyond_tests(&self) -> Option<f64> {
-        BeyondTests::of(self, self.specification.as_ref()).map(|of| of.by_centre)
+        self.answer().walk.map_or_else(String::new, |said| format!("{said}."))
     }
 }

@@ -4,7 +4,6 @@ use super::case::{Case, strictest};
 use super::sizes::Sizes;
 use crate::outcome::design::{Design, DesignRow};
 use crate::outcome::digits::percent;
-use crate::verdict::entry::EVIDENCE_UNSAFE;
 use crate::verdict::rule_words::cited_rule;
 
 /// The limit of an answer, and what the walk says beside it; sentences without their full stops.
@@ -29,7 +28,7 @@ pub(super) fn words(case: &Case, design: &Design, sizes: &Sizes) -> CaseWords {
                 cited_rule(limit.rule),
                 if rule.needs.is_empty() { "it can only be less".into() } else { rule.needs.to_string() }
             ),
-            of_walk_alone(design, sizes, *held),
+            of_walk_alone(sizes, *held),
         ),
         Case::OpenBase(rule, held) => beside(
             format!(
@@ -37,7 +36,7 @@ pub(super) fn words(case: &Case, design: &Design, sizes: &Sizes) -> CaseWords {
                 cited_rule(rule),
                 if rule.needs.is_empty() { String::new() } else { format!("; {}", rule.needs) }
             ),
-            of_walk_alone(design, sizes, *held),
+            of_walk_alone(sizes, *held),
         ),
         Case::Unknown => alone("No ratio is known that nearly all networks hold".into()),
         Case::TailOpen(limit, tail) => beside(
@@ -77,10 +76,7 @@ pub(super) fn words(case: &Case, design: &Design, sizes: &Sizes) -> CaseWords {
                     String::new()
                 }
             ),
-            match errs_unsafely(design) {
-                true => NO_CHECK.into(),
-                false => NO_TIGHTER.into(),
-            },
+            NO_TIGHTER.into(),
         ),
         Case::Walk(row, held, limit) => alone(format!(
             "{}{}, by the walk; practice allows {} ({})",
@@ -90,10 +86,9 @@ pub(super) fn words(case: &Case, design: &Design, sizes: &Sizes) -> CaseWords {
             cited_rule(limit.rule)
         )),
         Case::ModelAlone(row, held) => alone(format!(
-            "{}{} in the model alone{}; {}",
+            "{}{} in the model alone; {}",
             searched(row),
             sizes.words(*held),
-            unsafe_alone(design),
             sizes.without_limit(strictest(design, sizes))
         )),
     }
@@ -102,23 +97,10 @@ pub(super) fn words(case: &Case, design: &Design, sizes: &Sizes) -> CaseWords {
 /// What the walk is worth beside a limit of practice that sets the answer.
 const NO_TIGHTER: &str = "The walk sets no tighter limit, and is no check of it";
 
-/// The same where it errs on the unsafe side for soils of this kind.
-const NO_CHECK: &str = "The walk is no check of this limit: for such soils it errs on the unsafe side";
-
-/// Whether the walk errs on the unsafe side for soils of this kind.
-fn errs_unsafely(design: &Design) -> bool {
-    design.findings.iter().any(|of| of.finding.id == EVIDENCE_UNSAFE)
-}
-
-/// Said of a size that the walk alone holds, where it errs on the unsafe side for soils of this kind.
-fn unsafe_alone(design: &Design) -> &'static str {
-    if errs_unsafely(design) { ", and for such soils it errs on the unsafe side" } else { "" }
-}
-
 /// What the walk holds where practice gives no answer.
-fn of_walk_alone(design: &Design, sizes: &Sizes, held: Option<f64>) -> String {
+fn of_walk_alone(sizes: &Sizes, held: Option<f64>) -> String {
     match held {
-        Some(held) => format!("The walk alone holds {}{}", sizes.words(held), unsafe_alone(design)),
+        Some(held) => format!("The walk alone holds {}", sizes.words(held)),
         None => "The walk has no answer either".into(),
     }
 }

@@ -144,7 +144,7 @@ pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
     let of = |curve: &ReadCurve| {
         let found = curve.findings().into_iter();
-        found.map(|of| DesignFinding { row: row(curve), finding: of.record(false) }).collect::<Vec<_>>()
+        found.map(|of| DesignFinding { row: row(curve), finding: of.record() }).collect::<Vec<_>>()
     };
     read.iter().flat_map(of).collect()
 }

@@ -55,7 +55,7 @@ impl Side {
 pub(super) fn findings(band: Option<&SizeBand>) -> Vec<DesignFinding> {
     let of = |side: &Side| {
         let broken = side.broken().join(" and ");
-        let finding = finding::unstable_side(side.name, &broken).record(false);
+        let finding = finding::unstable_side(side.name, &broken).record();
         (!broken.is_empty()).then_some(DesignFinding { row: None, finding })
     };
     band.map(|band| Side::both(band).iter().filter_map(of).collect()).unwrap_or_default()

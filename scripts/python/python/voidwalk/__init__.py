@@ -29,8 +29,9 @@ Two sieve curves; ``quick`` and small networks save time here:
 >>> import voidwalk as vw
 >>> base, filter = ([0.08, 0.3], [0, 100]), ([0.5, 2.0], [0, 100])
 >>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
->>> vw.judge(base, filter, density="dense", quick=True, settings=small).verdict
-'no erosion'
+>>> result = vw.judge(base, filter, density="dense", quick=True, settings=small)
+>>> result.headline, result.model["class"]
+('does not meet practice', 'no erosion')
 
 A network:
 
@@ -45,7 +46,7 @@ from ._grains import Constrictions, Packing, constrictions, pack
 from ._judge import judge, soil
 from ._network import Network
 from ._read import read
-from ._result import CampaignResult, Result
+from ._result import CampaignResult, Result, WalkResult
 from ._rules import rules
 from ._scene import Scene, init_text, scene_text
 from ._schema import schema
@@ -69,6 +70,7 @@ __all__ = [
     "Scene",
     "Specification",
     "VoidwalkError",
+    "WalkResult",
     "__version__",
     "campaign",
     "compare",

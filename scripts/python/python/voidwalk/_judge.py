@@ -60,7 +60,7 @@ def judge(
         Pack the grains of this very filter and measure its constrictions; loose without a density. A warning calls
         it the setting ``filter.density``.
     quick : bool
-        A first look: five replicates, no studies of the amount of base and of the thickness.
+        A first look: five replicates.
     as_sampled : bool
         Walk the base as sampled, not as filter practice regrades it.
     as_given : bool
@@ -82,7 +82,7 @@ def judge(
     Returns
     -------
     Result
-        ``verdict``, ``confidence``, ``reasons`` (what speaks against the verdict), ``warnings`` (what else to know),
+        ``headline`` and ``practice`` (filter practice), ``model`` (the walk), ``findings`` (what else to know),
         ``summary`` and ``outcome``, which has everything.
 
     Raises
@@ -97,8 +97,9 @@ def judge(
     >>> import voidwalk as vw
     >>> base, filter = ([0.08, 0.3], [0, 100]), ([0.5, 2.0], [0, 100])
     >>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
-    >>> vw.judge(base, filter, density="dense", quick=True, settings=small).verdict
-    'no erosion'
+    >>> result = vw.judge(base, filter, density="dense", quick=True, settings=small)
+    >>> result.headline, result.model["class"]
+    ('does not meet practice', 'no erosion')
     """
     tables = told(
         settings, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates

@@ -1,4 +1,4 @@
-"""What came of a walk: verdict, statistics, columns."""
+"""What came of a walk: classes, statistics, columns."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from . import _voidwalk
 from ._plots import Axes, plot_result
 from .columns import Blockings, Column, Flow, Layers, RetainedByVoid, Series, Sizes, Table
-from .records import Finding, Outcome, Replicate, RunSummary, WalkOutcome
+from .records import Finding, Model, Outcome, Practice, Replicate, RunSummary, WalkOutcome
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
     import xarray  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-__all__ = ["CampaignResult", "Result"]
+__all__ = ["CampaignResult", "Result", "WalkResult"]
 
 #: The facts of a case, by name.
 Row = Dict[str, Union[None, str, int, float]]
@@ -47,35 +47,10 @@ _TABLES = {
 }
 
 
-class Result:
-    """What came of a walk.
+class _Walked:
+    """The numbers and tables of a walk, on a scene's networks or on given ones."""
 
-    Attributes
-    ----------
-    outcome : dict
-        Everything that ``outcome.json`` says of a scene (:class:`voidwalk.records.Outcome`); of a network the verdict
-        with confidence, reasons and findings, the summary, every replicate, what was walked with what, and what
-        Eq. (2) asks for (:class:`voidwalk.records.WalkOutcome`).
-    series : dict of ndarray
-        Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
-        retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
-    layers : dict of ndarray
-        Constrictions, blocked ones and retained particles by replicate, run and layer.
-    retained, eroded : dict of ndarray
-        Size curves of the particles that were retained and that were eroded: diameter_mm,
-        percent_finer_by_mass, percent_finer_by_number, by replicate, run and increment.
-    flow : dict of ndarray
-        Conductance of the network over its first one, by replicate, run and increment, where water flows.
-    retained_by_void, blockings : dict of ndarray
-        With ``record.voids``, of the first replicate: what each void retained, and which constriction was blocked in
-        which increment, by run and increment.
-    blocked : ndarray of bool, shape (replicates, runs, constrictions), or None
-        Of a walk on a network: which constrictions were blocked at the end of each run.
-    folder : pathlib.Path or None
-        Folder of the run, where it has one.
-    """
-
-    outcome: Outcome
+    outcome: Union[Outcome, WalkOutcome]
     series: Series
     layers: Layers
     retained: Sizes
@@ -83,18 +58,9 @@ class Result:
     flow: Flow
     retained_by_void: RetainedByVoid
     blockings: Blockings
-    blocked: Optional[NDArray[np.bool_]]
-    folder: Optional[Path]
 
-    def __init__(
-        self,
-        outcome: Outcome,
-        tables: Dict[str, Table],
-        blocked: Optional[NDArray[np.bool_]] = None,
-        folder: Optional[Path] = None,
-        texts: Optional[Tuple[str, str, Optional[str]]] = None,
-    ) -> None:
-        self.outcome, self.blocked, self.folder, self._texts = outcome, blocked, folder, texts
+    def __init__(self, outcome: Union[Outcome, WalkOutcome], tables: Dict[str, Table]) -> None:
+        self.outcome = outcome
         self.series, self.layers = cast(Series, tables["series"]), cast(Layers, tables["layers"])
         self.retained, self.eroded = cast(Sizes, tables["retained"]), cast(Sizes, tables["eroded"])
         self.flow = cast(Flow, tables.get("flow", {}))
@@ -102,34 +68,10 @@ class Result:
         self.blockings = cast(Blockings, tables.get("blockings", {}))
 
     @property
-    def verdict(self) -> str:
-        """Class of erosion, by the mass eroded over the mass inserted: ``"no erosion"`` (less than 7.5 % in the first
-        run), ``"some erosion"`` (more in the first run, less in the second: the filter seals), ``"continuing
-        erosion"`` (more in both), or ``"undecided"``."""
-        return str(self.outcome["verdict"])
-
-    @property
-    def confidence(self) -> str:
-        """How far the verdict can be relied on: ``"within checked range"``, ``"outside checked range"`` or
-        ``"contradicted by practice"``."""
-        return str(self.outcome["confidence"])
-
-    @property
     def findings(self) -> List[Finding]:
-        """What was found about the verdict, what speaks against it first: each a dict of id, about, direction, weight,
-        against (whether it speaks against the verdict), numbers (with the unit in the name) and sentence."""
-        return self.outcome.get("findings", [])
-
-    @property
-    def reasons(self) -> List[str]:
-        """The sentences of the findings that speak against the verdict, the weightiest first."""
-        return [str(reason) for reason in self.outcome["reasons"]]
-
-    @property
-    def warnings(self) -> List[str]:
-        """The sentences of all other findings: what else a reader must know."""
-        earlier = [str(warning) for warning in self.outcome.get("warnings", []) if warning not in self.reasons]
-        return [str(finding["sentence"]) for finding in self.findings if not finding["against"]] + earlier
+        """What a reader must know besides, each a dict of id, about, label, numbers (with the unit in the name),
+        sentence and to_do (which setting changes it)."""
+        return self.outcome["findings"]
 
     @property
     def summary(self) -> List[RunSummary]:
@@ -152,11 +94,11 @@ class Result:
         Returns
         -------
         dict
-            ``verdict``, ``confidence``, ``reason`` (the weightiest), ``replicates``, ``n_base``, ``grains_per_void``,
-            ``d85b_mm``, ``d15f_mm``, ``d15f_over_d85b``, ``voids``, ``thickness_mm``, ``seed``; and for each run,
-            such as the first, ``eroded_1`` (mean of the mass eroded over the mass inserted), ``eroded_1_sd``,
-            ``eroded_1_low`` and ``eroded_1_high`` (95 % interval of the mean), ``blocked_1`` (mean of the share of
-            constrictions that are blocked). ``None`` is what is not known.
+            ``verdict`` (the model's class), ``headline`` (the answer of practice; not of a walk on a given network),
+            ``replicates``, ``n_base``, ``grains_per_void``, ``d85b_mm``, ``d15f_mm``, ``d15f_over_d85b``, ``voids``,
+            ``thickness_mm``, ``seed``; and for each run, such as the first, ``eroded_1`` (mean of the mass eroded over
+            the mass inserted), ``eroded_1_sd``, ``eroded_1_low`` and ``eroded_1_high`` (95 % interval of the mean),
+            ``blocked_1`` (mean of the share of constrictions that are blocked). ``None`` is what is not known.
 
         Examples
         --------
@@ -165,21 +107,24 @@ class Result:
         >>> row["verdict"], row["n_base"], row["d85b_mm"]
         ('continuing erosion', 1000, 0.2)
         """
+        row = self._case()
+        for run in self.summary:
+            name, eroded = f"eroded_{run['run']}", run["eroded_mass_fraction"]
+            row[name] = eroded["mean"]
+            row[f"{name}_sd"], row[f"{name}_low"], row[f"{name}_high"] = eroded["sd"], eroded["low"], eroded["high"]
+            row[f"blocked_{run['run']}"] = run["blocked_fraction"]["mean"]
+        return row
+
+    def _case(self) -> Row:
+        """The facts of a row that are of no run."""
+        raise NotImplementedError
+
+    def _facts(
+        self, d85b: Optional[float], d15f: Optional[float], voids: int, thickness: Optional[float]
+    ) -> Row:
+        """What every row has, behind its class."""
         outcome = self.outcome
-        inputs = outcome.get("inputs")
-        d85b: Optional[float]
-        thickness: Optional[float]
-        if inputs is None:
-            walked = cast(WalkOutcome, outcome)
-            d85b, d15f = walked["base"]["d85_mm"], walked.get("d15f_mm")
-            voids, thickness = walked["network"]["voids"], None
-        else:
-            d85b, d15f = inputs["base"]["d85_mm"], inputs["filter"]["d15_mm"]
-            voids, thickness = inputs["network"]["voids"], inputs["network"].get("thickness_mm")
-        row: Row = {
-            "verdict": self.verdict,
-            "confidence": self.confidence,
-            "reason": next(iter(self.reasons), ""),
+        return {
             "replicates": len(self.replicates),
             "n_base": outcome["n_base"],
             "grains_per_void": outcome["grains_per_void"],
@@ -190,12 +135,6 @@ class Result:
             "thickness_mm": thickness,
             "seed": outcome["seed"],
         }
-        for run in self.summary:
-            name, eroded = f"eroded_{run['run']}", run["eroded_mass_fraction"]
-            row[name] = eroded["mean"]
-            row[f"{name}_sd"], row[f"{name}_low"], row[f"{name}_high"] = eroded["sd"], eroded["low"], eroded["high"]
-            row[f"blocked_{run['run']}"] = run["blocked_fraction"]["mean"]
-        return row
 
     def plot(self, what: Figure = "progress", ax: Optional[Axes] = None) -> Axes:
         """Draws a figure of the walk by matplotlib.
@@ -212,7 +151,7 @@ class Result:
         -------
         matplotlib.axes.Axes
         """
-        return plot_result(self.outcome, (self.series, self.layers, self.retained, self.eroded), what, ax)
+        return plot_result(cast(Outcome, self.outcome), (self.series, self.layers, self.retained, self.eroded), what, ax)
 
     def to_pandas(self, table: TableName = "series") -> "pandas.DataFrame":
         """One of the tables (series, layers, retained, eroded, flow, ...) as a pandas.DataFrame."""
@@ -234,7 +173,7 @@ class Result:
         return found
 
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
-        """Writes the page of the walk: verdict, figures, tables, what the model leaves out.
+        """Writes the page of the walk: its class, figures, tables, what the model leaves out.
 
         Parameters
         ----------
@@ -262,35 +201,153 @@ class Result:
         >>> "What the model leaves out" in page
         True
         """
-        if self.folder is not None:
-            page = Path(_voidwalk.report(os.fspath(self.folder)))
-            return page if path is None else _written(Path(path), page.read_bytes())
         if path is None:
             raise ValueError('path is missing: this result has no folder; report("page.html") writes the page there')
         return _written(Path(path), self._page().encode("utf-8"))
 
     def _page(self) -> str:
         """The page of a walk in memory."""
-        tables = {name: getattr(self, name) for name in _TABLES if getattr(self, name)}
-        said = json.dumps(self.outcome)
+        raise NotImplementedError
+
+    def _tables(self) -> Dict[str, Table]:
+        """Its tables by name."""
+        return {name: getattr(self, name) for name in _TABLES if getattr(self, name)}
+
+    def _runs(self) -> str:
+        """Runs and replicates in a line, and how many findings there are."""
+        means = ((run["run"], 100 * run["eroded_mass_fraction"]["mean"]) for run in self.summary)
+        rows = [f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means]
+        count, found = len(self.replicates), len(self.findings)
+        rows.append(f"{count} {'replicate' if count == 1 else 'replicates'}")
+        if found:
+            rows.append(f"{found} {'finding' if found == 1 else 'findings'}")
+        return "; ".join(rows)
+
+
+class Result(_Walked):
+    """The answer of practice and of the model for a base and a filter, or for a scene.
+
+    Attributes
+    ----------
+    outcome : dict
+        Everything that ``outcome.json`` says (:class:`voidwalk.records.Outcome`).
+    series : dict of ndarray
+        Counts of particles after each recorded increment, by replicate and run: inserted, moving, eroded,
+        retained_in_constrictions, retained_in_voids, trapped, blocked (constrictions), eroded_mass_fraction.
+    layers : dict of ndarray
+        Constrictions, blocked ones and retained particles by replicate, run and layer.
+    retained, eroded : dict of ndarray
+        Size curves of the particles that were retained and that were eroded: diameter_mm,
+        percent_finer_by_mass, percent_finer_by_number, by replicate, run and increment.
+    flow : dict of ndarray
+        Conductance of the network over its first one, by replicate, run and increment, where water flows.
+    retained_by_void, blockings : dict of ndarray
+        With ``record.voids``, of the first replicate: what each void retained, and which constriction was blocked in
+        which increment, by run and increment.
+    folder : pathlib.Path or None
+        Folder of the run, where it has one.
+    """
+
+    outcome: Outcome
+    folder: Optional[Path]
+
+    def __init__(
+        self,
+        outcome: Outcome,
+        tables: Dict[str, Table],
+        folder: Optional[Path] = None,
+        texts: Optional[Tuple[str, str, Optional[str]]] = None,
+    ) -> None:
+        super().__init__(outcome, tables)
+        self.folder, self._texts = folder, texts
+
+    @property
+    def headline(self) -> Optional[str]:
+        """The answer of filter practice, as ``"meets practice"``; ``None`` without two sieve curves in mm."""
+        return self.outcome.get("headline")
+
+    @property
+    def practice(self) -> Optional[Practice]:
+        """What filter practice says of the pair, without the walk: class (``"meets"``, ``"does not meet"`` or ``"not
+        known"``), D15F, its limit, and what tests showed; ``None`` without two sieve curves in mm."""
+        return self.outcome.get("practice")
+
+    @property
+    def model(self) -> Model:
+        """What the walk says, without practice: class, mass eroded (%) of each run from least to most, replicates and
+        network. The class is ``"no erosion"`` (less than 7.5 % of the mass eroded in the first run), ``"some erosion"``
+        (more in the first run, less in the second: the filter seals), ``"continuing erosion"`` (more in both), or
+        ``"undecided"``."""
+        return self.outcome["model"]
+
+    def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
+        if self.folder is None:
+            return super().report(path)
+        page = Path(_voidwalk.report(os.fspath(self.folder)))
+        return page if path is None else _written(Path(path), page.read_bytes())
+
+    report.__doc__ = _Walked.report.__doc__
+
+    def _case(self) -> Row:
+        inputs = self.outcome["inputs"]
+        network = inputs["network"]
+        facts = self._facts(
+            inputs["base"]["d85_mm"], inputs["filter"]["d15_mm"], network["voids"], network["thickness_mm"]
+        )
+        return {"verdict": self.model["class"], "headline": self.headline, **facts}
+
+    def _page(self) -> str:
         if self._texts is None:
-            return _voidwalk.walk_page(said, tables)
-        return _voidwalk.run_page(said, self._texts, tables)
+            raise ValueError("this result has neither a folder nor the texts of its scene, and so no page")
+        return _voidwalk.run_page(json.dumps(self.outcome), self._texts, self._tables())
 
     def __repr__(self) -> str:
-        means = ((run["run"], 100 * run["eroded_mass_fraction"]["mean"]) for run in self.summary)
-        rows = "; ".join(f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means)
-        count = len(self.replicates)
-        said = f"{self.verdict}, {self.confidence}: {rows}; {count} {'replicate' if count == 1 else 'replicates'}"
-        reasons, warnings = self.reasons, self.warnings
-        if reasons:
-            said += f"; {reasons[0]}"
-        more = len(reasons[1:]) + len(warnings)
-        return f"Result({said}{f'; {more} more in reasons and warnings' if more else ''})"
+        practice = "" if self.headline is None else f"practice: {self.headline}; "
+        return f"Result({practice}model: {self.model['class']}; {self._runs()})"
 
     def _repr_html_(self) -> str:
-        brief = _voidwalk.run_brief if self.blocked is None else _voidwalk.walk_brief
-        return brief(json.dumps(self.outcome))
+        return _voidwalk.run_brief(json.dumps(self.outcome))
+
+
+class WalkResult(_Walked):
+    """The results of a walk on given networks.
+
+    Attributes
+    ----------
+    outcome : dict
+        The verdict with its findings, the summary, every replicate, what was walked with what, and what Eq. (2) asks
+        for (:class:`voidwalk.records.WalkOutcome`).
+    series, layers, retained, eroded : dict of ndarray
+        As of a :class:`Result`.
+    blocked : ndarray of bool, shape (replicates, runs, constrictions)
+        Which constrictions were blocked at the end of each run.
+    """
+
+    outcome: WalkOutcome
+    blocked: NDArray[np.bool_]
+
+    def __init__(self, outcome: WalkOutcome, tables: Dict[str, Table], blocked: NDArray[np.bool_]) -> None:
+        super().__init__(outcome, tables)
+        self.blocked = blocked
+
+    @property
+    def verdict(self) -> str:
+        """Class of erosion in the walk, as the class of :attr:`Result.model`."""
+        return self.outcome["verdict"]
+
+    def _case(self) -> Row:
+        walked = self.outcome
+        facts = self._facts(walked["base"]["d85_mm"], walked["d15f_mm"], walked["network"]["voids"], None)
+        return {"verdict": self.verdict, **facts}
+
+    def _page(self) -> str:
+        return _voidwalk.walk_page(json.dumps(self.outcome), self._tables())
+
+    def __repr__(self) -> str:
+        return f"WalkResult({self.verdict}; {self._runs()})"
+
+    def _repr_html_(self) -> str:
+        return _voidwalk.walk_brief(json.dumps(self.outcome))
 
 
 def page_of(folder: Optional[Path]) -> Path:

@@ -18,7 +18,6 @@ def rules(
     dispersive: bool = False,
     joint_mm: Optional[float] = None,
     as_given: bool = False,
-    authority: Optional[str] = None,
 ) -> PairRules:
     """Every rule of filter practice on a base and a filter, as ``voidwalk rules BASE FILTER --json`` prints it.
 
@@ -33,21 +32,17 @@ def rules(
         Width of an open joint beside the base (mm).
     as_given : bool
         Take the two as they are given, though they look exchanged.
-    authority : {"nrcs", "usbr", "usace", "foster-fell", "all"}, optional
-        Whose rules are named besides. ``"rules"`` always has all rules, on which a verdict rests.
 
     Returns
     -------
     dict
         ``"base"`` and ``"filter"`` (their sizes), ``"rules"``, each with ``id``, ``name``, ``value``, ``limit``,
-        ``met`` and ``source``, and ``"warnings"``; see :class:`voidwalk.records.PairRules`. With an authority also
-        ``"by_authority"``: the ``id`` of each of its ``rules``, and in ``said`` its limit of D15F and what it
-        leaves out.
+        ``met`` and ``source``, and ``"warnings"``; see :class:`voidwalk.records.PairRules`.
 
     Raises
     ------
     ValueError
-        The two look exchanged; a file or an authority that is refused.
+        The two look exchanged; a file that is refused.
 
     Examples
     --------
@@ -57,10 +52,9 @@ def rules(
     >>> pair = vw.rules(base, filter)
     >>> [rule["met"] for rule in pair["rules"] if rule["id"] == "sherard-dunnigan"]
     [True]
-    >>> stated = vw.rules(base, filter, authority="nrcs")["by_authority"]
-    >>> stated["said"].split(" (")[0], stated["rules"]
-    ('NRCS: met: D15F 0.616 mm is within 0.984 mm', ['sherard-dunnigan', 'permeability'])
+    >>> [rule["id"] for rule in pair["rules"] if "NRCS" in rule.get("stated_by", [])]
+    ['sherard-dunnigan', 'permeability']
     """
     bases, filters = curves("base", base), curves("filter", filter)
-    found: PairRules = json.loads(_voidwalk.rules(bases, filters, dispersive, joint_mm, as_given, authority))
+    found: PairRules = json.loads(_voidwalk.rules(bases, filters, dispersive, joint_mm, as_given))
     return found

@@ -31,11 +31,12 @@ from .records import (
     ComparedPair,
     Comparison as ComparisonRecord,
     Design as DesignRecord,
+    DesignFinding,
     DesignRow,
     PercolationStudy,
 )
 from ._boxes import box
-from ._result import Result, Row, page_of, read_csv
+from ._result import Result, Row, WalkResult, page_of, read_csv
 from ._scene import Scene, Settings, Stated
 from ._soil import Gradation
 from ._tables import Soil, changes, gradation, told, workplace
@@ -72,8 +73,8 @@ class Comparison:
 
     @property
     def cases(self) -> List[ComparedCase]:
-        """The cases, in the order in which they were named, each a dict: name, verdict, confidence, reasons, and in
-        runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
+        """The cases, in the order in which they were named, each a dict: name, verdict (the model's class),
+        headline (the answer of practice), first_lines, and in runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
         return self.outcome["cases"]
 
     @property
@@ -113,15 +114,16 @@ class Comparison:
         rows = []
         for case in self.cases:
             eroded = " then ".join(f"{100 * run['mean']:.2f} %" for run in case["runs"])
-            rows.append(f"{case['name']}: {case['verdict']}, {eroded} eroded, {case['confidence']}")
+            practice = f"practice {case['headline']}, " if case.get("headline") else ""
+            rows.append(f"{case['name']}: {practice}model {case['verdict']}, {eroded} eroded")
         return f"Comparison({'; '.join(rows)})"
 
     def _repr_html_(self) -> str:
         rows = []
         for case in self.cases:
             first = next((f"{100 * run['mean']:.2f} %" for run in case["runs"]), "")
-            rows.append((case["name"], case["verdict"], case["confidence"], first))
-        return box("Comparison", {}, ("Case", "Verdict", "Confidence", "Mass eroded, run 1"), rows)
+            rows.append((case["name"], case.get("headline") or "", case["verdict"], first))
+        return box("Comparison", {}, ("Case", "Practice", "Model (research)", "Mass eroded, run 1"), rows)
 
 
 class Design:
@@ -157,19 +159,9 @@ class Design:
         return None if answer is None else answer["d15f_max_mm"]
 
     @property
-    def confidence(self) -> str:
-        """How far the answer can be relied on, in the words of :attr:`Result.confidence`."""
-        return self.outcome["confidence"]
-
-    @property
-    def reasons(self) -> List[str]:
-        """The sentences of the findings that speak against the answer, the weightiest first."""
-        return self.outcome["reasons"]
-
-    @property
-    def warnings(self) -> List[str]:
-        """The sentences of all other findings."""
-        return self.outcome["warnings"]
+    def findings(self) -> List[DesignFinding]:
+        """What a reader must know besides, as :attr:`Result.findings`, each with the row that it is of."""
+        return self.outcome["findings"]
 
     @property
     def boundaries(self) -> List[DesignRow]:
@@ -200,14 +192,18 @@ class Design:
         return page_of(self.folder)
 
     def __repr__(self) -> str:
-        return f"Design({self.answer}; {self.confidence})"
+        count = len(self.findings)
+        return f"Design({self.answer}; {count} {'finding' if count == 1 else 'findings'})"
 
     def _repr_html_(self) -> str:
         def ratio(row: DesignRow, name: Literal["no_erosion", "continuing"]) -> str:
             boundary = row[name]
             return "" if boundary is None else f"{boundary['median']:.2f}"
 
-        facts = {"Confidence": self.confidence, **{"Reason": reason for reason in self.reasons[:1]}}
+        facts: Dict[str, str] = {}
+        for finding in self.findings:
+            name = ", ".join(filter(None, [finding["label"], finding.get("row")]))
+            facts[name] = " ".join(filter(None, [facts.get(name), finding["sentence"]]))
         heading = ("Density", "Thickness", "No erosion up to D15F/D85B", "Continuing erosion from D15F/D85B")
         if self.outcome["inverse"]:
             heading = ("Density", "Thickness", "No erosion down to D15F/D85B", "Continuing erosion below D15F/D85B")
@@ -497,7 +493,7 @@ def percolation(
 
 def study(
     cases: Union[Mapping[str, Iterable[object]], Iterable[Mapping[str, object]]],
-    walk: Union[None, Scene, Stated, Callable[..., Result]] = None,
+    walk: Union[None, Scene, Stated, Callable[..., Union[Result, WalkResult]]] = None,
     *,
     progress: bool = False,
 ) -> "pandas.DataFrame":
@@ -509,7 +505,7 @@ def study(
         Values by parameter, every one with every other; or the cases themselves, a dict of parameters each.
     walk : callable, Scene, path-like, mapping or None
         What is walked: a function that is called with the parameters of a case by name and gives a
-        :class:`Result`; or a scene as for :func:`run`, in which the parameters are settings.
+        :class:`Result` or :class:`WalkResult`; or a scene as for :func:`run`, in which the parameters are settings.
     progress : bool
         Shows a bar over the cases where tqdm is installed.
 
@@ -549,7 +545,7 @@ def study(
     rows: List[Dict[str, object]] = []
     for case in walked:
         if callable(walk):
-            result = walk(**case)
+            result: Union[Result, WalkResult] = walk(**case)
         else:
             result = run(walk, settings=case)
         row: Row = result.row()

@@ -14,7 +14,7 @@ from . import _voidwalk
 from ._arrays import threads_or_none, whole
 from ._network import Network
 from ._progress import Follower, Following
-from ._result import CampaignResult, Result, read_run
+from ._result import CampaignResult, Result, WalkResult, read_run
 from ._scene import Scene, Settings, Stated, as_json, native_scene
 from ._soil import Gradation
 from ._tables import Soil, gradation
@@ -53,7 +53,7 @@ def walk(
     size_classes: int = 64,
     threads: Optional[int] = None,
     progress: Follower = None,
-) -> Result:
+) -> WalkResult:
     """Walks base particles through a network, as a scene does through one that it names, to the same bits.
 
     Parameters
@@ -101,7 +101,7 @@ def walk(
 
     Returns
     -------
-    Result
+    WalkResult
 
     Raises
     ------
@@ -120,8 +120,8 @@ def walk(
     >>> result = vw.walk(vw.Network.cubic([10, 10, 20]), base, n_base=20_000, replicates=3)
     >>> result.verdict, len(result.summary), result.blocked.shape
     ('continuing erosion', 2, (3, 2, 6000))
-    >>> result.confidence, result.outcome["n_base"], result.outcome["n_base_eq2"]
-    ('outside checked range', 20000, 61979)
+    >>> result.outcome["n_base"], result.outcome["n_base_eq2"]
+    (20000, 61979)
 
     A lattice with a shipped curve knows its filter, and so how many particles Eq. (2) asks for:
 
@@ -178,7 +178,7 @@ def walk(
             threads_or_none(threads),
             callback,
         )
-    return Result(json.loads(said), tables, blocked=blocked)
+    return WalkResult(json.loads(said), tables, blocked)
 
 
 def manner(
@@ -233,7 +233,7 @@ def run(
     Returns
     -------
     Result
-        With ``verdict``, ``summary`` and ``outcome``, and the columns of the CSV files.
+        With ``headline``, ``practice``, ``model``, ``summary`` and ``outcome``, and the columns of the CSV files.
 
     Raises
     ------
@@ -250,7 +250,7 @@ def run(
     >>> import voidwalk as vw
     >>> small = {"network": {"nx": 8, "ny": 8, "nz": 12}, "record": {"sensitivity": []}, "replicates": 2}
     >>> filter, base = {"curve": "shire2016-cu1.5-loose"}, {"cu": 1.5, "d85_at_dc": 5}
-    >>> vw.run({**small, "filter": filter, "base": base}).verdict
+    >>> vw.run({**small, "filter": filter, "base": base}).model["class"]
     'continuing erosion'
     """
     native = native_scene(scene, settings)

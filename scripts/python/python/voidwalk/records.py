@@ -31,7 +31,6 @@ __all__ = [
     "DesignAnswer",
     "DesignFinding",
     "DesignRow",
-    "Evidence",
     "FilterRecord",
     "FilterSizes",
     "Finding",
@@ -42,12 +41,10 @@ __all__ = [
     "InfiltrationSize",
     "InputFile",
     "Inputs",
-    "LimitOfDesign",
     "Manifest",
     "ManyStarts",
-    "Margin",
-    "MarginWalk",
     "Measure",
+    "Model",
     "NetworkBoundaries",
     "NetworkRecord",
     "NetworkSummary",
@@ -57,8 +54,6 @@ __all__ = [
     "PackedPart",
     "PackingRecord",
     "PairRules",
-    "PanBounds",
-    "PanReading",
     "PercolationStudy",
     "Practice",
     "ProductMargin",
@@ -79,7 +74,6 @@ __all__ = [
     "Specification",
     "SpecificationStep",
     "SpecifiedCurve",
-    "StatedByAuthority",
     "Statistic",
     "StepValue",
     "Stopping",
@@ -88,33 +82,72 @@ __all__ = [
 ]
 
 
+_Practice = TypedDict(
+    "_Practice",
+    {
+        "class": Literal["meets", "does not meet", "not known"],
+        "d15f_mm": Optional[List[float]],
+        "limit_mm": Optional[float],
+        "tests": Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"],
+        "range_of_tests_mm": Optional[List[float]],
+    },
+)
+
+
+class Practice(_Practice, total=False):
+    """What filter practice says of a pair, for programs.
+
+    Keys
+    ----
+    class
+        All of it, as the headline has it.
+    d15f_mm
+        D15F (mm), twice; of one that lies between two sieves that stand far apart their openings. `None` where
+        it lies in the filter's finest part.
+    limit_mm
+        The limit of design (mm): the most that D15F may be; `None` where that is not known.
+    limit_at_most
+        Whether the true limit is not known, and is at most `limit_mm`.
+    tests
+        Class of such pairs in tests, by the boundaries of Foster and Fell.
+    range_of_tests_mm
+        D15F (mm) between which tests of bases with such fines began to erode (Fell et al., Table 9.2); `None`
+        of a dispersive base, which had other tests, and where fines or D85B are not known.
+    """
+
+    limit_at_most: bool
+
+
+#: What the walks say together.
+Model = TypedDict(
+    "Model",
+    {
+        "class": Literal["no erosion", "some erosion", "continuing erosion", "undecided"],
+        "eroded_percent": List[List[float]],
+        "replicates": int,
+        "network": Literal["cubic", "connected", "file", "graph"],
+    },
+)
+
+
 class _Finding(TypedDict):
     id: str
     about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
     label: str
-    direction: Literal["safe", "unsafe", "open", "settled"]
-    weight: Literal["decides", "limits", "note"]
-    against: bool
     sentence: str
 
 
 class Finding(_Finding, total=False):
-    """A finding about a verdict: what it is about, which way it points, and its sentence.
+    """A finding: what it is about, and its sentence.
 
     Keys
     ----
     id
-        Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
+        Its name for programs, as `cohesive_fines`.
     about
         What it is about.
     label
         Its name in a word or two.
-    direction
-        Which way the walk errs for it.
-    weight
-        What it can do to the verdict.
-    against
-        Whether it speaks against the verdict beside which it stands.
     numbers
         Its numbers by name, with the unit in the name.
     sentence
@@ -125,44 +158,6 @@ class Finding(_Finding, total=False):
 
     numbers: Dict[str, object]
     to_do: str
-
-
-class _LimitOfDesign(TypedDict):
-    rule: str
-    limit_mm: Optional[float]
-    value_mm: Optional[float]
-    met: Optional[bool]
-
-
-class LimitOfDesign(_LimitOfDesign, total=False):
-    """A limit of D15F, and whether the filter keeps it.
-
-    Keys
-    ----
-    rule
-        The name of its rule for programs.
-    limit_mm
-        The most that D15F may be; `None` where that is not known.
-    limit_at_most
-        Whether the true limit is not known, and is at most `limit_mm`.
-    value_mm
-        D15F.
-    met
-        Whether the filter keeps it; `None` where that is not known.
-    """
-
-    limit_at_most: bool
-
-
-#: What filter practice says of a pair, for programs.
-Practice = TypedDict(
-    "Practice",
-    {
-        "class": Literal["meets", "does not meet", "not known"],
-        "design": LimitOfDesign,
-        "foster_fell": Literal["no erosion", "some erosion", "excessive erosion", "continuing erosion", "unknown"],
-    },
-)
 
 
 class _IfDispersive(TypedDict):
@@ -179,7 +174,7 @@ class IfDispersive(_IfDispersive, total=False):
     at_most
         Whether the true limit is not known, and is at most that.
     lacks
-        Why it is not known; `None` where it is, and in files of earlier versions.
+        Why it is not known; `None` where it is.
     """
 
     at_most: bool
@@ -431,71 +426,11 @@ class Stopping(_Stopping, total=False):
         The verdict at that confidence level, where one was asked for.
     half_width_pp
         Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
-    sentence
-        Why it is not reached, in folders of earlier versions.
     short_of
         Why it is not reached.
     """
 
-    sentence: Optional[str]
     short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
-
-
-class _PanReading(TypedDict):
-    taken_as: Literal["continued", "passive", "finest sieve"]
-    n_base: int
-    replicates: int
-    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    runs: List[Statistic]
-
-
-class PanReading(_PanReading, total=False):
-    """One reading of a pan fraction, walked.
-
-    Keys
-    ----
-    taken_as
-        Of what size its particles were walked.
-    n_base
-        Base particles inserted in each run; all readings insert the same mass, where no cap bites.
-    replicates
-        How many replicates were walked.
-    stopped_when_clear
-        Whether it was clear before all replicates of a study were walked: its intervals then take twice the
-        scatter of the scene's own replicates, or its own where that is wider (`crate::outcome::early_stop`).
-    verdict
-        Their class.
-    runs
-        Eroded mass fraction, one per run.
-    stopping
-        Why there are so many replicates, where a rule added them.
-    """
-
-    stopped_when_clear: bool
-    stopping: Optional[Stopping]
-
-
-class PanBounds(TypedDict):
-    """The readings of a pan fraction that need not be passive: its sizes are not known, but they lie between two
-    bounds, and go on in a likely way.
-
-    Keys
-    ----
-    mass_fraction
-        Share of the base's mass that is finer than its finest sieve.
-    finest_sieve_mm
-        The finest sieve.
-    finest_constriction_mm
-        The finest constriction: what is finer is passive.
-    readings
-        The readings; the rest of `outcome.json` is of the first, its verdict of all. Folders of earlier
-        versions have the bounds alone.
-    """
-
-    mass_fraction: float
-    finest_sieve_mm: float
-    finest_constriction_mm: float
-    readings: List[PanReading]
 
 
 class FilterRecord(TypedDict):
@@ -789,7 +724,9 @@ class AppliedRule(_AppliedRule, total=False):
     name
         Whose rule it is, and what it says.
     authority
-        Whose rule it is; empty where nobody is cited, and in files of earlier versions.
+        Whose rule it is; empty where nobody is cited.
+    stated_by
+        Authorities whose texts state it besides; may be empty.
     role
         What it is a rule of.
     applies
@@ -825,7 +762,7 @@ class AppliedRule(_AppliedRule, total=False):
         Where the rule is published.
     without_finer
         What is left of the filter without the greatest part that it may lose by a rule of internal stability;
-        `None` of other rules, and in files of earlier versions.
+        `None` of other rules.
     speaks_against
         Which verdicts it speaks against where it is not kept.
     filter_curve
@@ -835,6 +772,7 @@ class AppliedRule(_AppliedRule, total=False):
     """
 
     authority: str
+    stated_by: List[str]
     value_bound: Optional[Literal["at most", "at least"]]
     limit_at_most: bool
     without_finer: Optional[WithoutFiner]
@@ -949,89 +887,6 @@ class CurveRange(_CurveRange, total=False):
 
     worst_counts: bool
     could_be: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
-
-
-class MarginWalk(TypedDict):
-    """One size of the filter.
-
-    Keys
-    ----
-    factor
-        Times as large as the filter itself.
-    eroded_mass_fraction
-        Eroded part of the base's mass.
-    holds
-        Whether that is less than the threshold.
-    """
-
-    factor: float
-    eroded_mass_fraction: float
-    holds: bool
-
-
-class Margin(TypedDict):
-    """How much coarser the filter could be before the base begins to erode: its first replicate's first run, walked
-    with the filter larger or smaller.
-
-    Keys
-    ----
-    walks
-        What was walked, by rising size.
-    """
-
-    walks: List[MarginWalk]
-
-
-class _Evidence(TypedDict):
-    group: str
-    soils: int
-    soils_without_boundary: int
-    ratio_median: float
-    ratio_low: float
-    ratio_high: float
-    narrow: bool
-    boundary_d15f_mm: Optional[float]
-    probability_no_erosion: Optional[float]
-    probability_by_tests: Optional[float]
-
-
-class Evidence(_Evidence, total=False):
-    """The evidence for a pair.
-
-    Keys
-    ----
-    group
-        Group of soils by fines after regrading and by D85B/D50B, and of filters by Cu.
-    soils
-        Soils that the ratio rests on: those of which the walk has a boundary.
-    soils_without_boundary
-        Soils of the group of which the walk erodes in every filter; they have no ratio.
-    ratio_median
-        Median over these soils of the walk's D15F of no erosion by the centre of the range of tests.
-    ratio_low
-        The ratio below which 5 % of the soils lie.
-    ratio_high
-        The ratio below which 95 % of the soils lie.
-    narrow
-        Whether there are at least 30 soils, nine in ten lie within a factor of 2 of the median, that is at most
-        1, 95 % do not lie beyond the range of tests, and all this holds with any tenth of the soils left out.
-    range_of_tests_mm
-        The range in which tests of soils with such fines had their boundary, as D15F (mm).
-    boundary_d15f_mm
-        D15F from which the walk erodes this base (mm); beyond it or below it where `bound` says so; `None`
-        where the group is not narrow, and it was not looked for.
-    probability_no_erosion
-        The probability that a test of this pair would show no erosion, by the walk; `None` where the group is
-        not narrow.
-    probability_by_tests
-        The same by the range of tests alone: the part of it that lies beyond the filter's D15F, taken as
-        uniform in its logarithm.
-    bound
-        Where the walk's boundary was not found: on which side of its number, and of the probability, it lies.
-    """
-
-    range_of_tests_mm: Optional[List[float]]
-    bound: Optional[Literal["at_least", "at_most"]]
 
 
 class ArchingByVoidRecord(TypedDict):
@@ -1158,11 +1013,9 @@ class OfThickness(_OfThickness, total=False):
 class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
-    headline: str
-    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
+    model: Model
     findings: List[Finding]
-    reasons: List[str]
+    constrictions: ConstrictionsRecord
     seed: int
     n_base: int
     n_base_eq2: Optional[int]
@@ -1178,6 +1031,7 @@ class _Outcome(TypedDict):
     ratios: Ratios
     rules: List[AppliedRule]
     sensitivity: List[Sensitivity]
+    digest: str
     seconds: float
 
 
@@ -1191,25 +1045,18 @@ class Outcome(_Outcome, total=False):
     voidwalk
         Version of the program that wrote it.
     headline
-        Whether the filter holds, in the line with which every face begins; empty in folders of earlier
-        versions.
-    verdict
-        The class that the replicates together support: that of the walk alone.
-    confidence
-        How far it can be relied on; folders of earlier versions do not say, and are outside.
-    findings
-        What was found about the verdict: what speaks against it first, of which the first sets the label.
-    reasons
-        The sentences of those that speak against it, in the same order.
-    notes
-        What folders of earlier versions say besides; now in `findings`.
+        The answer of filter practice; `None` without two sieve curves in mm.
     practice
-        What filter practice says of the pair; folders of earlier versions have it in `rules` alone.
+        What filter practice says of the pair, without the walk; `None` likewise.
+    model
+        What the walk says, without practice.
+    findings
+        What a reader must know besides, in the order of every face.
     if_dispersive
         What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
         it has few fines.
     constrictions
-        Where the constrictions come from; folders of earlier versions do not say.
+        Where the constrictions come from.
     seed
         The user's seed.
     n_base
@@ -1229,12 +1076,8 @@ class Outcome(_Outcome, total=False):
         One per run, in order: statistics over the replicates.
     stopping
         Why there are so many replicates, where a rule added them.
-    pan_bounds
-        Both readings of a pan fraction that need not be passive.
     threshold
         Eroded mass fraction that divides the classes: 0.075.
-    warnings
-        What folders of earlier versions say of their inputs; now in `findings`.
     left_out
         Parts of the program that this scene did not need.
     model_leaves_out
@@ -1252,12 +1095,6 @@ class Outcome(_Outcome, total=False):
     curve_range
         What comes of the other constriction curves that the filter may have; `None` where its curve was given,
         or measured on the whole filter.
-    margin
-        How much coarser the filter could be before the base begins to erode; `None` where that was not asked
-        for.
-    evidence
-        What soils of its kind say of the walk's boundary; `None` where no margin was asked for, or for a base
-        of no group.
     arching
         The law by which particles arched; `None` where they did not.
     sensitivity
@@ -1267,22 +1104,21 @@ class Outcome(_Outcome, total=False):
         for.
     studies_to_come
         Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
+    digest
+        Digest of its numbers, equal wherever a scene and seed give the same numbers: XXH3 with 128 bits, in
+        hexadecimal, of every number, `true`, `false` and `null` with its place. Left out are text, `seconds`
+        and `studies_to_come`.
     seconds
         Wall time of everything, s; in a campaign beside other cases on the same threads.
     """
 
-    notes: List[str]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
     practice: Optional[Practice]
     if_dispersive: Optional[IfDispersive]
-    constrictions: Optional[ConstrictionsRecord]
     stopping: Optional[Stopping]
-    pan_bounds: Optional[PanBounds]
-    warnings: List[str]
     network: Optional[NetworkSummary]
     infiltration: Optional[Infiltration]
     curve_range: Optional[CurveRange]
-    margin: Optional[Margin]
-    evidence: Optional[Evidence]
     arching: Optional[ArchingRecord]
     thickness: List[OfThickness]
     studies_to_come: bool
@@ -1315,44 +1151,15 @@ class GivenNetwork(TypedDict):
     diameters: List[List[float]]
 
 
-class _WalkOutcome(TypedDict):
-    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
-    findings: List[Finding]
-    reasons: List[str]
-    seed: int
-    n_base: int
-    n_base_eq2: Optional[int]
-    grains_per_void: Optional[float]
-    mass_ratio: float
-    increments: int
-    engine: str
-    replicates: List[Replicate]
-    summary: List[RunSummary]
-    threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
-    base: BaseRecord
-    d15f_mm: Optional[float]
-    network: GivenNetwork
-    version: str
-
-
-class WalkOutcome(_WalkOutcome, total=False):
+class WalkOutcome(TypedDict):
     """The results of `crate::run::walk_networks`; the names are those of `outcome.json` where both have them.
 
     Keys
     ----
     verdict
         The class that the replicates together support.
-    confidence
-        How far the verdict can be relied on.
     findings
-        What was found about the verdict: what speaks against it first, of which the first sets the label.
-    reasons
-        The sentences of those that speak against it, in the same order.
-    warnings
-        What records of earlier versions say besides; now in `findings`.
+        What a reader must know besides, in the order of every face.
     seed
         The user's seed.
     n_base
@@ -1387,7 +1194,24 @@ class WalkOutcome(_WalkOutcome, total=False):
         Version of the program.
     """
 
-    warnings: List[str]
+    verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
+    findings: List[Finding]
+    seed: int
+    n_base: int
+    n_base_eq2: Optional[int]
+    grains_per_void: Optional[float]
+    mass_ratio: float
+    increments: int
+    engine: str
+    replicates: List[Replicate]
+    summary: List[RunSummary]
+    threshold: float
+    left_out: List[str]
+    model_leaves_out: List[str]
+    base: BaseRecord
+    d15f_mm: Optional[float]
+    network: GivenNetwork
+    version: str
 
 
 class _DesignAnswer(TypedDict):
@@ -1395,6 +1219,7 @@ class _DesignAnswer(TypedDict):
     d15f_over_d85b: Optional[float]
     set_by: Literal["practice", "walk"]
     rule: Optional[str]
+    limit: str
     said: str
 
 
@@ -1415,8 +1240,7 @@ class DesignAnswer(_DesignAnswer, total=False):
     rule
         Name of the rule for programs, where practice set it.
     limit
-        The limit, and what sets it: a sentence without its full stop, as each of the next three. Empty in files
-        of earlier versions, whose text is all in `said`.
+        The limit, and what sets it: a sentence without its full stop, as each of the next three.
     washout
         That the filter as given is not internally stable, and too coarse without the finer part that it may
         lose.
@@ -1431,7 +1255,6 @@ class DesignAnswer(_DesignAnswer, total=False):
     """
 
     d85b_min_mm: Optional[float]
-    limit: str
     washout: Optional[str]
     margin: Optional[str]
     walk: Optional[str]
@@ -1508,6 +1331,7 @@ class NetworkBoundaries(TypedDict):
 class _Band(TypedDict):
     least: float
     greatest: float
+    set_by: Literal["practice", "walk"]
     practice: Optional[float]
     practice_rule: str
     unit: str
@@ -1526,15 +1350,15 @@ class Band(_Band, total=False):
         Whether the true least is not known, and is at most that.
     greatest
         Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
-        networks, and practice. Files of earlier versions hold that of the walk alone.
+        networks, and practice.
     set_by
-        Which of the two set it; `None` in files of earlier versions.
+        Which of the two set it.
     practice
         Maximum D15F that the strictest rule of retention allows, which was made for this base.
     practice_rule
         Name of that rule.
     practice_rule_id
-        Its name for programs; `None` without one, and in files of earlier versions.
+        Its name for programs; `None` without one.
     unit
         Unit: `mm`, or `D85B`.
     is_empty
@@ -1544,7 +1368,6 @@ class Band(_Band, total=False):
     """
 
     least_at_most: bool
-    set_by: Optional[Literal["practice", "walk"]]
     practice_rule_id: Optional[str]
 
 
@@ -1647,8 +1470,7 @@ class BaseStated(_BaseStated, total=False):
     d85_as_sampled_mm
         D85 (mm) before regrading, where it was regraded.
     gradation
-        Size (mm) and percent finer by mass, as sampled; empty without a size of its own, and in files of
-        earlier versions.
+        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
     regraded
         The same as it was walked after regrading; empty where it was walked as sampled.
     """
@@ -1678,9 +1500,6 @@ class _DesignFinding(TypedDict):
     id: str
     about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
     label: str
-    direction: Literal["safe", "unsafe", "open", "settled"]
-    weight: Literal["decides", "limits", "note"]
-    against: bool
     sentence: str
 
 
@@ -1692,17 +1511,11 @@ class DesignFinding(_DesignFinding, total=False):
     row
         The row or the curve that it is of, in words; `None` where it is of all.
     id
-        Its name for programs, as `cohesive_fines`; empty of folders of earlier versions.
+        Its name for programs, as `cohesive_fines`.
     about
         What it is about.
     label
         Its name in a word or two.
-    direction
-        Which way the walk errs for it.
-    weight
-        What it can do to the verdict.
-    against
-        Whether it speaks against the verdict beside which it stands.
     numbers
         Its numbers by name, with the unit in the name.
     sentence
@@ -1822,7 +1635,7 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
         The rule that sets it.
     without_margin
         Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
-        it. `false` in files of earlier versions.
+        it.
     d15f_min_mm
         Minimum D15F (mm) that drains it.
     """
@@ -1988,7 +1801,7 @@ class Specification(_Specification, total=False):
     version
         Version of voidwalk.
     commit
-        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+        The commit that it was built from; `None` where that is not known.
     base
         Name of the base.
     dispersive
@@ -1996,17 +1809,16 @@ class Specification(_Specification, total=False):
     sieves
         The sieves at which the limits are stated.
     cover
-        What its sheet says of itself; nothing as a part of a design, and in files of earlier versions.
+        What its sheet says of itself; nothing as a part of a design.
     inches
         Whether inches stand beside mm on its page.
     inputs
-        Every file that was read; empty as a part of a design, which has them itself, and in files of earlier
-        versions.
+        Every file that was read; empty as a part of a design, which has them itself.
     curves
         The curves of the base, in the order of the file.
     findings
         What a reader must know of the base itself, each of its curve where there are several, and of a side of
-        the band that is not stable; empty in files of earlier versions.
+        the band that is not stable.
     steps
         Every step, with its numbers.
     d15f_min_mm
@@ -2045,6 +1857,7 @@ class _Design(TypedDict):
     format: Literal["voidwalk-design/1"]
     voidwalk: str
     version: str
+    answer: Optional[DesignAnswer]
     boundaries: List[DesignRow]
     inverse: bool
     base: BaseStated
@@ -2058,12 +1871,9 @@ class _Design(TypedDict):
     engine: str
     bracket: List[float]
     step: float
-    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
-    reasons: List[str]
     rules: List[AppliedRule]
     rules_at: float
     products: List[Fit]
-    warnings: List[str]
     model_leaves_out: List[str]
     settings: List[str]
     seconds: float
@@ -2081,10 +1891,9 @@ class Design(_Design, total=False):
     version
         Version of voidwalk.
     commit
-        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+        The commit that it was built from; `None` where that is not known.
     answer
-        How coarse the filter may be: the least of what walk and practice allow; `None` in files of earlier
-        versions, of which `Design::answer()` works it out.
+        How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked out.
     boundaries
         One per density and thickness, in the order in which they were asked for.
     inverse
@@ -2099,9 +1908,9 @@ class Design(_Design, total=False):
         The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
     filter_gradation
         Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
-        where its sizes are not given, and in files of earlier versions.
+        where its sizes are not given.
     inputs
-        Every file that was read; empty in files of earlier versions.
+        Every file that was read.
     unit
         Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
         own.
@@ -2113,38 +1922,27 @@ class Design(_Design, total=False):
         The user's seed.
     engine
         Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
-        Empty in files of earlier versions.
     bracket
         D15F/D85B between which boundaries were searched.
     step
         Steps of the search, as a part of D15F/D85B.
-    confidence
-        How far "no erosion" at the coarsest filter that holds can be relied on, of the row that can be relied
-        on least; never within the checked range where a row has no such filter, or an empty band.
     findings
-        What was found about "no erosion" there, the weightiest first; empty in files of earlier versions.
-    reasons
-        The sentences of those that speak against it, in order.
+        What a reader must know besides, the weightiest first.
     rules
         Every rule of practice, of the coarsest filter that holds; of another where none is known.
     rules_at
         D15F/D85B that the rules are read at.
     products
         Standard products beside the narrowest band.
-    products_confidence
-        How far it can be relied on that a product fits: as `confidence`, but at the maximum D15F that walk and
-        practice both allow; `None` without products.
-    warnings
-        The sentences of all others.
     specification
         The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-        mm, and in files of earlier versions.
+        mm.
     model_leaves_out
         What the model does not contain.
     settings
         Settings that were given, as on the command line.
     cover
-        What the sheet says of itself; without a day in files of earlier versions.
+        What the sheet says of itself.
     inches
         Whether inches stand beside mm on its page.
     seconds
@@ -2152,11 +1950,9 @@ class Design(_Design, total=False):
     """
 
     commit: Optional[str]
-    answer: Optional[DesignAnswer]
     filter_gradation: List[List[float]]
     inputs: List[InputFile]
     findings: List[DesignFinding]
-    products_confidence: Optional[Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]]
     specification: Optional[Specification]
     cover: SheetCover
     inches: bool
@@ -2176,7 +1972,7 @@ class BaseSize(_BaseSize, total=False):
     regraded_at_mm
         The size that it was regraded on; `None` where it is as it was sampled.
     as_sampled_mm
-        D85 before regrading, where it was regraded; `None` where records of earlier versions do not say it.
+        D85 before regrading, where it was regraded and a sieve tells it.
     """
 
     regraded_at_mm: Optional[float]
@@ -2187,8 +1983,6 @@ class _ComparedCase(TypedDict):
     name: str
     folder: str
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    confidence: Literal["within checked range", "may segregate", "outside checked range", "may not drain", "may lose its own fines", "contradicted by practice"]
-    reasons: List[str]
     rules_not_kept: List[str]
     replicates: int
     thickness_mm: Optional[float]
@@ -2210,31 +2004,16 @@ class ComparedCase(_ComparedCase, total=False):
         Folder of its results, inside the comparison's.
     verdict
         The class that its replicates together support.
-    confidence
-        How far it can be relied on.
-    reasons
-        Why no further: sentences, the weightiest first.
     rules_not_kept
         The rules of practice that were made for these soils and are not kept, by name.
-    practice
-        What filter practice says of the pair, in a line; records of earlier versions do not say.
-    standing
-        Where the filter stands by practice; records of earlier versions do not say.
     by_practice
-        The class as which practice counts; records of earlier versions do not say.
+        The class as which practice counts.
     headline
-        Whether the filter holds, in a line; records of earlier versions do not say.
-    walk
-        What the walk says, in a line.
-    next
-        What to do next.
-    by_authority
-        What an authority's rules say of the pair and leave out, where one is named; empty for all.
+        The answer of practice; `None` without two sieve curves in mm.
+    first_lines
+        The lines of practice and model, each with its name.
     found
-        What was found about the verdict, the weightiest first, without the names of settings. Records of
-        earlier versions do not say.
-    beside
-        What else stands beside every verdict, in sentences.
+        What a reader must know besides, the weightiest first.
     replicates
         Replicates.
     thickness_mm
@@ -2248,7 +2027,7 @@ class ComparedCase(_ComparedCase, total=False):
     ratios
         D15F over D85B and D95B.
     base
-        D85B and which base it is of; `None` without a unit, and in records of earlier versions.
+        D85B and which base it is of; `None` without a unit.
     runs
         Eroded mass fraction of each run.
     curve_range
@@ -2256,15 +2035,10 @@ class ComparedCase(_ComparedCase, total=False):
         is no range.
     """
 
-    practice: str
-    standing: Optional[Literal["fails", "no_margin", "unstable", "unknown", "met", "no_rules"]]
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
-    headline: str
-    walk: str
-    next: str
-    by_authority: str
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    first_lines: List[List[object]]
     found: List[str]
-    beside: List[str]
     base: Optional[BaseSize]
     curve_range: List[List[float]]
 
@@ -2331,7 +2105,7 @@ class Comparison(_Comparison, total=False):
     version
         Version of the program.
     commit
-        The commit that it was built from; `None` where that is not known, and in files of earlier versions.
+        The commit that it was built from; `None` where that is not known.
     cases
         The cases, in the order in which they were named.
     pairs
@@ -2339,11 +2113,11 @@ class Comparison(_Comparison, total=False):
     threshold
         Eroded mass fraction that divides the classes: 0.075.
     cover
-        What the sheet says of itself; without a day in files of earlier versions.
+        What the sheet says of itself.
     inches
         Whether inches stand beside mm on page and terminal.
     model_leaves_out
-        What no case contains; records of earlier versions do not say.
+        What no case contains.
     """
 
     commit: Optional[str]
@@ -2578,25 +2352,6 @@ class BaseSizes(_BaseSizes, total=False):
     curves: List[str]
 
 
-class StatedByAuthority(TypedDict):
-    """The rules of one authority on two soils.
-
-    Keys
-    ----
-    authority
-        Its word: nrcs, usbr, usace or foster-fell.
-    rules
-        The `id` of every rule that it states, in the order of `rules`.
-    said
-        Its limit of D15F, and what is left out: stricter limits, rules that are not met, rules without a
-        result.
-    """
-
-    authority: str
-    rules: List[str]
-    said: str
-
-
 class _PairRules(TypedDict):
     format: Literal["voidwalk-rules/1"]
     voidwalk: str
@@ -2631,12 +2386,9 @@ class PairRules(_PairRules, total=False):
         The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     warnings
         What may be wrong with the two tables, and what was taken for what.
-    by_authority
-        What one authority states of them, where one is asked for; `rules` has all of them all the same.
     """
 
     if_dispersive: Optional[IfDispersive]
-    by_authority: Optional[StatedByAuthority]
 
 
 #: What was understood of a soil, and what follows from its curve.

@@ -349,9 +349,6 @@ class RecordSettings(TypedDict, total=False):
     thickness
         Multiples of the filter's thickness that are walked too, to show how the verdict changes; [] skips this
         study. Default: half and twice, if `sensitivity` is walked.
-    margin
-        Walk how much coarser the filter could be before the base begins to erode, on the first replicate's
-        network. Default: only where base and filter are sieve tables of `voidwalk judge` and its like.
     sensitivity_replicates
         Most replicates of each point of both studies; a clear point stops after one or two.
     """
@@ -362,7 +359,6 @@ class RecordSettings(TypedDict, total=False):
     voids: List[int]
     sensitivity: List[float]
     thickness: List[float]
-    margin: bool
     sensitivity_replicates: int
 
 
@@ -389,9 +385,6 @@ class AboutSettings(TypedDict, total=False):
         The date on the sheet; that of the run otherwise.
     coarse_left
         Coarse sizes on the left of the figure of the gradations, as in the United States.
-    authority
-        Whose rules the first sheet lists: "all", or those of one authority, with what it leaves out. The
-        verdict rests on all of them.
     units
         "us": sizes on the first sheet in inches too, and the names of US sieves in the appendix. Files stay in
         mm.
@@ -406,7 +399,6 @@ class AboutSettings(TypedDict, total=False):
     revision: str
     date: str
     coarse_left: bool
-    authority: str
     units: str
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What the boundaries of real soils are worth as evidence: `src/data/evidence.csv`, its check, the figures.
+"""The tables and the figure of `real-soils.md`: the walk's boundaries of real soils beside the range of tests.
 
-    scripts/studies/real_soils_evidence.py [--results results] [--write]
+    scripts/studies/real_soils_tables.py [--results results] [--write]
 
 Reads `real-soils.csv` and `real-soils-bases.csv`, prints most tables of `real-soils.md` (the page says which it does
-not), and with --write makes `src/data/evidence.csv` and `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
+not), and with --write draws `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
 """
 
 import argparse
@@ -23,8 +23,8 @@ CLASSES = {"1": (85, 100), "2 55-85": (55, 85), "2 35-55": (35, 55), "3": (15, 3
 # D85B / D50B after regrading up to which a base is steep: its coarse half then holds the rest back.
 STEEP = 4.0
 GROUPS = [f"{name} {kind}" for name in CLASSES for kind in ("steep", "broad")]
-# Filters of the study, and the Cu of filters that each stands for.
-FILTERS = {"cu1.5": (1, 2), "cu3": (2, 4), "c33": (4, 8), "cu12": (8, 30)}
+# Filters of the study.
+FILTERS = ("cu1.5", "cu3", "c33", "cu12")
 USUAL = ("cu1.5", "loose", "no_erosion_mm")
 # What it takes for a group's ratio to count as known, besides a median of at most 1 and 95 % of the soils below the
 # upper end of the tests' range: soils, the factor from the median to 5 and 95 %, and the most without a boundary.
@@ -149,13 +149,6 @@ def is_checked(data, name, group):
     return whole and all(without)
 
 
-def times_four(data, group):
-    """Median of the uniform loose filter's boundary with four times the base by that with the usual one."""
-    more, usual = data.of(*USUAL, "4 x base"), data.of()
-    here = (data.group == group) & (usual > 0) & (more > 0) & np.isfinite(more) & np.isfinite(usual) & ~data.is_open()
-    return np.median(more[here] / usual[here]) if here.sum() >= 5 else np.nan
-
-
 def flags(data):
     """Of which groups the ratio counts as known, and of how many tenths left out that stays so."""
     rows = []
@@ -167,29 +160,10 @@ def flags(data):
     table(["filter", "group", "narrow with a tenth left out", "checked"], rows)
 
 
-def evidence(data, path):
-    """The table that the program reads."""
-    shares = [f"q{round(100 * share):02d}" for share in QUANTILES]
-    lines = [
-        "# The walk's D15F of no erosion by that of tests, for real soils: by scripts/studies/real_soils_evidence.py.",
-        "# Sieve curves: AGS4 files of ground investigations in the United Kingdom, test data of the British",
-        "# Geological Survey's pyagsapi, Open Government Licence v3.0. Contains public sector information.",
-        "# Walk: D15F at which the first run erodes 7.5 % of the base as practice regrades it; 20 x 20 x 60 voids, one",
-        "# network; of the uniform filter the geometric mean of loose and dense, of the others loose.",
-        "# Tests: the centre (geometric mean) of the range in which no-erosion tests had their boundary, for soils of",
-        "# these fines and D85B (Fell et al., Geotechnical Engineering of Dams, Table 9.2). No test of these soils.",
-        "# steep: D85B / D50B of the regraded base is at most 4; broad: more, or D50B is finer than the finest size.",
-        "# soils: with a boundary that no open tail decides. no_boundary: soils among them of which the walk erodes",
-        "# 7.5 % in every filter; they are not in the quantiles. checked: 30 soils or more, 5 % and 95 % within a",
-        "# factor of 2 of the median, the median at most 1, 95 % at most the upper end of the tests' range, no boundary",
-        "# for at most 5 %: for all soils, and with each tenth of the study's soils (contiguous ids) left out.",
-        "# spread: the factor from the centre of the tests' range to either end. times_four: the boundary of the uniform",
-        "# loose filter with four times the base by that with 5 % of base, median of the group's soils that were walked so",
-        "# (empty: fewer than 5). q05 to q95: quantiles of the ratio.",
-        "group,fines_from,fines_to,shape,filter,filter_cu_from,filter_cu_to,soils,no_boundary,checked,spread,times_four,"
-        + ",".join(shares),
-    ]
-    for name, cu in FILTERS.items():
+def ratios(data):
+    """The ratio of each group of soils and shape of filter."""
+    rows = []
+    for name in FILTERS:
         ratio = data.ratio(name)
         for group in GROUPS:
             here = ratio[(data.group == group) & ~np.isnan(ratio)]
@@ -197,18 +171,12 @@ def evidence(data, path):
             if len(found) < 5:
                 continue
             fines, shape = group.rsplit(" ", 1)
-            spread = np.exp(np.nanmedian(data.half[data.fines_class == fines]))
-            q, none = quantiles(found, QUANTILES), int((here == 0).sum())
+            q, none = quantiles(found, [0.05, 0.5, 0.95]), int((here == 0).sum())
             checked = "yes" if is_checked(data, name, group) else "no"
-            more = times_four(data, group)
-            cells = [fines, *CLASSES[fines], shape, name, *cu, len(here), none, checked, f"{spread:.3f}"]
-            cells.append("" if np.isnan(more) else f"{more:.2f}")
-            lines.append(",".join(map(str, cells + [f"{x:.3f}" for x in q])))
-    if path:
-        path.write_text("\n".join(lines) + "\n")
+            cells = [fines, *CLASSES[fines], shape, name, len(here), none, checked]
+            rows.append([*cells, *(f"{x:.3f}" for x in q)])
     head = ["fines", "from", "to", "base", "filter", "soils", "no boundary", "checked", "5 %", "median", "95 %"]
-    rows = [line.split(",") for line in lines if not line.startswith(("#", "group"))]
-    table(head, [[*row[:5], *row[7:10], row[12], row[21], row[30]] for row in rows])
+    table(head, rows)
 
 
 def of_rule(distance, half):
@@ -532,7 +500,7 @@ def main():
     data = Data(options.results)
     ratio, groups = data.ratio(), [(group, data.group == group) for group in GROUPS]
     table(["group", *HEAD[1:]], by(data, ratio, groups))
-    evidence(data, TOP / "src/data/evidence.csv" if options.write else None)
+    ratios(data)
     flags(data)
     beside(data)
     beyond_ends(data)
