@@ -2,7 +2,7 @@
 
 use super::Case;
 use crate::scene::Amount;
-use crate::verdict::left_out::LeftOut;
+use crate::outcome::left_out::LeftOut;
 
 impl Case {
     /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user

@@ -2,7 +2,7 @@
 
 use super::{Case, CaseError};
 use crate::scene::NetworkSource;
-use crate::verdict::left_out::{LayerKind, LeftOut};
+use crate::outcome::left_out::{LayerKind, LeftOut};
 
 /// Multiples of the thickness that are walked by default.
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];

@@ -17,7 +17,8 @@ use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;
 use crate::study::compare::{self, ComparePlan, Compared};
 use crate::study::refuse_twice;
-use crate::verdict::batch::{NAMED, columns, governing};
+use crate::verdict::batch::{NAMED, governing};
+use crate::words::batch::{columns, of_filter as filter_lines};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
 
 /// Why several filters are refused.

@@ -17,7 +17,7 @@ use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_in_brief;
 
 /// A summary names no more cases than this.
 const SHOWN: usize = 20;

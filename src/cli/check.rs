@@ -12,6 +12,9 @@ use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 use crate::store::format;
+use crate::words::left_out::left_out;
+use crate::words::sentence;
+use crate::outcome::numbers::{SizeUnit, size_unit};
 
 impl SettingArgs {
     /// All settings that the arguments give.
@@ -114,10 +117,10 @@ fn words(check: &Check) -> String {
     }
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
     for part in &check.left_out {
-        line("left out", part.clone());
+        line("left out", left_out(part, size_unit(check.inputs.scale_free)));
     }
-    for warning in &check.warnings {
-        line("warning", warning.clone());
+    for note in &check.notes {
+        line("note", sentence(note, SizeUnit::Mm));
     }
     let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
     line("shipped curves", names.join(", "));

@@ -14,8 +14,8 @@ use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::{FOREMOST, lines_of, sentence};
+use crate::words::left_out::left_out_in_brief;
 
 impl CompareArgs {
     fn compared(&self) -> Compared {
@@ -99,7 +99,7 @@ fn words(comparison: &Comparison) -> String {
     };
     for case in &comparison.cases {
         line(format!("{}:", case.name));
-        for (name, words) in &case.first_lines {
+        for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, unit) {
             line(format!("  {name}: {words}"));
         }
         line(format!(
@@ -108,9 +108,9 @@ fn words(comparison: &Comparison) -> String {
             of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
-        case.found.iter().take(FOREMOST).for_each(|sentence| line(format!("  - {sentence}")));
-        if case.found.len() > FOREMOST {
-            line(format!("  - and {} more on the page", case.found.len() - FOREMOST));
+        case.notes.iter().take(FOREMOST).for_each(|note| line(format!("  - {}", sentence(note, unit))));
+        if case.notes.len() > FOREMOST {
+            line(format!("  - and {} more on the page", case.notes.len() - FOREMOST));
         }
         for ([low, high], run) in case.curve_range.iter().zip(["first", "second"]) {
             let (low, high) = (percent(*low), percent(*high));

@@ -16,8 +16,10 @@ use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::DESIGN_AGAIN;
 use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::capital;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::capital;
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
 
 /// The setting of the sheet besides its cover that a specification takes.
 const UNITS: &str = "about.units";

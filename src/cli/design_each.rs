@@ -14,7 +14,7 @@ use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::DesignOptions;
 use crate::study::designs::{SampleDesignOptions, each};
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_in_brief;
 use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples};
 
 /// The folder of the results, where nobody names one.

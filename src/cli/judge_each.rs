@@ -14,7 +14,7 @@ use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_in_brief;
 use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
 
 /// Folder of a batch for which no other is named.
@@ -67,17 +67,17 @@ fn name(row: &WalkedRow) -> String {
 
 fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     let unit = SizeUnit::of(false, batch.inches);
-    let mut text = aligned(WalkedRow::columns(unit), &batch.rows) + &in_notes(&batch.notes);
+    let mut text = aligned(walked_columns(unit), &batch.rows) + &in_notes(&batch.notes);
     let sized = |said: String| plain(&if batch.inches { with_inches(&said) } else { said });
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
-        for said in batch.walks_in_words(&filter.name) {
+        for said in walks(&batch, &filter.name, unit) {
             let _ = writeln!(text, "  {}", sized(said));
         }
         for row in batch.governing(&filter.name) {
-            let said = format!("{}: {}", row.rules.sample, row.answer_in_words());
+            let said = format!("{}: {}", row.rules.sample, answer(row));
             let _ = writeln!(text, "  {}", sized(said));
         }
     }

@@ -15,6 +15,8 @@ use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
+use crate::words::{first_lines, sentence};
+use crate::outcome::numbers::SizeUnit;
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -149,8 +151,11 @@ impl Display {
             Event::Studying(what) => {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
+            Event::Noted(notes) => {
+                notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, SizeUnit::Mm)))));
+            }
             Event::VerdictStands(outcome) => {
-                for (name, words) in outcome.first_lines() {
+                for (name, words) in first_lines(outcome, SizeUnit::Mm) {
                     self.line(&format!("{name}: {}\n", plain(&words)));
                 }
             }

@@ -17,7 +17,7 @@ use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -101,17 +101,17 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in outcome.first_lines() {
+    for (name, said) in first_lines(outcome, SizeUnit::Mm) {
         line(format!("{name}: {}", plain(&said)));
     }
-    if !outcome.findings.is_empty() {
+    if !outcome.notes.is_empty() {
         let mut labels: Vec<&str> = Vec::new();
-        for finding in &outcome.findings {
-            if !labels.contains(&finding.label.as_str()) {
-                labels.push(&finding.label);
+        for note in &outcome.notes {
+            if !labels.contains(&note.entry().label) {
+                labels.push(note.entry().label);
             }
         }
-        line(format!("{} notes on the page: {}", outcome.findings.len(), labels.join(", ")));
+        line(format!("{} notes on the page: {}", outcome.notes.len(), labels.join(", ")));
     }
     line(left_out_in_brief(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));

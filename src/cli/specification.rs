@@ -15,6 +15,8 @@ use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
 use crate::verdict::DESIGN_AGAIN;
+use crate::words::row_note;
+use crate::outcome::numbers::SizeUnit;
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
@@ -86,8 +88,9 @@ fn words(of: &Specification) -> String {
     for said in margin.into_iter().chain(dispersive) {
         line(&sized(&format!("{said}.")));
     }
-    let findings = of.findings.iter().map(|found| sized(&found.words()));
-    findings.flat_map(|found| wrapped(&found, 0)).for_each(|text| line(&text));
+    let unit = SizeUnit::of(false, of.inches);
+    let notes = of.notes.iter().map(|row| row_note(row, unit));
+    notes.flat_map(|note| wrapped(&note, 0)).for_each(|text| line(&text));
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {

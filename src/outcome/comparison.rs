@@ -11,6 +11,7 @@ use super::numbers::SizeUnit;
 use super::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
+use crate::outcome::record::Note;
 
 /// Error of all differences together where it is said that two cases differ.
 const ERROR: f64 = 0.05;
@@ -64,12 +65,14 @@ pub struct ComparedCase {
     /// The answer of practice; `None` without two sieve curves in mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub headline: Option<Headline>,
-    /// The lines of practice and model, each with its name.
+    /// What filter practice says of the pair; `None` likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub practice: Option<Practice>,
+    /// What the walk says.
+    pub model: Model,
+    /// What else to know, in the order of every face.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub first_lines: Vec<(String, String)>,
-    /// What a reader must know besides, the weightiest first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub found: Vec<String>,
+    pub notes: Vec<Note>,
     /// Replicates.
     pub replicates: u64,
     /// Thickness of the filter along the flow (mm); `None` where the network does not say.
@@ -195,8 +198,9 @@ impl ComparedCase {
             verdict: outcome.model.class,
             by_practice: None,
             headline: outcome.headline,
-            first_lines: Vec::new(),
-            found: Vec::new(),
+            practice: outcome.practice.clone(),
+            model: outcome.model.clone(),
+            notes: outcome.notes.clone(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
             replicates: outcome.replicates.len() as u64,
             thickness_mm: outcome.inputs.network.thickness_mm,

@@ -9,6 +9,7 @@ use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, Modelled, leaves_out_of_all};
 use crate::text::shorten;
+use crate::outcome::record::Note;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,8 +63,8 @@ pub struct LedgerLine {
     pub base: Option<BaseSize>,
     /// Statistics of each run.
     pub runs: Vec<RunSummary>,
-    /// What else a reader must know.
-    pub warnings: Vec<String>,
+    /// What else to know.
+    pub notes: Vec<Note>,
     /// Where and when, apart from the rest: two campaigns of one plan differ here only.
     pub made: Made,
 }
@@ -152,8 +153,8 @@ impl LedgerLine {
             .headed("Class")
             .place(-1)
             .broken_rules("rules_not_met", "Rules not met", |line| Some(line.rules_not_met.len()))
-            .column("warnings", |line| line.warnings.len())
-            .headed("Warnings")
+            .column("notes", |line| line.notes.len())
+            .headed("Notes")
             .column("layers", |line| line.thickness.layers)
             .thickness(3, SizeUnit::Mm, |line| {
                 let ModelledThickness { layers, mm, scale_free } = line.thickness;
@@ -220,7 +221,7 @@ impl LedgerLine {
             ratios: outcome.ratios,
             base: outcome.inputs.base_size(),
             runs: outcome.summary.clone(),
-            warnings: outcome.findings.iter().map(|of| of.sentence.clone()).collect(),
+            notes: outcome.notes.clone(),
             made,
         }
     }

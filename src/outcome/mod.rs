@@ -38,10 +38,12 @@ pub(crate) mod early_stop;
 mod inches;
 mod infiltration;
 mod least_squares;
+pub mod left_out;
 pub mod ledger;
 mod metrics;
 mod model_limit;
 pub mod network_walk;
+pub mod note;
 pub mod number_rows;
 pub mod numbers;
 pub mod packing;
@@ -73,6 +75,7 @@ pub use model_limit::{Modelled, leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;
+use note::Note;
 
 impl record::Outcome {
     /// Whether water gave particles their way.
@@ -82,12 +85,12 @@ impl record::Outcome {
         self.network.as_ref().is_some_and(|network| with_flow(&network.exit))
     }
 
-    /// What its walk contained; without openings in folders of versions that knew none.
+    /// What its walk contained.
     pub fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.is_with_flow(),
             arches: self.arching.is_some(),
-            openings: self.findings.iter().any(|finding| finding.id == "openings"),
+            openings: self.notes.contains(&Note::Openings {}),
         }
     }
 }

@@ -18,9 +18,8 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::batch::open_in_words;
-use crate::verdict::batch_counts::{counts_in_words, governs_drainage};
-use crate::verdict::words::capital;
+use crate::words::batch::{answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks};
+use crate::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
 const RECORD: &str = "batch.json";
@@ -119,15 +118,15 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 
 /// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
-    let walks = batch.walks_in_words(&filter.name);
+    let walks = walks(batch, &filter.name, SizeUnit::Mm);
     let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
-    let besides = governs_drainage(&rules, &filter.name).into_iter();
-    let besides = besides.chain(open_in_words(&rules, &filter.name));
+    let besides = governs_drainage(&rules, &filter.name, SizeUnit::Mm).into_iter();
+    let besides = besides.chain(open_limits(&rules, &filter.name));
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (d15f(&rules).unwrap_or("not known".into())) }
         ul {
-            li { b { "Practice" } ": " (counts_in_words(&rules, &filter.name)) "." }
+            li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
                 li {
                     @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
@@ -146,7 +145,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 /// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
     let beside = rules.iter().filter_map(|row| {
-        let [d15f, _] = row.d15f_and_limit(SizeUnit::Mm, " mm");
+        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm, " mm");
         d15f
     });
     beside.max_by_key(String::len)
@@ -162,7 +161,7 @@ fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
         ", here " (d15f)
-        ": " (clean(&row.answer_in_words()))
+        ": " (clean(&answer(row)))
         @if let Some(walk) = &row.walk {
             ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
         }
@@ -177,7 +176,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     };
     let table = Table::of(batch.rows.iter().take(LISTED))
         .class("cases")
-        .columns(WalkedRow::columns(SizeUnit::of(false, batch.inches)), |row| row)
+        .columns(walked_columns(SizeUnit::of(false, batch.inches)), |row| row)
         .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);

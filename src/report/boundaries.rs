@@ -5,7 +5,7 @@ use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, PUR
 use super::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{Outcome, RuleQuantity};
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
-use crate::verdict::rule_words::without_margin;
+use crate::verdict::rule_result::without_margin;
 use crate::verdict::tested::is_beyond_unclear;
 
 /// Half the height of a line, in percent finer.

@@ -14,6 +14,8 @@ use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
 
 /// Cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
@@ -31,7 +33,9 @@ pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Mar
              differ. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
-        (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
+        (listed("Notes", &tally(ledger, |line| {
+            line.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>()
+        })))
     }
 }
 

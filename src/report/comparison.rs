@@ -19,9 +19,9 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Verdict;
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::capital;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::capital;
+use crate::words::{FOREMOST, lines_of, sentence};
 
 const RECORD: &str = "compare.json";
 
@@ -168,7 +168,7 @@ fn answers(comparison: &Comparison) -> Markup {
         section.verdict.(colour(case.headline)) {
             p.practice { b { bdi { (name(&case.name)) } } }
             ul {
-                @for (name, words) in &case.first_lines { li { b { (name) } ": " (unbroken(words)) "." } }
+                @for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, unit) { li { b { (name) } ": " (unbroken(&words)) "." } }
             }
         }
     } }
@@ -207,18 +207,19 @@ fn pairs(comparison: &Comparison) -> Markup {
 
 /// Which rules are not kept, and what else to know of each case.
 fn reasons(comparison: &Comparison) -> Markup {
+    let unit = SizeUnit::of(false, comparison.inches);
     html! { @for case in &comparison.cases {
         section.warnings {
             h2 { bdi { (name(&case.name)) } ": what else to know" }
-            @let (foremost, rest) = case.found.split_at(case.found.len().min(FOREMOST));
-            ul { @for sentence in foremost { li { (clean(sentence)) } } }
+            @let (foremost, rest) = case.notes.split_at(case.notes.len().min(FOREMOST));
+            ul { @for note in foremost { li { (clean(&sentence(note, unit))) } } }
             @if !case.rules_not_kept.is_empty() {
                 p { "Rules of practice that are not kept: " (clean(&case.rules_not_kept.join("; "))) "." }
             }
             @if !rest.is_empty() {
                 details {
                     summary { "and " (rest.len()) " more" }
-                    ul { @for sentence in rest { li { (clean(sentence)) } } }
+                    ul { @for note in rest { li { (clean(&sentence(note, unit))) } } }
                 }
             }
         }

@@ -14,10 +14,12 @@ use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_in_brief;
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{RuleResult, limit_begins, limit_ends, result_of, value_begins};
-use crate::verdict::words::capital;
+use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::words::rule::{self, limit_begins, limit_ends, value_begins};
+use crate::words::capital;
+use crate::words::{first_lines, foremost, judged_alone, sentence};
 
 /// What the scene says of the page, and nothing else of it.
 #[derive(Default, Deserialize)]
@@ -76,18 +78,18 @@ fn about(folder: &RunFolder) -> Markup {
 }
 
 /// The answer: the lines of practice and model, and the findings that matter most.
-pub(super) fn answer(outcome: &Outcome) -> Markup {
-    let (foremost, more) = outcome.foremost();
+pub(super) fn answer(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let (foremost, more) = foremost(outcome);
     html! {
         section.verdict.(colour(outcome.headline)) {
-            @for (name, words) in outcome.first_lines() {
+            @for (name, words) in first_lines(outcome, unit) {
                 p.practice { b { (name) } ": " (unbroken(&words)) "." }
-                @if name == "Practice" && let Some(alone) = outcome.judged_alone() {
+                @if name == "Practice" && let Some(alone) = judged_alone(outcome) {
                     p.counted { (alone) }
                 }
             }
             @if !foremost.is_empty() {
-                ul { @for finding in foremost { li { (unbroken(&finding.sentence)) } } }
+                ul { @for note in foremost { li { (unbroken(&sentence(note, unit))) } } }
             }
             @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
@@ -144,7 +146,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
                         @let of_kind = others.iter().filter(|of| result_of(of) == kind);
                         @let names: Vec<&str> = of_kind.map(|of| &*of.name).collect();
                         @if !names.is_empty() {
-                            b { (capital(kind.words())) } ": " (clean(&names.join("; "))) ". "
+                            b { (capital(rule::result(kind))) } ": " (clean(&names.join("; "))) ". "
                         }
                     }
                 }

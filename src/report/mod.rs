@@ -88,7 +88,6 @@ pub use packing::write_packing;
 pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
-pub(crate) use rules::value_and_limit;
 pub use soils::soils_figure;
 pub use specification::write_specification;
 #[cfg(feature = "xlsx")]

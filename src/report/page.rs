@@ -25,7 +25,11 @@ use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
-use crate::verdict::words::capital;
+use crate::words::capital;
+use crate::outcome::record::Note;
+use crate::outcome::numbers::SizeUnit;
+use crate::words::left_out::left_out_words;
+use crate::words::{first_lines, foremost, sentence, undecided_by};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -60,11 +64,11 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
-    let lines = outcome.first_lines();
+    let lines = first_lines(&outcome, SizeUnit::Mm);
     let said = Said {
         lines: &lines,
         meaning: in_words(&outcome, &walks),
-        findings: outcome.foremost().0,
+        notes: foremost(&outcome).0,
         replicate: replicate(&outcome),
         leaves_out: &outcome.model_leaves_out,
     };
@@ -114,12 +118,12 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     };
     let main = html! {
         section.sheet {
-            (answer(outcome))
+            (answer(outcome, unit))
             div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
             (in_short(outcome, unit))
         }
         (shell::contents())
-        (findings(outcome))
+        (notes(outcome, unit))
         (walk(folder, verdict))
         (leaves_out(&outcome.model_leaves_out, &html! {
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
@@ -128,7 +132,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
         @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
         (missing(folder, figures))
         (rules(outcome, unit))
-        (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
+        (results(&folder.walks()))
         (infiltration(outcome))
         (by_connectivity(&folder.walks()))
         (replicates(&folder.walks()))
@@ -143,7 +147,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
 
 /// The void ratio of the filter, where that was given; else what the library has.
 fn void_ratio(outcome: &Outcome) -> String {
-    let is_given = !outcome.findings.iter().any(|finding| finding.id == "library_of_any_density");
+    let is_given = !outcome.notes.iter().any(|note| matches!(note, Note::LibraryOfAnyDensity { .. }));
     match outcome.inputs.filter.void_ratio {
         Some(ratio) if !is_given => {
             format!("not given; {} is that of the packing of the library", significant(ratio))
@@ -155,23 +159,18 @@ fn void_ratio(outcome: &Outcome) -> String {
 /// What the walk found: its class, the mass eroded, and what leaves it open.
 fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
-    let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     html! {
         h2 { "What the model found" }
         p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
-        @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
-        // What a rule that adds replicates says is said above.
-        @if let Some(said) = outcome.sentence_of("second_run_missing").filter(|_| !falls_short) {
-            p { (clean(&said)) }
-        }
+        @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
         (verdict_box::replicates_in_words(walks, replicate(outcome)))
     }
 }
 
 /// What the rule that added replicates arrived at.
-fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
+fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
         text += &format!(
@@ -182,34 +181,28 @@ fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
     if let Some(pp) = stopping.target_error_pp {
         text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
     }
-    let short = ["level_missed", "target_missed", "second_run_missing"];
-    let short = short.into_iter().find_map(|id| outcome.sentence_of(id));
-    text += match (&short, stopping.met) {
-        (_, true) => "That was reached.",
-        (Some(sentence), _) => sentence,
-        (None, false) => "That was not reached.",
-    };
+    text += if stopping.met { "That was reached." } else { "That was not reached." };
     text
 }
 
 /// What the class means, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
-        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", open.words()),
+        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),
         _ => verdict_box::in_words(walks),
     }
 }
 
 /// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
 /// print.
-fn findings(outcome: &Outcome) -> Markup {
-    let rest = &outcome.findings[outcome.foremost().0.len()..];
+fn notes(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let rest = &outcome.notes[foremost(outcome).0.len()..];
     html! {
         @if !rest.is_empty() {
             h2 { "Other findings" }
             details {
                 summary { (rest.len()) " more" }
-                ul { @for finding in rest { li { (clean(&finding.sentence)) } } }
+                ul { @for note in rest { li { (clean(&sentence(note, unit))) } } }
             }
         }
     }
@@ -336,7 +329,7 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("Engine", &outcome.engine))
             (appendix::input_files(&manifest.inputs))
             @if !outcome.left_out.is_empty() {
-                (fact("Not needed here", outcome.left_out.join("; ")))
+                (fact("Not needed here", left_out_words(&outcome.left_out, size_unit(outcome.inputs.scale_free))))
             }
         } }
         details open {

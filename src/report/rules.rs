@@ -5,15 +5,11 @@ use maud::{Markup, html};
 use super::numbers::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{
-    LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
-};
-
-/// Digits of a value and a limit, where more are not needed to tell them apart.
-const DIGITS: i32 = 3;
+use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends, value_begins};
+use crate::words::rule_note::rule_notes;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
@@ -34,61 +30,23 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     }
 }
 
-/// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
-/// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
-pub(crate) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
-    let numbers = match (rule.value, rule.limit) {
-        (Some(value), Some(limit)) => apart::value_and_limit(value, limit, rule.at_least, DIGITS).map(Some),
-        (value, limit) => [
-            value.map(|value| digits_of(value, DIGITS)),
-            limit.map(|limit| digits_within(limit, DIGITS, rule.at_least)),
-        ],
-    };
-    let inches = inches_of(rule, &numbers, unit);
-    let mut both = numbers.into_iter().zip(inches).map(|(number, inches)| {
-        let number = number?;
-        // The digits of a length say how closely it was worked out; 4.00 times D85B is four times.
-        let is_ratio = rule.unit.is_empty() || rule.unit == "%";
-        let number = if is_ratio { without_zeros(&number) } else { &number };
-        let with_unit = format!("{number}\u{202f}{}", rule.unit);
-        Some(with_unit.trim_end().to_owned() + &inches)
-    });
-    std::array::from_fn(|_| both.next().flatten())
-}
-
-/// What stands behind both: inches that follow from the mm beside them, as far apart as those, where they are
-/// shown.
-fn inches_of(rule: &AppliedRule, numbers: &[Option<String>; 2], unit: SizeUnit) -> [String; 2] {
-    if rule.unit != "mm" {
-        return Default::default();
-    }
-    let [value, limit] = [0, 1].map(|at| numbers[at].as_ref().and_then(|mm| mm.parse::<f64>().ok()));
-    match (value, limit) {
-        (Some(value), Some(limit)) => unit.beside_both(value, limit, rule.at_least),
-        (Some(value), None) => [unit.beside(value), String::new()],
-        (None, Some(limit)) if rule.at_least => [String::new(), unit.beside_least(limit)],
-        (None, Some(limit)) => [String::new(), unit.beside_greatest(limit)],
-        (None, None) => Default::default(),
-    }
-}
-
-/// A number without zeros at its end.
-fn without_zeros(number: &str) -> &str {
-    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
+/// Value and limit of a rule, which no line breaks apart from their units.
+pub(super) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
+    words::value_and_limit(rule, unit).map(|text| text.map(|text| text.replace(' ', "\u{202f}")))
 }
 
 /// What stands in the place of a limit that is not there.
 fn no_limit(rule: &AppliedRule) -> &'static str {
     let is_none = result_of(rule) == RuleResult::NotALimit;
-    if is_none { RuleResult::NotALimit.words() } else { "–" }
+    if is_none { words::result(RuleResult::NotALimit) } else { "–" }
 }
 
 /// What a rule found: a tick where it is kept alone.
 pub(super) fn result(rule: &AppliedRule) -> Markup {
     match result_of(rule) {
-        of @ RuleResult::Met => html! { span.keeps { "✓ " (of.words()) } },
-        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (of.words()) } },
-        of => html! { (of.words()) },
+        of @ RuleResult::Met => html! { span.keeps { "✓ " (words::result(of)) } },
+        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (words::result(of)) } },
+        of => html! { (words::result(of)) },
     }
 }
 
@@ -114,8 +72,8 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                         (unit.size(left.d15f)) "."
                     }
                 }
-                @for text in [&rule.note, &rule.needs] {
-                    @if !text.is_empty() { br; span.small { b { (clean(&text.to_string())) } } }
+                @for notes in [&rule.notes, &rule.needs] {
+                    @if !notes.is_empty() { br; span.small { b { (clean(&rule_notes(notes, unit))) } } }
                 }
                 br; span.small { (clean(&rule.source)) }
             }

@@ -15,7 +15,7 @@ use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
-use crate::verdict::words::capital;
+use crate::words::capital;
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;

@@ -22,6 +22,7 @@ use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
 use crate::verdict::DESIGN_AGAIN;
 use crate::verdict::fitting::FITS;
+use crate::words::row_note;
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -96,8 +97,8 @@ fn answer(of: &Specification) -> Markup {
                 p { (clean(&said)) "." }
             }
             @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
-            (cautions(&of.findings))
-            @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
+            (cautions(of))
+            @if of.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
             p { (clean(&of.products_in_words())) "." }
         }
@@ -108,17 +109,18 @@ fn answer(of: &Specification) -> Markup {
 const WARNINGS: usize = 4;
 
 fn more_warnings(of: &Specification) -> Markup {
-    let more = of.findings.iter().skip(WARNINGS);
+    let (more, unit) = (of.notes.iter().skip(WARNINGS), SizeUnit::of(false, of.inches));
     html! {
-        @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } }
+        @if of.notes.len() > WARNINGS { ul { @for row in more { li { (clean(&row_note(row, unit))) } } } }
     }
 }
 
 /// The first warnings of the base itself.
-pub(super) fn cautions(of: &[DesignFinding]) -> Markup {
+pub(super) fn cautions(of: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, of.inches);
     html! {
-        @for found in of.iter().take(WARNINGS) {
-            p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
+        @for row in of.notes.iter().take(WARNINGS) {
+            p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
         }
     }
 }

@@ -6,20 +6,20 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::PAPER_MASS_RATIO;
 use crate::network::Network;
-use crate::outcome::record::FindingRecord;
+use crate::outcome::record::Note;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::{Finding, PlannedWalk, finding, ordered};
+use crate::verdict::{PlannedWalk, ordered};
 
 impl NetworkOutcome {
-    /// What a reader must know besides the class, on so many networks of which this is the first.
-    pub fn findings(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<FindingRecord> {
+    /// Notes on the class, on so many networks of which this is the first.
+    pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
         let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
-        found.extend(plan.findings(network, self.replicates.len() as u64));
+        found.extend(plan.notes(network, self.replicates.len() as u64));
         if networks == 1 && self.replicates.len() > 1 {
-            found.push(finding::one_network());
+            found.push(Note::OneNetwork {});
         }
         let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
             let largest: Vec<f64> =
@@ -30,16 +30,13 @@ impl NetworkOutcome {
                 ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        let mut all = ordered(&rules, found);
-        // Settings are those of a scene, and there is none.
-        all.iter_mut().for_each(|finding| finding.to_do.clear());
-        all
+        ordered(&rules, found)
     }
 }
 
 impl NetworkWalk {
     /// What was not checked, or is not known, whatever comes of the walk.
-    fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
+    fn notes(&self, network: &Network, replicates: u64) -> Vec<Note> {
         let filter = self.filter.as_ref();
         let planned = PlannedWalk {
             base: &self.base,
@@ -55,20 +52,20 @@ impl NetworkWalk {
             increments: self.increments,
             replicates,
         };
-        planned.findings().into_iter().chain(self.amount(network)).collect()
+        planned.notes().into_iter().chain(self.amount(network)).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
     /// can compare with it.
-    fn amount(&self, network: &Network) -> Option<Finding> {
-        let n = self.n_base;
-        let Some(eq2) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
-            return Some(finding::amount_unknown(n));
+    fn amount(&self, network: &Network) -> Option<Note> {
+        let particles = self.n_base;
+        let Some(needed) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
+            return Some(Note::AmountUnknown { particles });
         };
-        match n.cmp(&eq2) {
-            Ordering::Less => Some(finding::few_particles(n, eq2)),
+        match particles.cmp(&needed) {
+            Ordering::Less => Some(Note::FewParticles { particles, needed }),
             Ordering::Equal => None,
-            Ordering::Greater => Some(finding::more_particles(n, eq2)),
+            Ordering::Greater => Some(Note::MoreParticles { particles, needed }),
         }
     }
 }

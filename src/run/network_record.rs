@@ -18,7 +18,7 @@ impl NetworkOutcome {
         let first = self.replicates.first().map(|walked| &walked.result);
         NetworkWalkRecord {
             verdict: self.verdict,
-            findings: self.findings(plan, network, networks),
+            notes: self.notes(plan, network, networks),
             seed: plan.seed,
             n_base: plan.n_base,
             n_base_eq2: plan.eq2(network, plan.mass_ratio).ok().flatten(),
@@ -30,7 +30,7 @@ impl NetworkOutcome {
             summary: self.summary.clone(),
             threshold: verdict::THRESHOLD,
             left_out: first.map_or(Vec::new(), |first| {
-                first.left_out.iter().map(|shortcut| shortcut.sentence("mm")).collect()
+                first.left_out.iter().copied().map(LeftOut::Walk).collect()
             }),
             model_leaves_out: leaves_out(Modelled {
                 flow: network.exit_rule().needs_flow(),

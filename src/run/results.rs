@@ -22,9 +22,10 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
-use crate::verdict::left_out::LeftOut;
-use crate::verdict::{Finding, beside, dispersion, finding, ordered, practice};
+use crate::outcome::left_out::LeftOut;
+use crate::verdict::{dispersion, ordered, practice};
 use crate::walk::Shortcut;
+use crate::outcome::record::Note;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
 /// where they are to come.
@@ -40,11 +41,11 @@ pub fn outcome(
     let inputs = rule_inputs(case, walked);
     let rules = rules::apply(&inputs);
     let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
-    let mut found = findings_of_walk(case, verdict, walked);
+    let mut found = notes_of_walk(case, verdict, walked);
     found.extend(case.unchecked_clogging());
-    found.extend(unsure.map(finding::decided_below_95));
-    found.extend(case.findings());
-    found.extend(other.range.as_ref().map(beside::curve_range));
+    found.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
+    found.extend(case.notes());
+    found.extend(other.range.as_ref().map(|_| Note::CurveRange {}));
     let inputs_record = case.record();
     let mut outcome = Outcome {
         headline: None,
@@ -55,7 +56,7 @@ pub fn outcome(
             replicates: walked.len() as u64,
             network: inputs_record.network.kind,
         },
-        findings: Vec::new(),
+        notes: Vec::new(),
         if_dispersive: None,
         constrictions: ConstrictionsRecord { origin: case.curve_origin() },
         seed: case.scene.walk.seed,
@@ -86,15 +87,15 @@ pub fn outcome(
         digest: String::new(),
         seconds,
     };
-    found.extend(outcome.found());
+    found.extend(outcome.notes_of_results());
     if case.scene.base.dispersive.is_none() {
-        let d15f = case.filter.d(15.0);
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
-        let note = |limit| dispersion::finding(d15f, &outcome.rules, limit);
-        found.extend(outcome.if_dispersive.map(note));
+        found.extend(outcome.if_dispersive.map(dispersion::note));
     }
-    outcome.findings = ordered(&outcome.rules, found);
-    outcome.headline = practice::headline(&outcome.rules, outcome.beyond_if_dispersive().is_some());
+    outcome.notes = ordered(&outcome.rules, found);
+    let is_beyond = outcome.if_dispersive.and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
+    let is_beyond = is_beyond.is_some();
+    outcome.headline = practice::headline(&outcome.rules, is_beyond);
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
 }
@@ -110,7 +111,7 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
 }
 
 /// What these walks say themselves against the verdict.
-fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
+fn notes_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Note> {
     let of_network = (case.counts[3], case.scene.leaves_openings());
     said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network)
 }
@@ -167,12 +168,9 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     }
 }
 
-/// What the scene does not need, and what the first replicate's first run does not, in words.
-pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<String> {
-    // The smallest grain stands for 1 mm while it is walked.
-    let unit = if case.is_scale_free() { "D0F" } else { "mm" };
-    let of_run = of_run.iter().map(|shortcut| shortcut.sentence(unit));
-    case.left_out().iter().map(LeftOut::words).chain(of_run).collect()
+/// Parts that the scene does not need, and that the first replicate's first run does not.
+pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
+    case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
 /// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.

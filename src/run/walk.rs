@@ -25,6 +25,7 @@ use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 use crate::store::format::from_json;
 use crate::text::{plain, shell_word};
+use crate::verdict::ordered;
 
 /// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
 ///
@@ -195,9 +196,7 @@ fn walk_here(
     };
     let at = wanted.unwrap_or(Path::new("."));
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    for warning in case.warnings() {
-        (callbacks.warn)(&warning);
-    }
+    (callbacks.on_event)(Event::Noted(&ordered(&[], case.notes())));
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
     if resumed {

@@ -11,6 +11,8 @@ use crate::outcome::design::band::Band;
 use crate::outcome::design::{Design, DesignFinding, share_of_networks};
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]

@@ -9,6 +9,8 @@ use crate::campaign::CaseEvent;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
 
 /// Fewer replicates have no class while more are to come.
 const FEW: usize = 4;
@@ -72,6 +74,7 @@ impl Live {
                 self.lines.push(line.to_owned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
+            Event::Noted(notes) => notes.iter().for_each(|note| self.warn(&sentence(note, SizeUnit::Mm))),
             Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
         }
     }

@@ -344,11 +344,11 @@ function showRules(pair) {
   const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at] }))
     .filter((row) => row.named);
   const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
-  const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
+  const parts = pair.notes.map((note) => el("p", { class: "problem" }, note));
   const { base } = pair;
   parts.push(el("p", {}, `The base as practice reads it: D85 ${number(base.d85_mm)} mm, `, base.regraded
     ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
-  `; ${base.why}.`));
+  `; ${pair.why}.`));
   parts.push(el("p", {}, el("b", {}, "Practice: "), `${pair.practice}.`));
   const named = (some) => some.map((row) => row.named[0]).join("; ");
   const open = rows.filter(({ found }) => found === "no result");
@@ -503,7 +503,7 @@ async function check() {
     }
     into.replaceChildren(el("table", {}, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("th", {}, name), el("td", {}, value))))),
       ...(check.refusal ? [el("p", { class: "problem" }, check.refusal)] : []),
-      ...(check.warnings.length ? [el("ul", {}, ...check.warnings.map((warning) => el("li", {}, warning)))] : []));
+      ...(check.notes.length ? [el("ul", {}, ...check.notes.map((note) => el("li", {}, note)))] : []));
     into.hidden = false;
   } catch (error) {
     show($("#form-problem"), error.message);
@@ -623,8 +623,8 @@ const colourOfDesign = (done) => (!done.fits_by_practice || (done.answer && done
 /** The lines that every face begins with. */
 const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
 
-/** At most three findings; the rest is folded. */
-const findings = (all) => [list(all.slice(0, 3)),
+/** At most three notes; the rest is folded. */
+const notes = (all) => [list(all.slice(0, 3)),
   all.length > 3 ? el("details", {}, el("summary", {}, `and ${all.length - 3} more`), list(all.slice(3))) : null];
 
 function verdictOf(job) {
@@ -641,10 +641,10 @@ function verdictOf(job) {
         el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.first_lines), ...findings(one.found)]),
+      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.first_lines), ...notes(one.notes)]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  return [...answer(done.lines), ...plot(done.runs), ...findings(done.findings)];
+  return [...answer(done.lines), ...plot(done.runs), ...notes(done.notes)];
 }
 
 function card(job) {

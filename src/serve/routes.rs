@@ -33,6 +33,8 @@ use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
 use crate::verdict::{PairOptions, PairRules};
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
 
 const PAGE: &str = include_str!("page.html");
 const SCRIPT: &str = include_str!("page.js");
@@ -208,7 +210,9 @@ impl Routes {
                 let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
                 let refusal =
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
+                let notes: Vec<String> = check.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect();
                 let mut value = serde_json::to_value(&check).map_err(wrong)?;
+                value["notes"] = json!(notes);
                 value["refusal"] = json!(refusal);
                 Ok(Answer::json(200, value))
             }

@@ -6,7 +6,7 @@ use super::batches::{filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
 use crate::outcome::numbers::SizeUnit;
 use crate::study::refuse_twice;
-use crate::verdict::batch::columns;
+use crate::words::batch::{columns, of_filter};
 use crate::verdict::{BatchTable, PairOptions};
 
 /// Most rows that a page shows.
@@ -47,7 +47,7 @@ impl SampleTable {
         let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display())).chain(cut);
         let mut value = table(columns(SizeUnit::Mm), rows);
         value["unstable"] = json!(rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
-        let of_filters = self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows));
+        let of_filters = self.0.filters.iter().map(|filter| of_filter(filter, &self.0.rows, SizeUnit::Mm));
         value["filters"] = json!(of_filters.collect::<Vec<_>>());
         value["notes"] = json!(notes.collect::<Vec<_>>());
         value

@@ -1,13 +1,12 @@
 //! The band of a specification: from the minimum D15F that drains the base to the greatest that holds it.
 
-use super::entry::Finding;
-use super::finding;
-use super::rule_words::cited;
+use super::rule_result::cited;
 use super::words::within;
 use crate::outcome::design::band::{Band, SetBy, limits, open_retention, retention};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{PERMEABILITY, RULES};
+use crate::outcome::record::Note;
 
 impl Band {
     /// From the rules of a filter of this D15F and the maximum D15F that holds, in the unit of the rules;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
-use super::rule_words::cited_rule;
+use super::rule_result::cited_rule;
 use crate::gradation::SoilSample;
 use crate::outcome::design::band::SetBy;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{FindingRecord, IfDispersive, InputFile, ModelLimit, SheetCover, commit};
+use crate::outcome::record::{IfDispersive, InputFile, ModelLimit, Note, SheetCover, commit};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Columns of the table that a terminal and a page show; all are in the file.
@@ -146,7 +146,7 @@ pub struct DesignedSample {
     pub d15f_max_mm: Option<f64>,
     /// What a reader must know of the sample itself, as for a filter of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<FindingRecord>,
+    pub notes: Vec<Note>,
     /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub no_band: String,
@@ -202,7 +202,7 @@ impl DesignedSample {
             d15f_min_at_most: practice.d15f_min_at_most,
             if_dispersive: practice.if_dispersive,
             d15f_max_mm: practice.d15f_max_mm,
-            findings: practice.findings.iter().map(|of| of.finding.clone()).collect(),
+            notes: practice.notes.iter().map(|of| of.note.clone()).collect(),
             no_band: practice.no_band.clone().unwrap_or_default(),
             governs: None,
             design: None,

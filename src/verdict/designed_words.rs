@@ -5,14 +5,15 @@ use super::specification::{least_of_band, no_band_between};
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::IfDispersive;
 use crate::outcome::rules::WIDEST_BAND;
+use crate::outcome::record::Note;
 
 /// What a specification warns of a base, and how it begins where it is said of several.
-const CAUTIONS: [(&str, &str); 5] = [
-    ("unstable_base", "Not internally stable by Kenney and Lau"),
-    ("unstable_side", "With a side of its own band that is not internally stable"),
-    ("broad_base", "Broadly graded, so that the finer part may move between the coarse grains"),
-    ("gap_of_base", "Gap-graded by this program's own check"),
-    ("flat_base", "A curve that is flat somewhere, to be looked at for a gap"),
+const CAUTIONS: [(fn(&Note) -> bool, &str); 5] = [
+    (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
+    (|note| matches!(note, Note::UnstableSide { .. }), "With a side of its own band that is not internally stable"),
+    (|note| matches!(note, Note::BroadBase { .. } | Note::BroadBaseAtLeast { .. }), "Broadly graded, so that the finer part may move between the coarse grains"),
+    (|note| matches!(note, Note::GapOfBase { .. }), "Gap-graded by this program's own check"),
+    (|note| matches!(note, Note::FlatBase { .. }), "A curve that is flat somewhere, to be looked at for a gap"),
 ];
 
 /// So many samples.
@@ -211,8 +212,8 @@ impl DesignedSamples {
 
     /// What is to be known of the samples themselves, with their names.
     fn cautions(&self) -> Vec<String> {
-        let named = |(id, what): &(&str, &str)| {
-            let is_so = |row: &&DesignedSample| row.findings.iter().any(|of| of.id == *id);
+        let named = |(is_it, what): &(fn(&Note) -> bool, &str)| {
+            let is_so = |row: &&DesignedSample| row.notes.iter().any(is_it);
             let names: Vec<&str> = self.rows.iter().filter(is_so).map(|row| row.sample.as_str()).collect();
             (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
         };

@@ -6,29 +6,29 @@
 //! Kezdi's at every size: where it is not met, or has no result and of these two one is not met and none met,
 //! and what is left breaks a limit of retention, practice is not met.
 
-use super::quantity::fixed;
-use super::rule_words::{met_of, with_unit};
+use super::rule_result::met_of;
 use crate::gradation::WIDE_LOOSE_PERCENT;
-use crate::outcome::apart::value_and_limit;
 use crate::outcome::design::band::retention;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
-use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, authority_in_brief};
+use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
-pub(super) struct Washout<'r> {
-    left: WithoutFiner,
+pub struct Washout<'r> {
+    /// What is left.
+    pub left: WithoutFiner,
     /// The criterion by which it is the greatest part that fails.
-    by: &'r AppliedRule,
+    pub by: &'r AppliedRule,
     /// The least limit of retention.
-    least: f64,
-    unit: &'r str,
+    pub least: f64,
+    /// Unit of sizes.
+    pub unit: &'r str,
     /// The boundary of continuing erosion of tests, where it is beyond that, too.
     continuing: Option<&'r AppliedRule>,
 }
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
 /// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
-pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+pub fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
     let d15f = d15f.unwrap_or(1.0);
@@ -74,41 +74,14 @@ fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
 }
 
 impl Washout<'_> {
-    /// Which part it may lose, with its size: "its finest 19.4 %".
-    fn part(&self) -> String {
-        format!("its finest {} %", fixed(self.left.percent, 1))
-    }
-
-    /// By which criterion it may lose that part; no more is looked at than may lie loose.
-    fn whose(&self) -> String {
-        let is_capped = self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9);
-        format!("by {}{}", authority_in_brief(self.by), if is_capped { "; more may go" } else { "" })
-    }
-
-    /// D15F without that part.
-    pub fn d15f(&self) -> String {
-        let [value, _] = value_and_limit(self.left.d15f, self.least, false, 3);
-        with_unit(value, self.unit)
-    }
-
-    /// D15F without the finer part.
-    pub fn without_finer(&self) -> String {
-        format!("without {} ({}) D15F is {}, beyond the limit", self.part(), self.whose(), self.d15f())
+    /// Whether no more of the filter was looked at than may lie loose, so that more may go.
+    pub fn is_capped(&self) -> bool {
+        self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9)
     }
 
     /// Whether what is left is beyond the boundary of continuing erosion of tests.
     pub fn continues(&self) -> bool {
         self.continuing.is_some()
-    }
-
-    /// The same for the cell of a table.
-    pub fn in_brief(&self) -> String {
-        format!("may lose its finer part, too coarse without {}", self.part())
-    }
-
-    /// D15F without that part, behind D15F as placed.
-    pub fn as_placed(&self) -> String {
-        format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
     }
 }
 

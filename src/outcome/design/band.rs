@@ -81,7 +81,7 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
 pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
-    let is_dispersive = design.is_some_and(|of| of.note.says(RuleNote::Dispersive));
+    let is_dispersive = design.is_some_and(|of| of.notes.contains(&RuleNote::Dispersive));
     let counts = move |tests: &AppliedRule| is_dispersive || !(is_known || tests.limit_at_most);
     let retains = move |of: &&AppliedRule| of.role == RuleRole::Retention;
     rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))

@@ -41,7 +41,7 @@ pub struct Specification {
     /// What a reader must know of the base itself, each of its curve where there are several, and of a side
     /// of the band that is not stable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<DesignFinding>,
+    pub notes: Vec<DesignFinding>,
     /// Every step, with its numbers.
     pub steps: Vec<SpecificationStep>,
     /// Minimum D15F (mm) that drains the base; `None` where it is not known.

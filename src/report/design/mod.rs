@@ -1,5 +1,8 @@
 //! The page of a design: how coarse the filter may be, from `design.json` and `design.csv` alone.
 
+use crate::words::sentence;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::Note;
 mod figure;
 mod tables;
 #[cfg(test)]
@@ -23,8 +26,8 @@ use super::written::Written;
 use crate::outcome::design::{Design, DesignFinding, DesignRow, WalkRow, share_of_networks};
 use crate::verdict::FOREMOST;
 use crate::verdict::beside::NOT_COUNTED;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::capital;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::capital;
 use words::{between, of_walk, ratio, sentence, shown_in, walk_decides};
 
 /// Writes `design.html` and its figure into the folder of a design, from `design.json` and `design.csv`

@@ -14,7 +14,7 @@ use crate::report::rules;
 use crate::report::shell::{clean, fact, unbroken};
 use crate::report::table::Table;
 use crate::verdict::fitting::{FITS, MAY_DRAIN};
-use crate::verdict::words::capital;
+use crate::words::capital;
 
 /// The boundaries of the walk alone, a row a density and thickness.
 pub(super) fn boundaries(design: &Design) -> Markup {

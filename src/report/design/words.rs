@@ -6,7 +6,7 @@ use crate::outcome::design::Design;
 use crate::outcome::design::band::SetBy;
 use crate::report::numbers::SizeUnit;
 use crate::report::shell::clean;
-use crate::verdict::words::capital;
+use crate::words::capital;
 
 /// A note as a sentence.
 pub(super) fn sentence(note: &str) -> String {

@@ -3,6 +3,8 @@
 use super::sheet::{Entry, Sheet};
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{Design, Specification};
+use crate::words::row_note;
+use crate::outcome::numbers::SizeUnit;
 
 /// What the page says too.
 const CAUTIONS: [(&str, &str); 3] = [
@@ -32,7 +34,7 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
     sheet.item("No band, because", of.no_band.as_deref(), "");
-    of.findings.iter().for_each(|found| sheet.item("Warning", found.words(), ""));
+    of.notes.iter().for_each(|row| sheet.item("Warning", row_note(row, SizeUnit::Mm), ""));
     sheet.item("Still to be set", of.still_to_set(), "");
     let basis = match design {
         Some(_) => "By the rules of practice and a walk.",

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
-use crate::outcome::record::{FindingRecord, Outcome};
+use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
@@ -20,6 +20,8 @@ use crate::serve::live::Live;
 use crate::study::batch::{self, BatchPlan};
 use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
+use crate::words::{first_lines, sentence};
+use crate::outcome::numbers::SizeUnit;
 
 /// What is done with results that are whole.
 pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
@@ -161,10 +163,10 @@ fn often() -> CheckpointInterval {
 /// What the page shows of an outcome.
 pub fn of_run(outcome: &Outcome) -> Value {
     json!({
-        "lines": outcome.first_lines(),
+        "lines": first_lines(outcome, SizeUnit::Mm),
         "model": outcome.model.class.words(),
         "colour": colour_of(outcome),
-        "findings": outcome.findings.iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
+        "notes": outcome.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
     })

@@ -47,7 +47,7 @@ pub fn run(
 ) -> Result<WalkedBatch, RunError> {
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, work, walked| {
         let batch = plan.walked(folder, work, walked)?;
-        folder.write(TABLE, &WalkedRow::columns(SizeUnit::Mm).csv(&batch.rows))?;
+        folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
         Ok(batch)
     })
 }

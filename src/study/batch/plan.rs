@@ -10,7 +10,8 @@ use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
-use crate::verdict::batch::{EXCHANGED, MAY_GOVERN, NAMED, governing};
+use crate::verdict::batch::{NAMED, governing};
+use crate::words::batch::{EXCHANGED, MAY_GOVERN};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
 
 /// Voids across the lattice of a first look, as `voidwalk design` searches.

@@ -107,9 +107,6 @@ impl ComparePlan {
         (comparison.cover, comparison.inches) = (self.cover.clone().dated(day), self.inches);
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
             case.by_practice = counts_as(&outcome.rules);
-            let lines = outcome.first_lines().into_iter();
-            case.first_lines = lines.map(|(name, words)| (name.to_owned(), words)).collect();
-            case.found = outcome.findings.iter().map(|finding| finding.sentence.clone()).collect();
         }
         Ok(comparison)
     }

@@ -7,6 +7,7 @@ use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
 use crate::verdict::{Finding, finding, ordered};
+use crate::outcome::record::Note;
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;

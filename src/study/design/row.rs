@@ -16,6 +16,7 @@ use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
 use crate::verdict::{Finding, finding};
 use crate::walk::{Clogged, PlainExits};
+use crate::outcome::record::Note;
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;

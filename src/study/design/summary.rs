@@ -23,6 +23,7 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::study::days::today;
 use crate::verdict::{Finding, SpecificationOptions, design_answer, finding};
+use crate::outcome::record::Note;
 
 /// Ratio at which the rules are read where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;

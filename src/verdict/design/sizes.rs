@@ -5,7 +5,7 @@ use crate::outcome::design::band::limits;
 use crate::outcome::numbers::{rounded_down, rounded_up};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::DESIGN;
-use crate::verdict::rule_words::cited_rule;
+use crate::verdict::rule_result::cited_rule;
 
 /// The sizes that ratios D15F/D85B stand for.
 pub(super) struct Sizes {

@@ -4,7 +4,7 @@ use super::case::{Case, strictest};
 use super::sizes::Sizes;
 use crate::outcome::design::{Design, DesignRow};
 use crate::outcome::digits::percent;
-use crate::verdict::rule_words::cited_rule;
+use crate::verdict::rule_result::cited_rule;
 
 /// The limit of an answer, and what the walk says beside it; sentences without their full stops.
 pub(super) struct CaseWords {

@@ -4,15 +4,13 @@ use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradat
 use crate::outcome::design::DesignFinding;
 use crate::outcome::design::band::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
-use crate::outcome::numbers::{rounded_down, significant};
-use crate::outcome::record::{AppliedRule, IfDispersive};
+use crate::outcome::numbers::rounded_down;
+use crate::outcome::record::{AppliedRule, IfDispersive, Note};
 use crate::outcome::rules::{
     BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInputs, apply, sieved_limit,
 };
 use crate::verdict::base_cautions::broad_base;
-use crate::verdict::entry::Finding;
-use crate::verdict::finding;
-use crate::verdict::rule_words::{cited_rule, has_no_margin};
+use crate::verdict::rule_result::{cited_rule, has_no_margin};
 
 /// D15F (mm) of the filter at which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
@@ -85,28 +83,26 @@ impl ReadCurve {
     }
 
     /// What a reader must know of the base itself.
-    fn findings(&self) -> Vec<Finding> {
+    fn notes(&self) -> Vec<Note> {
         let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
-        let unstable = unstable.map(|of| finding::unstable_base(of.value, of.percent));
+        let unstable = unstable.map(|of| Note::UnstableBase { index: of.value, finer_percent: of.percent });
         let broad = self.of.regraded_at_mm.and_then(|_| broad_base(&self.base));
-        unstable.into_iter().chain(broad).chain(self.flat()).collect()
+        unstable.into_iter().chain(broad).chain(self.flat().into_iter().flatten()).collect()
     }
 
-    /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
-    fn flat(&self) -> Option<Finding> {
+    /// A gap of the base, or a flat part that may be one, with the limit of the other reading; not of what practice
+    /// cuts off.
+    fn flat(&self) -> Option<Vec<Note>> {
         let cut = self.of.regraded_at_mm.unwrap_or(f64::INFINITY);
-        let of = self.flattest.filter(|of| of.within < FLAT_PERCENT && of.from_mm <= cut)?;
-        let to = 4.0 * of.from_mm;
-        if of.within < GAP_PERCENT {
-            return Some(finding::gap_of_base(of.within, of.from_mm, to));
+        let flat = self.flattest.filter(|flat| flat.within < FLAT_PERCENT && flat.from_mm <= cut)?;
+        let (from_mm, to_mm, within_percent) = (flat.from_mm, 4.0 * flat.from_mm, flat.within);
+        if within_percent < GAP_PERCENT {
+            return Some(vec![Note::GapOfBase { within_percent, from_mm, to_mm }]);
         }
-        let also = self.greatest_regraded_on(of.from_mm).map(|limit| {
-            let (size, said) = (significant(of.from_mm), rounded_down(limit));
-            let is_same = self.of.d15f_max_mm.is_some_and(|most| rounded_down(most) == said);
-            let said = if is_same { "the same".to_owned() } else { format!("{said} mm") };
-            format!("; regraded on {size} mm instead, the maximum D15F by practice would be {said}")
-        });
-        Some(finding::flat_base(of.from_mm, to, of.within, &also.unwrap_or_default()))
+        let is_other = |limit: &f64| self.of.d15f_max_mm.is_none_or(|most| rounded_down(most) != rounded_down(*limit));
+        let limit = self.greatest_regraded_on(from_mm).filter(is_other);
+        let limit = limit.map(|most_d15f_mm| Note::FlatBaseLimit { sieve_mm: from_mm, most_d15f_mm });
+        Some([Note::FlatBase { from_mm, to_mm, within_percent }].into_iter().chain(limit).collect())
     }
 
     /// The maximum D15F (mm) by practice of the part that passes an opening (mm); `None` where nothing of
@@ -140,11 +136,10 @@ fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
 }
 
 /// What a reader must know of a base of these curves, with the name of the curve where there are several.
-pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
+pub(super) fn notes(read: &[ReadCurve]) -> Vec<DesignFinding> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
     let of = |curve: &ReadCurve| {
-        let found = curve.findings().into_iter();
-        found.map(|of| DesignFinding { row: row(curve), finding: of.record() }).collect::<Vec<_>>()
+        curve.notes().into_iter().map(|note| DesignFinding { row: row(curve), note }).collect::<Vec<_>>()
     };
     read.iter().flat_map(of).collect()
 }

@@ -5,8 +5,8 @@ use crate::gradation::FEW_FINES;
 use crate::outcome::numbers::significant;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
-use crate::verdict::rule_words::cited_rule;
-use crate::verdict::words::capital;
+use crate::verdict::rule_result::cited_rule;
+use crate::words::capital;
 
 /// Percent of fines above which a base is of category 1.
 const MANY_FINES: f64 = 85.0;

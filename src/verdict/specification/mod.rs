@@ -17,7 +17,7 @@ use crate::outcome::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, NamedCurve, WIDEST_BAND,
     range_of_tests,
 };
-use crate::verdict::words::capital;
+use crate::words::capital;
 use curve::ReadCurve;
 use steps::{Control, D15_OVER_D10, Found};
 
@@ -90,7 +90,7 @@ impl Specification {
             inputs: Vec::new(),
             steps: found.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
-            findings: curve::findings(&read).into_iter().chain(sides::findings(band.as_ref())).collect(),
+            notes: curve::notes(&read).into_iter().chain(sides::notes(band.as_ref())).collect(),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,

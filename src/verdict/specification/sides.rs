@@ -5,7 +5,7 @@ use crate::outcome::design::DesignFinding;
 use crate::outcome::design::specification::SizeBand;
 use crate::outcome::digits::percent;
 use crate::outcome::numbers::significant;
-use crate::verdict::finding;
+use crate::outcome::record::Note;
 
 /// The greatest D'15/d'85 of a stable soil by Kezdi.
 pub(super) const MOST_KEZDI: f64 = 4.0;
@@ -45,6 +45,13 @@ impl Side {
         kezdi.into_iter().chain(shape).collect()
     }
 
+    /// Whose rules it does not keep.
+    fn authorities(&self) -> Vec<String> {
+        let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
+        let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
+        kezdi.into_iter().chain(shape).collect()
+    }
+
     /// Whether both indices are known.
     pub fn is_known(&self) -> bool {
         self.kezdi.is_some() && self.kenney_lau.is_some()
@@ -52,11 +59,11 @@ impl Side {
 }
 
 /// What a reader must know of the sides of a band.
-pub(super) fn findings(band: Option<&SizeBand>) -> Vec<DesignFinding> {
+pub(super) fn notes(band: Option<&SizeBand>) -> Vec<DesignFinding> {
     let of = |side: &Side| {
-        let broken = side.broken().join(" and ");
-        let finding = finding::unstable_side(side.name, &broken).record();
-        (!broken.is_empty()).then_some(DesignFinding { row: None, finding })
+        let authorities = side.authorities();
+        let note = Note::UnstableSide { side: side.name.into(), authorities: authorities.clone() };
+        (!authorities.is_empty()).then_some(DesignFinding { row: None, note })
     };
     band.map(|band| Side::both(band).iter().filter_map(of).collect()).unwrap_or_default()
 }

@@ -9,7 +9,7 @@ use crate::outcome::design::specification::{BandSize, ENTERED_BY, SizeBand, Spec
 use crate::outcome::numbers::significant;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, RULES, WIDEST_BAND};
-use crate::verdict::words::capital;
+use crate::words::capital;
 
 /// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
 pub(super) const D15_OVER_D10: f64 = 1.2;

@@ -1,21 +1,19 @@
-//! What a class means.
+//! The classes of the model.
 
 use crate::outcome::record::{RunSummary, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 
-impl UndecidedBy {
-    /// Why, in a sentence without its end.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Curve => {
+/// Why a class is undecided, in a sentence without its end.
+pub fn undecided_by(cause: UndecidedBy) -> &'static str {
+        match cause {
+            UndecidedBy::Curve => {
                 "the constriction curve is known within a range only, and its ends do not give one class"
             }
-            Self::SecondRun => {
+            UndecidedBy::SecondRun => {
                 "some and continuing erosion differ by the second run, and only a first was asked for"
             }
-            Self::Replicates => "the replicates do not separate the classes; more replicates may decide it",
+            UndecidedBy::Replicates => "the replicates do not separate the classes; more replicates may decide it",
         }
-    }
 }
 
 /// A text with a capital letter at its beginning.
@@ -61,7 +59,7 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
         return format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "));
     }
     let by = match summary {
-        [first] if first.eroded_mass_fraction.mean >= threshold => UndecidedBy::SecondRun.words(),
+        [first] if first.eroded_mass_fraction.mean >= threshold => undecided_by(UndecidedBy::SecondRun),
         _ => "these replicates do not separate the classes",
     };
     format!("Inconclusive: {by}.")

@@ -1,107 +1,104 @@
-//! The line of practice, which stands below every answer.
+//! The line of practice.
 
-use super::practice::{DRAINAGE_UNKNOWN, Standing, broken, headline, standing};
-use super::rule_words::{
-    against, credit, first_clause, has_no_margin, met_of, tests_are_stricter, without_margin,
+use super::dispersion::beyond_dispersive;
+use super::rule::value_and_limit;
+use super::rule_note::{missing, rule_note};
+use crate::outcome::numbers::{SizeUnit, fixed};
+use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Note, Outcome, RuleRole, TestedClass};
+use crate::outcome::rules::{
+    DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority, authority_in_brief,
 };
-use super::tested::{is_beyond_tests, is_beyond_unclear, tested, tested_in_brief};
-use super::washout::washout;
-use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Outcome, RuleRole, TestedClass};
-use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::verdict::practice::{Standing, broken, headline, standing};
+use crate::verdict::rule_result::{credit, has_no_margin, met_of, tests_are_stricter, without_margin};
+use crate::verdict::tested::{self, is_beyond_tests, is_beyond_unclear};
+use crate::verdict::washout::{Washout, washout};
 
-impl Outcome {
-    /// What practice says of the pair, in a line.
-    pub fn practice_in_words(&self) -> String {
-        practice_line(&self.rules, self.if_dispersive, Some(self.inputs.filter.d15_mm))
-    }
-
-    /// The limit of a dispersive base that the filter breaks, where nobody has said whether the base is one;
-    /// `None` where it breaks none, or is too coarse in any case.
-    pub(crate) fn beyond_if_dispersive(&self) -> Option<String> {
-        self.if_dispersive?.beyond_in_words(&self.rules, Some(self.inputs.filter.d15_mm))
-    }
-
-    /// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
-    pub fn judged_alone(&self) -> Option<&'static str> {
-        let is_envelope = self.findings.iter().any(|finding| finding.id == "envelope");
-        (standing(&self.rules) == Standing::Met && !is_envelope).then_some(
-            "Judged for these two gradations alone. The coarsest filter and the finest base that the works \
-             allow must keep the limit, too; that was not checked here.",
-        )
-    }
+/// The line of practice of a pair that was walked.
+pub fn practice(outcome: &Outcome, unit: SizeUnit) -> String {
+    practice_line(&outcome.rules, outcome.if_dispersive, Some(outcome.inputs.filter.d15_mm), unit)
 }
 
-/// What practice says of a pair, in a line: the headline, D15F beside the limit of design, the class of
-/// tests, and every other rule that is not kept; with the limit that a filter of this D15F (mm) breaks if
-/// the base is dispersive.
-pub(super) fn practice_line(
+/// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
+pub fn judged_alone(outcome: &Outcome) -> Option<&'static str> {
+    let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
+    (standing(&outcome.rules) == Standing::Met && !is_envelope).then_some(
+        "Judged for these two gradations alone. The coarsest filter and the finest base that the works allow \
+         must keep the limit, too; that was not checked here.",
+    )
+}
+
+/// The line of practice: the headline, D15F beside the limit of design, the class of tests, and every other
+/// rule that is not kept; with the limit that a filter of this D15F (mm) breaks if the base is dispersive.
+pub fn practice_line(
     rules: &[AppliedRule],
     if_dispersive: Option<IfDispersive>,
     d15f_mm: Option<f64>,
+    unit: SizeUnit,
 ) -> String {
-    let dispersive = if_dispersive.and_then(|limit| limit.beyond_in_words(rules, d15f_mm));
+    let dispersive = if_dispersive.and_then(|limit| beyond_dispersive(limit, rules, d15f_mm, unit));
     let Some(headline) = headline(rules, dispersive.is_some()) else {
         return "the limit of design was not applied".into();
     };
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
-    let mut clauses: Vec<String> = design.map(|rule| of_design(rule, rules)).into_iter().collect();
-    clauses.extend(of_other_retention(rules, design));
-    clauses.extend(of_tests(rules));
-    clauses.extend(washout(rules).map(|washout| washout.without_finer()));
+    let mut clauses: Vec<String> = design.map(|rule| of_design(rule, rules, unit)).into_iter().collect();
+    clauses.extend(of_other_retention(rules, design, unit));
+    clauses.extend(of_tests(rules, unit));
+    clauses.extend(washout(rules).map(|washout| without_finer(&washout, unit)));
     clauses.extend(besides(rules, headline).into_iter().map(str::to_owned));
     clauses.extend(dispersive);
     format!("{}: {}", headline.words(), clauses.join("; "))
 }
 
 /// D15F beside the limit of design.
-fn of_design(rule: &AppliedRule, rules: &[AppliedRule]) -> String {
-    let [value, limit] = against(rule, 3);
-    let at_most = if rule.limit_at_most { "at most " } else { "" };
+fn of_design(rule: &AppliedRule, rules: &[AppliedRule], unit: SizeUnit) -> String {
+    let [value, limit] = value_and_limit(rule, unit);
     let d15f = match standing(rules) {
-        Standing::Open(between) => between,
-        _ => format!("D15F {value}"),
+        Standing::Open(sieves) => rule_note(sieves, unit),
+        _ => format!("D15F {}", value.as_deref().unwrap_or("unknown")),
     };
-    let limit = match rule.limit {
-        Some(_) => format!("limit {at_most}{limit} ({})", credit(rule)),
+    let at_most = if rule.limit_at_most { "at most " } else { "" };
+    let limit = match limit {
+        Some(limit) => format!("limit {at_most}{limit} ({})", credit(rule)),
         None => "limit not known".to_owned(),
     };
-    let needs = match (rule.met, rule.needs.of_sieves_between()) {
-        (None, None) if !rule.needs.is_empty() => format!(" ({})", first_clause(&rule.needs.to_string())),
-        _ => String::new(),
+    let needs = match (rule.met, rule.needs.first()) {
+        (None, Some(need)) => missing(*need).map(|missing| format!(" (needs {missing})")),
+        _ => None,
     };
     let margin = if has_no_margin(rules) { ", without a margin" } else { "" };
-    format!("{d15f}, {limit}{margin}{needs}")
+    format!("{d15f}, {limit}{margin}{}", needs.unwrap_or_default())
 }
 
 /// Other rules of retention that are not kept, where the limit of design has no result.
-fn of_other_retention(rules: &[AppliedRule], design: Option<&AppliedRule>) -> Vec<String> {
+fn of_other_retention(rules: &[AppliedRule], design: Option<&AppliedRule>, unit: SizeUnit) -> Vec<String> {
     let is_open = design.is_none_or(|design| design.met.is_none());
     let others = broken(rules, RuleRole::Retention).into_iter();
     let others = others.filter(|rule| is_open && ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id));
     let words = |rule: &AppliedRule| {
-        let [value, limit] = against(rule, 3);
+        let [value, limit] = value_and_limit(rule, unit).map(Option::unwrap_or_default);
         format!("{} {value}, limit {limit} ({})", rule.quantity, authority(rule))
     };
     others.map(words).collect()
 }
 
 /// The class of such pairs in tests, with the boundary beyond which the filter lies.
-fn of_tests(rules: &[AppliedRule]) -> Option<String> {
+fn of_tests(rules: &[AppliedRule], unit: SizeUnit) -> Option<String> {
     // Within the one limit of a dispersive base tests have no other.
     if without_margin(rules).is_some_and(|rule| rule.met == Some(true)) {
         return None;
     }
     let boundary = |id: &str| {
-        let rule = rules.iter().find(|rule| rule.id == id && rule.applies && rule.limit.is_some())?;
+        let rule = rules.iter().find(|rule| rule.id == id && rule.applies)?;
         let at_most = if rule.limit_at_most { "at most " } else { "" };
-        Some(format!("{at_most}{}", against(rule, 3)[1]))
+        let [_, limit] = value_and_limit(rule, unit);
+        limit.map(|limit| format!("{at_most}{limit}"))
     };
-    let class = match tested(rules) {
+    let class = match tested::tested(rules) {
         TestedClass::None => "criterion of no erosion met",
         TestedClass::Unknown if !is_beyond_tests(rules) => return None,
-        _ => tested_in_brief(rules),
+        _ => tested_class(rules),
     };
-    let beyond = match tested(rules) {
+    let beyond = match tested::tested(rules) {
         TestedClass::Continuing => {
             let unclear = if is_beyond_unclear(rules) { ", a boundary that tests leave unclear" } else { "" };
             boundary(TESTS_CONTINUING).map(|limit| format!(" (beyond {limit}{unclear})"))
@@ -114,7 +111,39 @@ fn of_tests(rules: &[AppliedRule]) -> Option<String> {
     Some(format!("Foster and Fell: {class}{}", beyond.unwrap_or_default()))
 }
 
-/// What other rules say of the filter that the headline does not.
+/// The class by the boundaries that Foster and Fell saw in tests: beyond that of no erosion a base erodes,
+/// also where tests identified no boundary of the classes beyond.
+pub fn tested_class(rules: &[AppliedRule]) -> &'static str {
+    tested_in_brief(tested::tested(rules), is_beyond_tests(rules))
+}
+
+/// The same of a class, and whether the filter is coarser than any for which tests found no erosion.
+pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
+    match class {
+        TestedClass::None => "no erosion",
+        TestedClass::Some => "at least some erosion, excessive not excluded",
+        TestedClass::Excessive => "excessive erosion",
+        TestedClass::Continuing => "continuing erosion",
+        TestedClass::Unknown if is_beyond => "at least some erosion, worse not excluded",
+        TestedClass::Unknown => "class not known",
+    }
+}
+
+/// D15F of a filter without the finer part that it may lose.
+fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
+    let more = if washout.is_capped() { "; more may go" } else { "" };
+    let d15f = match washout.unit {
+        "mm" => unit.within([Some(washout.left.d15f), Some(washout.least)], " mm")[0].clone().unwrap_or_default(),
+        name => format!("{} {name}", fixed(washout.left.d15f, 3)),
+    };
+    format!(
+        "without its finest {} % (by {}{more}) D15F is {d15f}, beyond the limit",
+        fixed(washout.left.percent, 1),
+        authority_in_brief(washout.by)
+    )
+}
+
+/// Other rules that are not kept and that the headline does not name.
 fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
     let breaks = |role| !broken(rules, role).is_empty();
     let loses = [Headline::MayLoseFiner, Headline::TooCoarseWithoutFiner].contains(&headline);
@@ -124,11 +153,10 @@ fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
         (breaks(RuleRole::Stability) && !loses, "may lose its finer part"),
         (drains && headline != Headline::MayNotDrain, "may not drain"),
         (breaks(RuleRole::Placing) && headline != Headline::MaySegregate, "may segregate"),
-        (!drains && rules.iter().any(is_unknown), DRAINAGE_UNKNOWN),
+        (!drains && rules.iter().any(is_unknown), "drainage not known"),
     ];
     all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,7 +196,7 @@ mod tests {
             let rules = rules(filter, base, false);
             assert_eq!(headline(&rules, false), Some(expected));
             assert_eq!(record(&rules, None).unwrap().class, expected.class());
-            let line = practice_line(&rules, None, None);
+            let line = practice_line(&rules, None, None, SizeUnit::Mm);
             assert!(line.starts_with(expected.words()) && line.split(' ').count() < 60, "{line}");
         }
         assert_eq!(headline(&[], false), None);
@@ -213,6 +241,6 @@ mod tests {
         let rules = PairRules::of(&Gradation::from_lines(&SAND).unwrap(), &filter).rules;
         assert_eq!(headline(&rules, false), Some(Headline::SievesMissing));
         assert_eq!(record(&rules, None).unwrap().d15f_mm, Some([0.3, 38.0]));
-        assert!(practice_line(&rules, None, None).contains("D15F lies between 0.3 and 38 mm"));
+        assert!(practice_line(&rules, None, None, SizeUnit::Mm).contains("D15F lies between 0.3 and 38 mm"));
     }
 }
