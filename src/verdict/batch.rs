@@ -8,7 +8,7 @@ use super::rule_words::{against, credit};
 use super::tested::tested_in_brief;
 use super::washout::washout;
 use crate::gradation::SoilSample;
-use crate::outcome::design::band::{retaining, retention};
+use crate::outcome::design::retention::{retaining, retention};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, PracticeClass, RuleNote, RuleQuantity, RuleRole, RuleText};
 use crate::outcome::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, OpenBase, PERMEABILITY, sieved_limit};

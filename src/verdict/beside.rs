@@ -6,9 +6,6 @@ use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{CurveRange, Outcome, Run, ShortOf, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 
-/// Id of a finest part of the filter that the mass eroded does not know of.
-pub const NOT_COUNTED: &str = "pan_of_filter";
-
 /// Above this part of its volume a void holds more than any packing of particles would.
 const ROOM: f64 = 0.6;
 

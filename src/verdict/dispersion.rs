@@ -9,7 +9,7 @@ use super::quantity::fixed;
 use super::washout::{lost_beyond, washout};
 use crate::gradation::{FEW_FINES, Gradation};
 use crate::outcome::apart::value_and_limit;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
 use crate::outcome::rules::{NamedCurve, RuleInputs, apply};

@@ -5,9 +5,6 @@ use serde_json::Map;
 use super::quantity::FindingValue;
 use crate::outcome::record::{FindingRecord, Topic};
 
-/// The name of the finding that the base is broadly graded.
-pub const BROAD_BASE: &str = "broad_base";
-
 /// What the table declares of a finding.
 #[derive(Debug)]
 pub struct Entry {

@@ -62,11 +62,6 @@ findings! {
         "A few particles decide where the filter begins to erode{at}. Of {eroding:network} that erode, \
          {held} held in the first run at a larger D15F/D85B than one at which they erode. With other random \
          numbers a filter may erode at a smaller D15F/D85B than the one given; a wider network is steadier.";
-    /// A minimum D15F that drains above the greatest that holds.
-    empty_band(least: Text, greatest: Text, set_by: Text): Study;
-        "band", "design.md",
-        "No filter of this shape both drains and holds this base. To drain it D15F must be at least {least}, \
-         but {set_by} allows at most {greatest}.";
     /// A search in which nothing could be walked.
     nothing_walked(at: Text): Study;
         "search", "design.md",
@@ -168,11 +163,6 @@ findings! {
         "grading", "soils.md",
         "The model errs on the unsafe side for this base. It is broadly graded (Cu {cu}), so that a few \
          coarse grains block for all the rest.";
-    /// A base that was regraded in another size.
-    regraded_elsewhere(at: Mm): Base;
-        "grading", "design.md",
-        "The base was regraded on {at} in the size in which it is stated, and then scaled. Practice regrades \
-         the scaled base elsewhere, or not at all.";
     /// A dispersive base.
     dispersive_base(): Base;
         "dispersion", "rules.md",

@@ -13,9 +13,9 @@
 //! - `rule_notes` has the words of what those rules say beside their results.
 //! - `walks` is what walks say themselves, `beside` what their results say beside the verdict.
 //! - [`DesignedSamples`] are many samples with how coarse a filter may be for each.
-//! - [`design_answer()`] is how coarse a filter may be, and [`Band`] the band of a specification; `fitting`
-//!   is which standard products are said to fit, and `base_cautions` what is said of the base itself.
-//! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here.
+//! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made and worded here;
+//!   `fitting` is which standard products fit it, `base_cautions` what is said of the base itself, and
+//!   `design_lines` the lines of practice and of the model that a design begins with.
 //! - [`PairRules`] are two soils as practice sees them, without a walk.
 //! - `batch` is what practice says of many samples, a row each; [`BatchTable`] reads them from their files,
 //!   and [`WalkedBatch`] is them with what their walks say.
@@ -24,7 +24,6 @@
 //! - `words` are what a class means.
 
 mod answer;
-mod band;
 mod base_cautions;
 pub(crate) mod batch;
 pub(crate) mod batch_counts;
@@ -32,7 +31,7 @@ mod batch_table;
 mod batch_words;
 pub(crate) mod beside;
 mod conclusion;
-mod design;
+mod design_lines;
 mod designed_samples;
 mod designed_words;
 pub(crate) mod dispersion;
@@ -61,14 +60,10 @@ pub(crate) mod words;
 #[cfg(test)]
 mod worse_soils;
 
-#[cfg(doc)]
-use crate::outcome::design::band::Band;
-
 pub use answer::{ordered, rank};
 pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
 pub use conclusion::FOREMOST;
-pub use design::{FinestBase, design_answer};
 pub use designed_samples::{DesignedSample, DesignedSamples, DesignedWalks, SampleDesign};
 pub use entry::{Entry, Finding};
 pub use mistake::{Mistake, MistakeKind};

@@ -3,7 +3,7 @@
 use super::practice::{Standing, broken, standing};
 use super::rule_words::first_clause;
 use crate::gradation::FINES_MM;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::numbers::{in_digits, rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole};
 use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};

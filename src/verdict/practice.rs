@@ -5,7 +5,7 @@ use super::finding;
 use super::rule_words::{against, bounded, first_clause, listed, met_of};
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
-use crate::outcome::design::band::retaining;
+use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{
     AppliedRule, Headline, Practice, PracticeClass, RuleQuantity, RuleRole, TestedClass, Verdict,
 };

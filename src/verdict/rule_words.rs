@@ -2,7 +2,7 @@
 //! it.
 
 use crate::outcome::apart::{digits_of, value_and_limit};
-use crate::outcome::design::band::retaining;
+use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
 use crate::outcome::rules::{
     DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, authority,

@@ -10,7 +10,7 @@ use super::quantity::fixed;
 use super::rule_words::{met_of, with_unit};
 use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::apart::value_and_limit;
-use crate::outcome::design::band::retention;
+use crate::outcome::design::retention::retention;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
 use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, authority_in_brief};
 
@@ -104,11 +104,6 @@ impl Washout<'_> {
     /// The same for the cell of a table.
     pub fn in_brief(&self) -> String {
         format!("may lose its finer part, too coarse without {}", self.part())
-    }
-
-    /// D15F without that part, behind D15F as placed.
-    pub fn as_placed(&self) -> String {
-        format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
     }
 }
 
