@@ -41,19 +41,16 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (of.version) "." }
     };
     #[cfg(feature = "xlsx")]
-    super::workbook::write_specification_workbook(folder, &of, None)?;
-    let (stated, soils) = (Stated::of(&of), GivenSoils::of_specification(&of));
+    super::workbook::write_specification_workbook(folder, &of)?;
+    let soils = GivenSoils::of_specification(&of);
     let made = html! { table.facts { tbody { (input_files(&of.inputs)) } } };
     let title = "Specification of a filter";
-    Sections::new(title, title, &names)
+    let page = Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
         .words(&html! { section.sheet { (answer(&of)) } })
-        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
-        .section("More warnings", &more_warnings(&of))
-        .section("Limits sieve by sieve", &stated.limits)
-        .section("Standard products", &products(&of, true))
-        .section("Step by step", &stated.words)
+        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()));
+    with_details(page, &of)
         .section(soils.heading(), &soils.appendix())
         .section(
             "How this was made",
@@ -66,31 +63,20 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "specification.html", &footer)
 }
 
-/// The parts of a specification that its own page and that of a design show.
-#[derive(Default)]
-pub(super) struct Stated {
-    /// Every step.
-    pub words: Markup,
-    /// What a delivery may have finer than each sieve.
-    pub limits: Markup,
-    /// Margins of standard products.
-    pub products: Markup,
+/// Adds what a page says of a specification below its first sheet.
+pub(super) fn with_details(page: Sections, of: &Specification) -> Sections {
+    page.section("More warnings", &more_warnings(of))
+        .section("Limits sieve by sieve", &limits(of))
+        .section("Standard products", &products(of))
+        .section("Step by step", &steps(of))
 }
 
-impl Stated {
-    pub(super) fn of(specification: &Specification) -> Self {
-        Self {
-            words: steps(specification),
-            limits: limits(specification),
-            products: products(specification, false),
-        }
-    }
-}
-
-fn answer(of: &Specification) -> Markup {
+/// The answer of practice.
+pub(super) fn answer(of: &Specification) -> Markup {
     html! {
         section.verdict {
             @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
+            p { "Limit: " (clean(&of.limit_in_words())) "." }
             (to_specify(of))
             @if let Some(said) = of.without_margin_in_words() { p { (unbroken(&said)) "." } }
             @if let Some(said) = of.if_dispersive_in_words(DESIGN_AGAIN) {
@@ -116,7 +102,7 @@ fn more_warnings(of: &Specification) -> Markup {
 }
 
 /// The first warnings of the base itself.
-pub(super) fn cautions(of: &Specification) -> Markup {
+fn cautions(of: &Specification) -> Markup {
     let unit = SizeUnit::of(false, of.inches);
     html! {
         @for row in of.notes.iter().take(WARNINGS) {
@@ -126,12 +112,12 @@ pub(super) fn cautions(of: &Specification) -> Markup {
 }
 
 /// What the specification lacks; nothing without a band.
-pub(super) fn still_to_set(of: &Specification) -> Markup {
+fn still_to_set(of: &Specification) -> Markup {
     html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
-pub(super) fn to_specify(of: &Specification) -> Markup {
+fn to_specify(of: &Specification) -> Markup {
     let Some(band) = &of.band else { return html! {} };
     let unit = SizeUnit::of(false, of.inches);
     let sides = [("Fine side", true), ("Coarse side", false)];
@@ -197,11 +183,11 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Margins of standard products; who judges them elsewhere says there whether they fit.
-fn products(of: &Specification, says_fit: bool) -> Markup {
+/// Margins of standard products, and whether they fit.
+fn products(of: &Specification) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
     let unit = SizeUnit::of(false, of.inches);
-    let mut table = Table::of(&of.products)
+    let table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
         .number("D15, fine to coarse side (mm)", |of| {
@@ -210,14 +196,12 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         })
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
-        .text("What else its sides do not keep", |of| clean(&of.not_kept));
-    if says_fit {
-        table = table.text("", |product| match (&*of.product_in_words(product), product.fits()) {
+        .text("What else its sides do not keep", |of| clean(&of.not_kept))
+        .text("", |product| match (&*of.product_in_words(product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
             (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
             (said, _) => html! { (said) },
         });
-    }
     let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));
     html! {
         @if !of.products.is_empty() {
@@ -251,7 +235,7 @@ mod tests {
         assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
         let unknown = Specification { products: margins((Some(0.1), 0.1), None), ..unknown };
         assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
-        let page = products(&core, true).into_string();
+        let page = products(&core).into_string();
         assert!(
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"

@@ -480,7 +480,7 @@ async function design() {
   try {
     if (shape === CU && !cu) throw new Error("give the Cu of the filter");
     await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
-      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, ...taken(), changes });
+      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, ...taken(), changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
@@ -582,43 +582,29 @@ const between = (range) => (range.low === null && range.high === null ? ""
   : `${number(range.low)} to ${number(range.high)}`);
 
 /** A boundary over networks, or why there is none; in bold where the walk decides. */
-function boundary(of, note, decides) {
-  const shown = (text) => el(decides ? "b" : "span", {}, text);
+function boundary(of, note) {
   if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, note || "it lies beyond the search")];
-  const sized = of.d85b_mm ? ["D85B", of.d85b_mm] : of.d15f_mm ? ["D15F", of.d15f_mm] : null;
   return [
-    ...(sized ? [shown(`${sized[0]} ${number(sized[1].median)} mm`), el("br"), between(sized[1]), el("br")] : []),
-    sized ? `D15F/D85B ${number(of.median)}` : shown(`D15F/D85B ${number(of.median)}`), el("br"), between(of),
+    ...(of.d15f_mm ? [`D15F ${number(of.d15f_mm.median)} mm`, el("br"), between(of.d15f_mm), el("br")] : []),
+    `D15F/D85B ${number(of.median)}`, el("br"), between(of),
     note ? el("span", { class: "small" }, el("br"), note) : null];
 }
 
 function boundariesOf(job) {
   const done = job.result;
-  const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
-  const decides = !done.answer || (done.answer.set_by !== "practice" && done.answer.d15f_over_d85b !== null);
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
-    el("td", {}, boundary(row.no_erosion, row.no_erosion_note, decides)), el("td", {}, boundary(row.continuing, row.continuing_note, decides)),
-    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
+    el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note),
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
-  const said = done.answer || {};
-  return [done.answer ? el("p", { class: "word" }, `${said.limit}.`) : null,
-    said.washout ? el("p", {}, el("b", {}, `${said.washout}.`)) : null,
-    said.margin ? el("p", {}, `${said.margin}.`) : null,
-    said.if_dispersive ? el("p", {}, el("b", {}, `${said.if_dispersive}.`)) : null,
-    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
-    said.walk ? el("p", {}, `${said.walk}.`) : null,
+  return [...answer(done.lines),
+    ...(done.beside || []).filter(Boolean).map((said) => el("p", {}, `${said}.`)),
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
-    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
-      el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.products ? el("p", {}, `${done.products}.`) : null,
+    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
+    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
+      el("thead", {}, el("tr", {}, ...["Density, thickness", "In the model: no erosion up to", "continuing erosion from"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
 }
-
-/** No green where no boundary is known, where the walk sets the answer, where practice has no answer, or where no filter drains and holds. */
-const colourOfDesign = (done) => (!done.fits_by_practice || (done.answer && done.answer.d15f_over_d85b === null)
-  || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
-  : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
 
 /** The lines that every face begins with. */
 const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
@@ -657,7 +643,7 @@ function card(job) {
   };
   const isDone = job.state === "done" && job.result;
   const kind = isDone && job.kind === "judge" ? COLOURS[job.result.colour] || ""
-    : isDone && job.kind === "design" ? colourOfDesign(job.result) : job.state;
+    : isDone && job.kind === "design" ? "" : job.state;
   const words = { waiting: `waits, ${job.before} before it`, running: job.stopping ? "stops, and saves what is done" : "is walked", stopped: "stopped",
     done: "", refused: "refused", failed: "failed" }[job.state];
   const parts = [el("h3", {}, job.title, words ? el("span", { class: "small" }, ` ${words}`) : "")];

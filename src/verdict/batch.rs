@@ -8,7 +8,7 @@ use super::rule_result::credit;
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
 use crate::gradation::SoilSample;
-use crate::outcome::design::band::{retaining, retention};
+use crate::outcome::design::retention::{retaining, retention};
 use crate::outcome::record::{
     AppliedRule, IfDispersive, Note, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
 };

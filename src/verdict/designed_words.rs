@@ -27,39 +27,24 @@ fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&
     limits.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The sample with the least bound of D15F, and that bound (mm); `None` where none has any.
+/// The sample with the least maximum D15F, and that D15F (mm); `None` where none has any.
 fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
-    let limits = rows.into_iter().filter_map(|row| Some((row, row.bound()?)));
+    let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_max_mm?)));
     limits.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 impl DesignedSample {
-    /// The maximum D15F, and what set it, in words.
+    /// The maximum D15F, and whose rule sets it, in words.
     fn greatest_in_words(&self) -> String {
-        let rule = self.rule_of_answer();
-        match (self.d15f_max_mm, self.limit_mm, self.set_by()) {
-            (None, None, _) => "no maximum D15F is known".into(),
-            (None, Some(limit), _) => format!(
-                "no maximum D15F is known; practice allows {} mm at most ({})",
-                rounded_down(limit),
-                self.rule
-            ),
-            (Some(mm), _, Some("the walk")) => format!("D15F up to {} mm (the walk)", rounded_down(mm)),
-            (Some(mm), _, by) => {
-                format!("D15F up to {} mm ({}: {rule})", rounded_down(mm), by.unwrap_or("practice"))
-            }
-        }
+        self.d15f_max_mm.map_or_else(
+            || "no maximum D15F is known".into(),
+            |mm| format!("D15F up to {} mm (practice: {})", rounded_down(mm), self.rule),
+        )
     }
 
     /// Why its maximum D15F is not known.
     fn open_in_words(&self) -> String {
-        let why = self.design.as_ref().map_or(&self.no_band, |of| &of.said);
-        let why = if why.is_empty() { &self.not_walked } else { why };
-        let limit = match self.limit_mm {
-            Some(limit) => format!("limit of practice {} mm", rounded_down(limit)),
-            None => "limit of practice not known".into(),
-        };
-        format!("May govern, as no maximum D15F is known: {} ({limit}): {}", self.sample, within_line(why))
+        format!("May govern, as no maximum D15F is known: {}: {}", self.sample, within_line(&self.no_band))
     }
 }
 
@@ -138,8 +123,7 @@ impl DesignedSamples {
         }
     }
 
-    /// Which samples govern, what sets their limits, how far they can be relied on and which are open:
-    /// sentences without their ends; `again` is what to do where a sample is dispersive, as
+    /// Which samples govern, what sets their limits, which are open and which were not walked: sentences without their ends; `again` is what to do where a sample is dispersive, as
     /// [`DESIGN_EACH_AGAIN`](super::DESIGN_EACH_AGAIN).
     pub fn in_words(&self, again: &str) -> Vec<String> {
         let mut said = vec![self.for_all_in_words()];
@@ -159,19 +143,14 @@ impl DesignedSamples {
         said.extend(self.still_to_set());
         said.extend(self.cautions());
         said.extend(self.dispersion_in_words(again));
-        let walked = self.rows.iter().filter(|row| row.design.is_some()).count();
-        if walked > 0 {
-            said.extend(self.set_in_words());
-            said.extend(self.washout_in_words(walked));
-        }
         let (open, known): (Vec<_>, Vec<_>) = self.rows.iter().partition(|row| row.d15f_max_mm.is_none());
         let unserved = known.iter().filter(|row| !row.no_band.is_empty());
         said.extend(unserved.map(|row| format!("No band for {}: {}", row.sample, within_line(&row.no_band))));
         said.extend(open.into_iter().map(DesignedSample::open_in_words));
-        let by_practice = known.iter().filter(|row| !row.not_walked.is_empty());
-        let by_practice: Vec<&str> = by_practice.map(|row| row.sample.as_str()).collect();
-        if !by_practice.is_empty() {
-            said.push(format!("Not walked, by practice alone: {}", by_practice.join(", ")));
+        let not_walked = self.rows.iter().filter(|row| !row.not_walked.is_empty());
+        let not_walked: Vec<&str> = not_walked.map(|row| row.sample.as_str()).collect();
+        if !not_walked.is_empty() {
+            said.push(format!("Not walked: {}", not_walked.join(", ")));
         }
         said
     }
@@ -181,7 +160,7 @@ impl DesignedSamples {
     fn dispersion_in_words(&self, again: &str) -> Option<String> {
         let open: Vec<_> = self.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
         let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
-            of.beside(row.bound().unwrap_or(f64::INFINITY)).is_some()
+            of.beside(row.d15f_max_mm.unwrap_or(f64::INFINITY)).is_some()
         };
         let strictest =
             open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
@@ -219,33 +198,6 @@ impl DesignedSamples {
         };
         CAUTIONS.iter().filter_map(named).collect()
     }
-
-    /// For how many samples each of practice and walk sets the maximum D15F.
-    fn set_in_words(&self) -> Option<String> {
-        let mut counts: Vec<(&str, usize)> = Vec::new();
-        for by in self.rows.iter().filter_map(DesignedSample::set_by) {
-            match counts.iter_mut().find(|(what, _)| *what == by) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((by, 1)),
-            }
-        }
-        let each = |(by, count): &(&str, usize)| format!("for {} by {by}", counted(*count));
-        let each: Vec<String> = counts.iter().map(each).collect();
-        (!each.is_empty()).then(|| format!("The maximum D15F is set {}", each.join(", ")))
-    }
-
-    /// For how many of them the filter as given is too coarse without the finer part that it may lose.
-    fn washout_in_words(&self, walked: usize) -> Option<String> {
-        let is_so = |row: &&DesignedSample| row.design.as_ref().is_some_and(|of| of.washout.is_some());
-        let count = self.rows.iter().filter(is_so).count();
-        (count > 0).then(|| {
-            format!(
-                "The filter as given is not internally stable, and for {count} of {} too coarse without the \
-                 finer part that it may lose",
-                counted(walked)
-            )
-        })
-    }
 }
 
 #[cfg(test)]
@@ -254,7 +206,6 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::gradation::SoilSample;
     use crate::outcome::design::Specification;
-    use crate::outcome::design::band::SetBy;
     use crate::outcome::numbers::SizeUnit;
     use crate::verdict::DESIGN_EACH_AGAIN;
     use crate::verdict::SampleDesign;
@@ -267,80 +218,36 @@ mod tests {
         DesignedSample::of(&sample, &of)
     }
 
-    fn walked(row: DesignedSample, greatest: Option<f64>) -> DesignedSample {
-        let design = SampleDesign {
-            folder: "samples/x".into(),
-            no_erosion_d15f_mm: greatest,
-            no_erosion_d15f_over_d85b: None,
-            set_by: SetBy::Walk,
-            rule: String::new(),
-            washout: None,
-            said: "No ratio is known".into(),
-        };
-        DesignedSample { d15f_max_mm: greatest, design: Some(design), ..row }
+    /// With a model that holds this D15F (mm); without a number where it holds none.
+    fn walked(row: DesignedSample, model_d15f_mm: Option<f64>) -> DesignedSample {
+        let model = SampleDesign { folder: "samples/x".into(), model_d15f_over_d85b: None, model_d15f_mm };
+        DesignedSample { design: Some(model), ..row }
     }
 
     #[test]
-    fn the_least_d15f_governs_and_a_sample_without_one_may() {
+    fn the_least_d15f_of_practice_governs_whatever_the_model_holds() {
         // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
-        assert_eq!(
-            (core.limit_mm, core.d15f_max_mm, core.set_by()),
-            (Some(0.7), Some(0.7), Some("practice"))
-        );
-        let limit = sand.limit_mm.unwrap();
-        assert!((limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9, "{sand:?}");
+        let limit = sand.d15f_max_mm.unwrap();
+        assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
         let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
         let said = by_practice.in_words(DESIGN_EACH_AGAIN);
         assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
         assert!(
             said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
         );
-        // The walk allows less of one, and nothing is known of another.
-        let rows = vec![
-            walked(sand.clone(), Some(0.65)),
-            core,
-            walked(row("silt", &[(0.005, 0.0), (0.075, 90.0), (0.2, 100.0)]), None),
-        ];
-        let all = DesignedSamples::new("s".into(), rows);
-        // Practice allows the silt less than all others, whatever the walk knows of it.
-        let silt = all.rows[2].limit_mm.unwrap();
-        assert!(silt < 0.65, "{silt}");
-        assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(3), Some(1)]);
-        let said = all.in_words(DESIGN_EACH_AGAIN).join("\n");
-        for words in [
-            "the 2 samples that are settled (1 is not) within the limit of silt: ",
-            "Governing sample silt: no maximum D15F is known; practice allows ",
-            "Then sand: D15F up to 0.650 mm (the walk)",
-            "2 samples with 15 % fines or more may be dispersive, which is not stated. If silt is, D15F is ",
-            " mm. Their bands, and the filter for all, are then not valid: design again for dispersive soils",
-            "Not a complete specification: the maximum D90F is still to be set",
-            "The maximum D15F is set for 1 sample by the walk, for 1 sample by practice",
-            "May govern, as no maximum D15F is known: silt (limit of practice ",
-            "mm): No ratio is known",
-        ] {
-            assert!(said.contains(words), "{words}: {said}");
+        for held in [None, Some(0.1), Some(9.0)] {
+            let rows = [&sand, &core].map(|row| walked(row.clone(), held)).to_vec();
+            let all = DesignedSamples::new("s".into(), rows);
+            assert_eq!(all.in_words(DESIGN_EACH_AGAIN), said);
+            assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
         }
-        let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&all.rows)).unwrap();
-        assert!(csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,limit_mm,rule,"));
-        assert_eq!(csv.lines().count(), 4);
-        assert!(csv.contains("No ratio is known"), "{csv}");
-    }
-
-    #[test]
-    fn samples_for_which_the_filter_as_given_washes_out_are_counted() {
-        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
-        let of = |washout: Option<&str>| {
-            let of = walked(core.clone(), Some(0.7));
-            let washout = washout.map(str::to_owned);
-            let design = of.design.clone().map(|design| SampleDesign { washout, ..design });
-            DesignedSample { design, ..of }
-        };
-        let said = |all| DesignedSamples::new("s".into(), all).in_words(DESIGN_EACH_AGAIN).join("\n");
-        let some = said(vec![of(Some("w")), of(None)]);
-        assert!(some.contains("not internally stable, and for 1 of 2 samples too coarse without"), "{some}");
-        assert!(!said(vec![of(None)]).contains("too coarse without"));
+        let csv = String::from_utf8(DesignedSample::columns(SizeUnit::Mm).csv(&by_practice.rows)).unwrap();
+        assert!(
+            csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_max_mm,rule,")
+        );
+        assert_eq!(csv.lines().count(), 3);
     }
 
     /// The table of many samples warns as the specification of each.
@@ -387,7 +294,7 @@ mod tests {
     fn both_ends_are_of_the_samples_that_are_settled_and_a_bound_on_drainage_refuses_nothing() {
         // The open sample drains from far more than the settled one allows.
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
-        let gravel = DesignedSample { limit_mm: None, ..walked(row("g", &[(1.0, 0.0), (9.0, 100.0)]), None) };
+        let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);
         let said = DesignedSamples::new("s".into(), vec![core.clone(), gravel]).in_words(DESIGN_EACH_AGAIN);
         assert_eq!(

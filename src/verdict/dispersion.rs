@@ -5,7 +5,7 @@
 
 use super::washout::{lost_beyond, washout};
 use crate::gradation::{FEW_FINES, Gradation};
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive, Note};
 use crate::outcome::rules::{NamedCurve, RuleInputs, apply};
 

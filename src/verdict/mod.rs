@@ -11,12 +11,11 @@
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made here.
 
 mod answer;
-mod band;
 mod base_cautions;
 pub mod batch;
 mod batch_table;
 pub(crate) mod beside;
-mod design;
+mod design_lines;
 mod designed_samples;
 mod designed_words;
 pub(crate) mod dispersion;
@@ -37,13 +36,9 @@ pub mod washout;
 #[cfg(test)]
 mod worse_soils;
 
-#[cfg(doc)]
-use crate::outcome::design::band::Band;
-
 pub use answer::ordered;
 pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
-pub use design::{FinestBase, design_answer};
 pub use designed_samples::{DesignedSample, DesignedSamples, DesignedWalks, SampleDesign};
 pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};

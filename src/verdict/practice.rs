@@ -3,7 +3,7 @@
 use super::rule_result::met_of;
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
-use crate::outcome::design::band::retaining;
+use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{
     AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass, Verdict,
     d15f_between,

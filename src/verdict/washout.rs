@@ -8,7 +8,7 @@
 
 use super::rule_result::met_of;
 use crate::gradation::WIDE_LOOSE_PERCENT;
-use crate::outcome::design::band::retention;
+use crate::outcome::design::retention::retention;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
 use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 

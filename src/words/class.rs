@@ -22,12 +22,6 @@ pub fn capital(text: &str) -> String {
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// A sentence as it stands within another.
-pub fn within(sentence: &str) -> String {
-    let mut chars = sentence.trim_end_matches('.').chars();
-    chars.next().map_or(String::new(), |c| c.to_lowercase().chain(chars).collect())
-}
-
 /// What a class means, in a sentence, of runs whose means these are.
 pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
     let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);

@@ -3,7 +3,7 @@
 use super::dispersion::{beside_dispersive, beyond_dispersive};
 use super::rule_note::missing;
 use crate::gradation::FINES_MM;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::numbers::{SizeUnit, in_digits, rounded_down, rounded_up};
 use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole};
 use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};

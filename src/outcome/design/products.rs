@@ -1,11 +1,7 @@
-//! Standard products: which of them keep what a filter is asked for with both their own sides. Their own
-//! shapes are not walked.
+//! Standard products: which of them keep what a filter is asked for with both their own sides.
 //!
 //! Only products whose limits could be read in a public source are here.
 
-use serde::{Deserialize, Serialize};
-
-use super::band::Band;
 use crate::gradation::FINES_MM;
 use crate::outcome::numbers::significant;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
@@ -99,40 +95,6 @@ pub fn to_be_checked<'a>(products: impl Iterator<Item = (&'a str, &'a str)>) -> 
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
-/// A product beside a band.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Fit {
-    /// Its name.
-    pub name: String,
-    /// D15 (mm) of its fine and of its coarse side.
-    pub d15_mm: [f64; 2],
-    /// Whether its fine side drains.
-    pub drains: bool,
-    /// Whether its fine side drains only if the base's D15 is finer than its sieves tell.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub may_drain: bool,
-    /// Whether its coarse side is within what both walk and practice allow.
-    pub holds: bool,
-    /// Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
-    pub practice: Option<bool>,
-    /// Where its limits were read.
-    pub source: String,
-}
-
-impl Fit {
-    /// Whether the D15 of both its sides lies within the band and practice does not speak against it. D15
-    /// lies between sieves and is interpolated: a delivery within the limits may have another.
-    pub fn fits(&self) -> bool {
-        self.drains && self.holds && self.practice != Some(false)
-    }
-
-    /// Whether it fits if it drains, which is not known.
-    pub fn may_fit(&self) -> bool {
-        self.may_drain && self.holds && self.practice != Some(false)
-    }
-}
-
 /// The size (mm) at which a side has this percent finer, straight in percent over log size; its end where it
 /// does not reach it. Points are size (mm) and percent finer, rising.
 pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
@@ -188,27 +150,9 @@ impl Product {
     }
 }
 
-/// Every product beside a band in mm.
-pub fn fits(band: &Band) -> Vec<Fit> {
-    let one = |product: &Product| {
-        let [fine, coarse] = product.d15_mm();
-        Fit {
-            name: product.name.into(),
-            d15_mm: [fine, coarse],
-            drains: fine >= band.least,
-            may_drain: band.least_at_most && fine < band.least,
-            holds: coarse <= band.greatest,
-            practice: band.practice.map(|practice| coarse <= practice),
-            source: product.source.into(),
-        }
-    };
-    PRODUCTS.iter().map(one).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::design::band::SetBy;
 
     #[test]
     fn limits_rise_and_end_at_all() {
@@ -252,34 +196,5 @@ mod tests {
         let [fine, coarse] = PRODUCTS[4].d15_mm();
         let step = 12.5 / 4.75;
         assert!(near(fine, 4.75 * libm::pow(step, 0.1)) && near(coarse, 4.75 * libm::pow(step, 0.6)));
-    }
-
-    #[test]
-    fn a_product_fits_where_both_its_sides_do() {
-        let band = |least, greatest| Band {
-            least,
-            least_at_most: false,
-            greatest,
-            set_by: SetBy::Walk,
-            practice: Some(0.4),
-            practice_rule: String::new(),
-            practice_rule_id: None,
-            unit: "mm".into(),
-            is_empty: false,
-            said: String::new(),
-        };
-        let sand = |least, greatest| fits(&band(least, greatest)).remove(0);
-        // Practice allows 0.4 mm.
-        assert!(sand(0.17, 0.4).drains && !sand(0.17, 0.4).holds && !sand(0.17, 0.4).fits());
-        let allowed = Band { practice: Some(0.43), ..band(0.17, 0.43) };
-        assert!(fits(&allowed)[0].fits() && fits(&Band { practice: None, ..allowed })[0].fits());
-        assert!(!sand(0.18, 0.43).drains && !sand(0.17, 0.42).holds);
-        // A least that is one at most neither drains nor refuses what is finer.
-        let open = fits(&Band { least_at_most: true, practice: Some(0.7), ..band(0.375, 0.7) }).remove(0);
-        assert!(!open.drains && open.may_drain && open.may_fit() && !open.fits(), "{open:?}");
-        let coarse = fits(&Band { least_at_most: true, ..band(0.375, 0.3) }).remove(0);
-        assert!(coarse.may_drain && !coarse.may_fit() && !coarse.fits(), "{coarse:?}");
-        let wide = Band { practice: Some(1.0), ..band(0.1, 1.0) };
-        assert_eq!(fits(&wide).iter().filter(|fit| fit.fits()).count(), 1);
     }
 }

@@ -205,12 +205,16 @@ impl Specification {
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
-    /// What set the maximum D15F: the name of a rule, or the walk; `None` where it is not known.
-    pub fn set_by(&self) -> Option<&str> {
-        let greatest = self.d15f_max_mm?;
+    /// The curve that sets the maximum D15F, and that D15F (mm); `None` where it is not known.
+    pub fn strictest(&self) -> Option<(&SpecifiedCurve, f64)> {
+        self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
-        let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(if greatest < limit { "the walk" } else { &curve.d15f_max_rule })
+        limits.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Whose rule sets the maximum D15F; `None` where it is not known.
+    pub fn set_by(&self) -> Option<&str> {
+        self.strictest().map(|(curve, _)| &*curve.d15f_max_rule)
     }
 }
 

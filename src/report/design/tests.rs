@@ -2,7 +2,7 @@ use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::design::Boundary;
 use crate::outcome::design::Specification;
-use crate::outcome::design::band::{Band, SetBy};
+use crate::outcome::design::retention::{Band, SetBy};
 use crate::outcome::design::products::Fit;
 use crate::outcome::design::{BaseStated, DesignAnswer};
 use crate::outcome::record::{AppliedRule, ModelLimit, RuleRole, SheetCover};

@@ -36,8 +36,6 @@ pub(super) struct Row {
     pub d85_mm: Option<f64>,
     /// Whether the filter has a size of its own.
     pub filter_has_size: bool,
-    /// Whether the base is scaled, and the filter is as large as it is.
-    pub inverse: bool,
     /// What the walks may take.
     pub limits: ResourceLimits,
     /// The density of which this is an end of the range in which its constriction curve is known.
@@ -67,11 +65,6 @@ impl Row {
         self.case.curve_ends.iter().map(of).collect()
     }
 
-    /// Whether filter and base have sizes at a ratio.
-    pub fn has_size(&self) -> bool {
-        if self.inverse { self.filter_has_size } else { self.d85_mm.is_some() }
-    }
-
     /// D15F in the case's own unit.
     pub fn d15f(&self) -> f64 {
         self.case.filter.d(15.0).unwrap_or(f64::NAN)
@@ -86,10 +79,7 @@ impl Row {
 
     /// How much larger the filter is than the case has it at a ratio, where the base has a size.
     pub fn factor(&self, ratio: f64) -> Option<f64> {
-        match self.inverse {
-            true => Some(1.0),
-            false => Some(ratio * self.d85_mm? / self.d15f()),
-        }
+        Some(ratio * self.d85_mm? / self.d15f())
     }
 
     /// Layers at a ratio, where they hang on it.
@@ -102,8 +92,7 @@ impl Row {
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.wanted.thickness else { return None };
         let layer = self.case.filter.d_by_number(50.0).unwrap_or(self.case.unit_mm);
-        let layer = layer * self.factor(ratio)?;
-        (!self.inverse).then_some((mm, layer))
+        Some((mm, layer * self.factor(ratio)?))
     }
 
     /// How thick (mm) the one layer is that is walked at a ratio where less than half of one was asked for.

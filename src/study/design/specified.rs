@@ -52,7 +52,7 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
     let (dispersive, finer, sieves) = (options.dispersive, options.finer, options.sieves);
     let said = dispersive.then_some(true);
-    let specified = SpecificationOptions { dispersive: said, finer, sieves, walked_mm: None };
+    let specified = SpecificationOptions { dispersive: said, finer, sieves };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let cover = options.cover.clone().dated(today());
     let inputs = input_files([options.base.as_path()])?;

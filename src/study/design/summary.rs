@@ -4,17 +4,14 @@ use std::cmp::Ordering;
 
 use super::judged::Judged;
 use super::options::{DesignOptions, Thickness};
-use super::practice::{allowed, finest_base};
 use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
 use crate::case::Input;
 use crate::gradation::{CurvePoint, Gradation};
-use crate::outcome::design::band::{Band, SetBy};
-use crate::outcome::design::products::fits;
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignAnswer, DesignFinding, DesignRow,
-    NetworkBoundaries, Specification, WalkRow, spread,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignFinding, DesignRow, NetworkBoundaries,
+    Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
 use crate::outcome::record::{FindingRecord, InputFile, commit};
@@ -22,10 +19,10 @@ use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::study::days::today;
-use crate::verdict::{Finding, SpecificationOptions, design_answer, finding};
 use crate::outcome::record::Note;
+use crate::verdict::SpecificationOptions;
 
-/// Ratio at which the rules are read where no boundary is known.
+/// Ratio at which a row is judged where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
 
 /// The record.
@@ -59,14 +56,12 @@ pub(super) fn design(
     let mut judgements = Vec::new();
     for at in asked() {
         let row = &rows[at];
-        let no_band = no_band(row, rows, &found);
-        let band = band(row, held[at].filter(|_| no_band.is_none()))?;
-        (found[at].of.band, found[at].of.band_note) = (band, no_band.as_ref().map(Finding::with_to_do));
+        let unbounded = unbounded(row, rows, &found);
         let notes = found[at].of.no_erosion_note.take().into_iter().chain(spared_ends(row, rows, &found));
         let notes: Vec<String> = notes.collect();
         found[at].of.no_erosion_note = (!notes.is_empty()).then(|| notes.join(" "));
         let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
-        judgements.push((name, judged(row, (&found[at], rows, &found), held[at], no_band)?));
+        judgements.push((name, judged(row, (&found[at], rows, &found), held[at], unbounded)?));
     }
     // The worst end of a row without networks is that row, unless another row has it as an end, too.
     let is_shown = |(of, row): &(&FoundRow, &Row)| {
@@ -79,70 +74,48 @@ pub(super) fn design(
     };
     let shown = found.iter().zip(rows).filter(is_shown);
     let boundaries: Vec<DesignRow> = shown.map(|(found, _)| found.of.clone()).collect();
-    let findings = all_found(judgements, &boundaries);
-    let known = asked().filter_map(|at| Some((at, held[at]?)));
-    // Rules are shown of the coarsest filter that is said to hold: there they fail first.
-    let (at, ratio) = known.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, USUAL_RATIO));
-    let finest = finest_base(&rows[0])?;
-    let ratio = allowed(&rows[at], ratio, finest.as_ref())?;
-    let judged = Judged::new(&rows[at], ratio)?;
-    let rules = judged.rules();
-    let bands = boundaries.iter().filter_map(|of| of.band.as_ref());
-    let narrowest = bands.min_by(|a, b| a.greatest.total_cmp(&b.greatest));
-    let products = narrowest.filter(|band| band.unit == "mm").map(fits).unwrap_or_default();
-    let first = &rows[0];
+    let (first, stated) = (&rows[0], &rows[0].stated.scene.about);
+    let judged = Judged::new(first, USUAL_RATIO)?;
+    let specification = specification(first, &judged.base_name, options);
+    let mut findings = all_found(judgements, &boundaries);
+    // What the specification says of the base is not said again.
+    let stated_of_base = specification.iter().flat_map(|of| &of.findings);
+    let stated_of_base: Vec<&str> = stated_of_base.map(|of| &*of.finding.id).collect();
+    findings.retain(|of| !stated_of_base.contains(&&*of.finding.id));
     let record = judged.case.record();
-    let design = Design {
-        answer: None,
-        specification: None,
+    Ok(Design {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: commit(),
-        inverse: options.inverse,
         base: base(first, &judged.base_name),
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
         filter_cu: first.case.filter.cu(),
         filter_d15_mm: first.filter_has_size.then(|| first.d15f()),
         filter_gradation: if first.filter_has_size { pairs(&first.case.filter) } else { Vec::new() },
         inputs: inputs(first),
-        unit: judged.unit().into(),
         threshold: THRESHOLD,
         replicates: first.case.scene.walk.replicates,
         seed: first.case.scene.walk.seed,
         engine: first.case.scene.walk.engine.name().into(),
         bracket: options.bracket,
         step: BETWEEN_STEPS,
-        rules,
-        rules_at: ratio,
-        products,
         findings,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
-        cover: first.stated.scene.about.cover().dated(today()),
-        inches: first.stated.scene.about.shows_inches(),
+        cover: stated.cover().dated(today()),
+        inches: stated.shows_inches(),
         seconds,
+        specification,
         boundaries,
-    };
-    let answer = design_answer(&design, finest.as_ref());
-    let specification = specification(first, &design.base.name, &answer, options);
-    let answer = answer.specified(specification.as_ref());
-    Ok(Design { answer: Some(answer), specification, ..design })
+    })
 }
 
-/// The specification of a filter that practice and the answer allow; `None` without an answer in mm.
-fn specification(
-    row: &Row,
-    name: &str,
-    answer: &DesignAnswer,
-    options: &DesignOptions,
-) -> Option<Specification> {
-    let greatest = answer.d15f_max_mm?;
+/// The specification of a filter for the base as sampled, by the rules of practice alone; `None` of a base
+/// without a size.
+fn specification(row: &Row, name: &str, options: &DesignOptions) -> Option<Specification> {
+    row.d85_mm?;
     let given = row.stated.regraded_from.as_ref().map_or(&row.stated.gradation, |(given, _)| given);
-    let specified = SpecificationOptions {
-        dispersive: row.stated.scene.base.dispersive,
-        finer: false,
-        sieves: options.sieves,
-        walked_mm: (answer.set_by == SetBy::Walk).then_some(greatest),
-    };
+    let (dispersive, sieves) = (row.stated.scene.base.dispersive, options.sieves);
+    let specified = SpecificationOptions { dispersive, finer: false, sieves };
     let of = Specification::of(name, &[(name.to_owned(), given.clone())], specified);
     Some(Specification { inches: row.stated.scene.about.shows_inches(), ..of })
 }
@@ -225,24 +198,16 @@ fn held_over_range(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<f64> {
     each.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
-/// The band of a specification up to the ratio that holds.
-fn band(row: &Row, held: Option<f64>) -> Result<Option<Band>, RunError> {
-    let Some(ratio) = held.filter(|_| !row.inverse) else { return Ok(None) };
-    let judged = Judged::new(row, ratio)?;
-    let d15f = ratio * row.d85_mm.unwrap_or(1.0);
-    Ok(Band::new(&judged.rules(), d15f, d15f, judged.unit()))
-}
-
-/// Why there is no band, where networks erode at every ratio that was searched, with some curve of the range,
-/// or where they hold every one, and the end of the search is no limit.
-fn no_band(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Finding> {
+/// Why the model has no boundary: networks erode at every ratio that was searched, with some curve of the
+/// range, or they hold every one, and the end of the search is none.
+fn unbounded(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Finding> {
     if let Some(unheld) = range(row, rows, found).find_map(|of| of.unheld(&curve(row, of))) {
         return Some(unheld);
     }
     let least = range(row, rows, found).filter_map(|found| Some((found, found.of.held()?)));
     let (least, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let at = curve(row, least);
-    (least.of.no_erosion.is_none() && !row.inverse).then(|| match least.of.eroding_networks() as u64 {
+    least.of.no_erosion.is_none().then(|| match least.of.eroding_networks() as u64 {
         0 => finding::holds_everywhere(ratio, &at),
         eroding => finding::median_beyond(ratio, eroding, least.of.networks.len() as u64, &at),
     })
@@ -275,31 +240,28 @@ fn all_found(each: Vec<(String, Vec<FindingRecord>)>, boundaries: &[DesignRow]) 
     findings
 }
 
-/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its
-/// curve, or at the one that practice allows where that is less.
+/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its curve.
 fn judged(
     row: &Row,
     (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
     held: Option<f64>,
-    no_band: Option<Finding>,
+    unbounded: Option<Finding>,
 ) -> Result<Vec<FindingRecord>, RunError> {
     let of = &own.of;
     let Some(held) = held else {
-        // No filter is said to hold, and no rule speaks against one.
-        let why = no_band.into_iter().chain(own.of_boundary.iter().cloned());
-        return Ok(Judged::new(row, USUAL_RATIO)?.findings(row, &[], why.collect()));
+        let why = unbounded.into_iter().chain(own.of_boundary.iter().cloned());
+        return Ok(Judged::new(row, USUAL_RATIO)?.findings(row, why.collect()));
     };
-    let ratio = allowed(row, held, finest_base(row)?.as_ref())?;
-    let judged = Judged::new(row, ratio)?;
+    let judged = Judged::new(row, held)?;
     let least = range(row, rows, found).min_by(|a, b| holds_less(a, b));
     let unsteady = least.and_then(|of| Some((of.unsteady?, curve(row, of))));
     let unsteady = unsteady.map(|([held, eroding], at)| finding::unsteady(held, eroding, &at));
     let of_boundary = match &of.no_erosion {
-        Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(ratio))),
+        Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(held))),
         None => own.of_boundary.clone(),
     };
-    let why = [unsteady, of.band.as_ref().and_then(Band::empty), no_band].into_iter().flatten();
-    Ok(judged.findings(row, &judged.rules(), why.chain(of_boundary).collect()))
+    let why = [unsteady, unbounded].into_iter().flatten();
+    Ok(judged.findings(row, why.chain(of_boundary).collect()))
 }
 
 /// `design.csv`.
@@ -351,7 +313,7 @@ fn pairs(soil: &Gradation) -> Vec<[f64; 2]> {
 fn base(row: &Row, name: &str) -> BaseStated {
     let walked = &row.stated.gradation;
     let given = row.stated.regraded_from.as_ref().map_or(walked, |(given, _)| given);
-    let sized = row.d85_mm.filter(|_| !row.inverse);
+    let sized = row.d85_mm;
     let is_regraded = row.d85_mm.is_some() && row.stated.regraded_from.is_some();
     BaseStated {
         gradation: if row.d85_mm.is_some() { pairs(given) } else { Vec::new() },
@@ -372,7 +334,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
     }
 }
 
-/// One row of the record, but for its band.
+/// One row of the record.
 fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
@@ -395,18 +357,13 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         };
         all.first().map(|why| why.finding(&on))
     };
-    let boundary = |networks: &[Result<f64, Beyond>]| {
-        let boundary = Boundary::of(networks, row.d85_mm.filter(|_| !row.inverse))?;
-        Some(if row.inverse { boundary.inverted(row.has_size().then(|| row.d15f())) } else { boundary })
-    };
-    let (no_erosion, continuing) = (boundary(&first), boundary(&second));
+    let [no_erosion, continuing] = [&first, &second].map(|networks| Boundary::of(networks, row.d85_mm));
     let holds_to = if no_erosion.is_none() { holds_to(done) } else { None };
     let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
     let layers = row.layers(ratio).unwrap_or(row.case.counts[3]);
-    let has_size = row.has_size();
     let of_layers = || {
         // Of a thickness in layers the case's own thickness, as large as the filter is at the boundary.
-        no_erosion.as_ref().filter(|_| has_size)?;
+        no_erosion.as_ref()?;
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
     // Of a filter that is as thin as one layer, or thinner, the layer itself.
@@ -447,16 +404,12 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
                 continuing: done.found.continuing,
             })
             .collect(),
-        band: None,
-        band_note: None,
         as_end: None,
         end_of: row.end_of.clone(),
     };
     let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;
     let spared_at = done.iter().find_map(|done| done.found.spared_at);
-    let found = FoundRow { of, unsteady, eroding, of_boundary, spared_at };
-    let band_note = found.unheld("").map(|unheld| unheld.sentence());
-    FoundRow { of: DesignRow { band_note, ..found.of }, ..found }
+    FoundRow { of, unsteady, eroding, of_boundary, spared_at }
 }
 
 /// The ratio that nearly all networks hold where their median lies above all that was searched: one that

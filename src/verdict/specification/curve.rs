@@ -2,7 +2,7 @@
 
 use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 use crate::outcome::design::DesignFinding;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, IfDispersive, Note};

@@ -36,8 +36,6 @@ pub struct SpecificationOptions {
     pub sieves: SieveSeries,
     /// Whether the band is to lie at the finer end of what is allowed, and not at the coarser.
     pub finer: bool,
-    /// Maximum D15F (mm) that the walk holds, where a base was walked.
-    pub walked_mm: Option<f64>,
 }
 
 impl Specification {
@@ -58,8 +56,7 @@ impl Specification {
         let read: Vec<ReadCurve> = bases.iter().map(|base| ReadCurve::of(base, dispersive)).collect();
         let strictest = read.iter().min_by(|a, b| a.greatest().total_cmp(&b.greatest()));
         let unknown = read.iter().find(|curve| curve.unknown.is_some());
-        let by_practice = strictest.filter(|_| unknown.is_none()).and_then(|curve| curve.of.d15f_max_mm);
-        let d15f_max = by_practice.map(|limit| options.walked_mm.map_or(limit, |walked| limit.min(walked)));
+        let d15f_max = strictest.filter(|_| unknown.is_none()).and_then(|curve| curve.of.d15f_max_mm);
         let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
         let d15f_min = coarsest.and_then(|curve| curve.of.d15f_min_mm);
         let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max, options.finer));
@@ -68,17 +65,8 @@ impl Specification {
         let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
         let if_dispersive = if options.dispersive.is_none() { curve::if_dispersive(bases) } else { None };
-        let found = Found {
-            walked_mm: options.walked_mm,
-            read: &read,
-            strictest,
-            unknown,
-            coarsest,
-            by_practice,
-            d15f_max,
-            control,
-            finer: options.finer,
-        };
+        let found =
+            Found { read: &read, strictest, unknown, coarsest, d15f_max, control, finer: options.finer };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: commit(),
@@ -199,13 +187,11 @@ impl Specification {
 }
 
 impl Specification {
-    /// That the maximum D15F has no margin, where practice sets it and it is the boundary of no erosion of
+    /// That the maximum D15F has no margin, where it is the boundary of no erosion of
     /// tests itself: a sentence without its end.
     pub fn without_margin_in_words(&self) -> Option<String> {
-        let greatest = self.d15f_max_mm?;
-        let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
-        let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let fines = curve.fines_percent.filter(|_| curve.without_margin && greatest >= limit)?;
+        let (curve, limit) = self.strictest()?;
+        let fines = curve.fines_percent.filter(|_| curve.without_margin)?;
         let why = match (self.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
             // The limit of design is the floor of any filter then, and above the boundary of tests.
             (true, _) if limit < DESIGN_FLOOR_MM => {

@@ -22,15 +22,12 @@ pub(super) struct Control {
 
 /// What the steps say.
 pub(super) struct Found<'a> {
-    /// Maximum D15F (mm) that the walk holds.
-    pub walked_mm: Option<f64>,
     pub read: &'a [ReadCurve],
     /// The curve that allows the minimum D15F.
     pub strictest: Option<&'a ReadCurve>,
     pub unknown: Option<&'a ReadCurve>,
     /// The curve that asks for the maximum D15F.
     pub coarsest: Option<&'a ReadCurve>,
-    pub by_practice: Option<f64>,
     pub d15f_max: Option<f64>,
     pub control: Option<Control>,
     /// Whether the band lies at the finer end of what is allowed.
@@ -139,24 +136,19 @@ impl Found<'_> {
             all.collect::<Vec<String>>().join(between)
         };
         let mut notes: Vec<String> = Vec::new();
-        if let (Some(curve), Some(_)) = (self.strictest, self.by_practice) {
+        if let (Some(curve), Some(_)) = (self.strictest, self.d15f_max) {
             let whose = if self.read.len() > 1 { format!(", for {}", curve.of.curve) } else { String::new() };
             notes.push(format!("Set by {}{whose}.", curve.of.d15f_max_rule));
         }
         if let Some(why) = self.unknown.and_then(|curve| curve.unknown.as_ref()) {
             notes.push(sentence(why));
         }
-        let mut values = vec![named("maximum D15F by practice", self.by_practice, "mm")];
+        let mut values = vec![named("maximum D15F by practice", self.d15f_max, "mm")];
         if let Some(limit) = self.limit_of_design() {
             values.insert(
                 0,
                 named("maximum D15F by Sherard and Dunnigan's limit of design", Some(limit), "mm"),
             );
-        }
-        if let Some(walked) = self.walked_mm {
-            values.push(named("maximum D15F that the walk holds", Some(walked), "mm"));
-            values.push(named("maximum D15F", self.d15f_max, "mm"));
-            notes.push("The smaller of practice and walk counts.".into());
         }
         SpecificationStep {
             formula: each(&|curve, rule| formula::of_base(rule, curve), "; "),
@@ -169,7 +161,7 @@ impl Found<'_> {
 
     /// The limit of design, where another rule is stricter.
     fn limit_of_design(&self) -> Option<f64> {
-        let curve = self.strictest.filter(|_| self.by_practice.is_some())?;
+        let curve = self.strictest.filter(|_| self.d15f_max.is_some())?;
         let design = curve.design.as_ref()?;
         let is_other = curve.retention.as_ref().is_some_and(|rule| rule.id != design.id);
         design.limit.filter(|limit| is_other && *limit > curve.greatest() * (1.0 + 1e-9))

@@ -196,20 +196,12 @@ fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_wh
     assert!(gravel.no_band.unwrap().contains("beyond the greatest size of 75 mm"));
 }
 
+/// A dispersive clay whose limit is 6.4 D85B, 0.103 mm.
 #[test]
-fn the_walk_narrows_the_band_where_it_is_the_stricter() {
-    let sand = [("sand".to_owned(), soil(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]))];
-    let with = |walked| {
-        let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
-        let of = Specification::of("sand", &sand, options);
-        (of.d15f_max_mm, of.set_by().map(str::to_owned))
-    };
-    assert!(near(with(1.5).0, 1.5) && near(with(3.0).0, 2.0));
-    assert!(with(1.5).1.unwrap() == "the walk" && with(3.0).1.unwrap().contains("limit of design"));
-    // The walk may allow so little that the coarse side has too many fines.
-    let core = [("core".to_owned(), soil(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]))];
-    let options = SpecificationOptions { walked_mm: Some(0.103), ..Default::default() };
-    let narrow = Specification::of("core", &core, options);
+fn a_coarse_side_with_too_many_fines_leaves_no_band() {
+    let clay = [("clay".to_owned(), soil(&[(0.0008, 0.0), (0.0161, 85.0), (0.03, 100.0)]))];
+    let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
+    let narrow = Specification::of("clay", &clay, options);
     assert!(narrow.band.is_none() && narrow.limits.is_empty());
     assert_eq!(
         narrow.no_band.as_deref(),
@@ -272,8 +264,7 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_is_said() {
             && open.ends_with(", and have the base tested with the filter"),
         "{open}"
     );
-    // What is finer anyway, few fines, and what was said.
-    assert_eq!(said(&silt, SpecificationOptions { walked_mm: Some(0.4), ..nobody }), None);
+    // Few fines, and what was said.
     assert_eq!(said(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], nobody), None);
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(true), ..nobody }), None);
     assert_eq!(said(&silt, SpecificationOptions { dispersive: Some(false), ..nobody }), None);
@@ -382,10 +373,8 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
     assert!(near(of_coarse("least H/F"), slope * 4f64.ln() / 20.0));
     assert!(last.note.starts_with("The fine side keeps both. The coarse side keeps both. "), "{last:?}");
     assert!(last.source.contains("Internal Instability") && core.findings.is_empty(), "{last:?}");
-    // The walk holds barely more than drains: the fine side runs far out to its D5.
-    let sand = [("sand".to_owned(), soil(&[(0.1, 0.0), (0.14, 15.0), (0.5, 85.0), (1.0, 100.0)]))];
-    let options = SpecificationOptions { walked_mm: Some(0.705), ..Default::default() };
-    let narrow = Specification::of("sand", &sand, options);
+    // 0.705 mm retain barely more than the 0.7 mm that drain: the fine side runs far out to its D5.
+    let narrow = of(&[(0.1, 0.0), (0.14, 15.0), (0.17625, 85.0), (0.3, 100.0)]);
     let said: Vec<String> = narrow.findings.iter().map(|of| of.words()).collect();
     assert!(
         said.len() == 1
@@ -402,12 +391,12 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
 #[test]
 fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
     let mut unstable = 0;
-    for scale in [0.3, 1.0, 4.0] {
-        for walked in [0.5, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0].map(|mm| mm * scale) {
-            let sand = [(0.1, 0.0), (0.14, 15.0), (0.5, 85.0), (1.0, 100.0)];
-            let sand = soil(&sand.map(|(size, percent)| (scale * size, percent)));
-            let options = SpecificationOptions { walked_mm: Some(walked), ..Default::default() };
-            let of = Specification::of("sand", &[("sand".into(), sand.clone())], options);
+    for scale in [0.8, 1.0, 4.0] {
+        // A limit of four D85B, from less than what drains to much more.
+        for retains in [0.65, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0] {
+            let sand = [(0.1, 0.0), (0.14, 15.0), (retains / 4.0, 85.0), (1.0, 100.0)];
+            let points = sand.map(|(size, percent)| (scale * size, percent));
+            let (sand, of) = (soil(&points), of(&points));
             unstable += of.findings.iter().filter(|of| of.finding.id == "unstable_side").count();
             for side in of.band.iter().flat_map(SizeBand::continued) {
                 let side = Gradation::of_rows(&side).unwrap();
@@ -415,7 +404,7 @@ fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
                 let rules = PairRules::of(&sand, &side).rules;
                 assert!(
                     washout(&rules).is_none(),
-                    "{walked} {:?}",
+                    "{retains} {:?}",
                     washout(&rules).map(|found| found.without_finer())
                 );
             }
