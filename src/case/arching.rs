@@ -6,9 +6,9 @@ use libm::cbrt;
 
 use super::{Case, CaseError};
 use crate::outcome::Modelled;
+use crate::outcome::record::Note;
 use crate::outcome::record::{ArchingByVoidRecord, ArchingRecord};
 use crate::walk::{Arching, ByVoid, Concentration, DENSEST};
-use crate::outcome::record::Note;
 
 impl Case {
     /// The law of its arches, with as many base particles as these; `None` where particles do not arch.

@@ -6,10 +6,10 @@ use super::supply::PAPER_MASS_RATIO;
 use super::{Case, Input, PackingPlan, needs_grains_per_void, replicate_seed};
 use crate::gradation::GRAVEL_MM;
 use crate::network::ExitRule;
-use crate::scene::{LibraryDensity, NetworkSource, Regrade};
-use crate::verdict::beside::packed_part;
 use crate::outcome::record::Note;
+use crate::scene::{LibraryDensity, NetworkSource, Regrade};
 use crate::verdict::PlannedWalk;
+use crate::verdict::beside::packed_part;
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -44,7 +44,8 @@ impl Case {
         }
         all.extend(self.regrading());
         let of_file = |input: &Input| -> Vec<Note> {
-            let read_as = |reading: &String| Note::ReadAs { file: input.name.clone(), reading: reading.clone() };
+            let read_as =
+                |reading: &String| Note::ReadAs { file: input.name.clone(), reading: reading.clone() };
             input.notes.iter().map(read_as).collect()
         };
         all.extend(self.inputs.iter().flat_map(of_file));

@@ -1,8 +1,8 @@
 //! Which other numbers of base particles a case is walked with.
 
 use super::Case;
-use crate::scene::Amount;
 use crate::outcome::left_out::LeftOut;
+use crate::scene::Amount;
 
 impl Case {
     /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user

@@ -1,8 +1,8 @@
 //! The same case with a filter of another thickness.
 
 use super::{Case, CaseError};
-use crate::scene::NetworkSource;
 use crate::outcome::left_out::{LayerKind, LeftOut};
+use crate::scene::NetworkSource;
 
 /// Multiples of the thickness that are walked by default.
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];

@@ -8,13 +8,13 @@ use super::print::{count, json, plain, to_stdout};
 use super::values::with_options;
 use crate::campaign::CampaignPlan;
 use crate::constrictions::shipped;
+use crate::outcome::numbers::{SizeUnit, size_unit};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 use crate::store::format;
 use crate::words::left_out::left_out;
 use crate::words::sentence;
-use crate::outcome::numbers::{SizeUnit, size_unit};
 
 impl SettingArgs {
     /// All settings that the arguments give.

@@ -10,12 +10,13 @@ use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_std
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::{ComparedCase, Comparison};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
-use crate::words::{FOREMOST, lines_of, sentence};
 use crate::words::left_out::left_out_in_brief;
+use crate::words::{FOREMOST, lines_of, sentence};
 
 impl CompareArgs {
     fn compared(&self) -> Compared {
@@ -99,7 +100,12 @@ fn words(comparison: &Comparison) -> String {
     };
     for case in &comparison.cases {
         line(format!("{}:", case.name));
-        for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, unit) {
+        for (name, words) in lines_of(
+            case.headline,
+            case.practice.as_ref(),
+            &case.model,
+            SizeUnit::of(case.scale_free, comparison.inches),
+        ) {
             line(format!("  {name}: {words}"));
         }
         line(format!(
@@ -108,7 +114,9 @@ fn words(comparison: &Comparison) -> String {
             of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
-        case.notes.iter().take(FOREMOST).for_each(|note| line(format!("  - {}", sentence(note, unit))));
+        case.notes.iter().take(FOREMOST).for_each(|note| {
+            line(format!("  - {}", sentence(note, SizeUnit::of(case.scale_free, comparison.inches))))
+        });
         if case.notes.len() > FOREMOST {
             line(format!("  - and {} more on the page", case.notes.len() - FOREMOST));
         }

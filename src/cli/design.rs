@@ -8,18 +8,18 @@ use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::{Boundary, Design, DesignRow, Range, over_networks};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::rounded_down;
-use crate::outcome::with_inches;
+use crate::outcome::record::Note;
 use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
-use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::FOREMOST;
+use crate::words::design::design_lines;
 use crate::words::left_out::left_out_in_brief;
-use crate::words::capital;
-use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
+use crate::words::products::products;
+use crate::words::specification::{DESIGN_AGAIN, if_dispersive, raised, still_to_set, without_margin};
+use crate::words::{FOREMOST, row_note, sentence};
 
 /// The setting of the sheet besides its cover that a specification takes.
 const UNITS: &str = "about.units";
@@ -77,48 +77,48 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
 fn words(design: &Design) -> String {
     let asked = "How coarse may the filter be?";
     let mut lines = vec![format!("{asked} Base {}, filter {}", design.base.name, design.filter)];
-    let of_model = design.first_lines();
+    let unit = SizeUnit::of(false, design.inches);
+    let of_model = design_lines(design, unit);
     let (model, practice) = of_model.split_last().expect("a line of the model");
     lines.extend(practice.iter().map(|(name, words)| format!("{name}: {words}")));
     if let Some(of) = &design.specification {
-        lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
-        let dispersive = of.if_dispersive_in_words(&by_option(DESIGN_AGAIN));
-        let beside = of.without_margin_in_words().into_iter().chain(dispersive);
+        lines.extend(raised(of, unit).map(|raised| format!("  {raised}")));
+        let dispersive = if_dispersive(of, &by_option(DESIGN_AGAIN), unit);
+        let beside = without_margin(of, unit).into_iter().chain(dispersive);
         lines.extend(beside.map(|said| format!("  {said}.")));
-        lines.extend(of.findings.iter().map(|found| format!("warning: {}", found.words())));
-        lines.extend(of.still_to_set());
-        lines.push(of.products_in_words());
+        lines.extend(of.notes.iter().map(|row| format!("warning: {}", row_note(row, unit))));
+        lines.extend(still_to_set(of, unit));
+        lines.push(products(of));
         lines.extend(to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()))));
     }
     lines.push(format!("{}: {}", model.0, model.1));
     lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
-    lines.extend(design.boundaries.iter().flat_map(of_row));
-    lines.extend(design.findings.iter().take(FOREMOST).map(|found| format!("- {}", found.words())));
-    if design.findings.len() > FOREMOST {
-        lines.push(format!("- and {} more on the page", design.findings.len() - FOREMOST));
+    lines.extend(design.boundaries.iter().flat_map(|row| of_row(row, unit)));
+    lines.extend(design.notes.iter().take(FOREMOST).map(|row| format!("- {}", row_note(row, unit))));
+    if design.notes.len() > FOREMOST {
+        lines.push(format!("- and {} more on the page", design.notes.len() - FOREMOST));
     }
     lines.push(left_out_in_brief(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
-    let said = |line: String| if design.inches { with_inches(&line) } else { line };
-    lines.into_iter().map(|line| plain(&said(line)) + "\n").collect()
+    lines.iter().map(|line| plain(line) + "\n").collect()
 }
 
-fn of_row(row: &DesignRow) -> Vec<String> {
+fn of_row(row: &DesignRow, unit: SizeUnit) -> Vec<String> {
+    let words = |notes: &[Note]| notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>().join(" ");
     let what = ["no erosion up to", "continuing erosion from"];
-    let boundaries = row.shown().into_iter().zip([&row.no_erosion_note, &row.continuing_note]);
+    let boundaries =
+        row.shown().into_iter().zip([words(&row.no_erosion_notes), words(&row.continuing_notes)]);
     let networks = row.networks.len() as u64;
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     // The boundary of no erosion is stated as a limit.
     let sizes: [fn(f64) -> String; 2] = [rounded_down, |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
         let said = boundary.map(|boundary| ratio(&boundary, networks, size));
-        lines.push(match (said, note) {
-            (Some(said), Some(note)) => format!("  {what} {said}. {}", capital(note)),
-            (Some(said), None) => format!("  {what} {said}"),
-            (None, note) => {
-                let note = note.as_deref().unwrap_or("It lies beyond the search.");
-                format!("  {what}: no number. {}", capital(note))
-            }
+        lines.push(match (said, &*note) {
+            (Some(said), "") => format!("  {what} {said}"),
+            (Some(said), note) => format!("  {what} {said}. {note}"),
+            (None, "") => format!("  {what}: no number. It lies beyond the search."),
+            (None, note) => format!("  {what}: no number. {note}"),
         });
     }
     if row.not_monotone > 0 {

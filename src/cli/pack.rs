@@ -4,11 +4,11 @@ use super::args::PackArgs;
 use super::print::{count, plain, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
+use crate::outcome::numbers::SizeUnit;
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
 use crate::verdict::beside::packed_part;
 use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {

@@ -11,12 +11,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::print::{count, plain, shown, to_stderr};
 use super::report::page;
 use crate::case::PackingPlan;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
 use crate::words::{first_lines, sentence};
-use crate::outcome::numbers::SizeUnit;
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -152,7 +152,9 @@ impl Display {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
             Event::Noted(notes) => {
-                notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, SizeUnit::Mm)))));
+                notes
+                    .iter()
+                    .for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, SizeUnit::Mm)))));
             }
             Event::VerdictStands(outcome) => {
                 for (name, words) in first_lines(outcome, SizeUnit::Mm) {

@@ -4,20 +4,19 @@ use super::args::RulesArgs;
 use super::batch::{SEVERAL_FILTERS, each};
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
-use crate::outcome::apart::{digits_within, value_and_limit};
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::run::RunError;
 use crate::store::format;
-use crate::words::left_out::NOT_COVERED;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::verdict::{PairOptions, PairRules};
+use crate::words::left_out::NOT_COVERED;
 use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
 use crate::words::rule_note::{regrade_reason, rule_notes};
-use crate::verdict::{PairOptions, PairRules};
+use crate::words::{practice_line, sentence};
 use std::fmt::Write;
 use std::path::Path;
-use crate::words::{practice_line, sentence};
-use crate::outcome::numbers::SizeUnit;
 
 /// Spaces before what is said below a row.
 const INDENT: usize = 14;
@@ -81,7 +80,9 @@ fn words(
     let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
     let fines = base.fines_percent.map_or("fines not known".into(), |of| format!("{of:.1} % fines"));
     let regraded = match base.regraded_at_mm {
-        Some(at) => format!("D85, D95 and fines after regrading on {at:.3} mm ({})", regrade_reason(base.why)),
+        Some(at) => {
+            format!("D85, D95 and fines after regrading on {at:.3} mm ({})", regrade_reason(base.why))
+        }
         None => format!("not regraded ({})", regrade_reason(base.why)),
     };
     let dispersive = if base.dispersive { ", dispersive" } else { "" };
@@ -121,8 +122,7 @@ fn words(
             // Its name says whose it is where no manual states it besides.
             let is_stated = !rule.stated_by.is_empty();
             let authorities = is_stated.then(|| format!("authority: {}", rule.authorities().join(", ")));
-            let more =
-                [curves, notes(&rule.notes), notes(&rule.needs), authorities.unwrap_or_default()];
+            let more = [curves, notes(&rule.notes), notes(&rule.needs), authorities.unwrap_or_default()];
             for text in more.iter().filter(|text| !text.is_empty()) {
                 wrapped(text, INDENT).into_iter().for_each(&mut line);
             }

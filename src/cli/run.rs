@@ -7,6 +7,7 @@ use super::exit::{JudgedAnswer, accept};
 use super::print::{json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
+use crate::outcome::numbers::SizeUnit;
 #[cfg(feature = "xlsx")]
 use crate::report::write_verdict_workbook;
 #[cfg(feature = "xlsx")]
@@ -17,6 +18,7 @@ use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
+use crate::words::first_lines;
 use crate::words::left_out::left_out_in_brief;
 
 /// Walks a scene and writes its folder.

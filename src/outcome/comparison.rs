@@ -8,7 +8,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::numbers::SizeUnit;
-use super::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
+use super::record::{
+    Headline, Model, ModelLimit, Outcome, Practice, Ratios, SheetCover, Statistic, Verdict, commit,
+};
 use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 use crate::outcome::record::Note;

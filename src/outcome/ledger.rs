@@ -8,8 +8,8 @@ use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict};
 use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, Modelled, leaves_out_of_all};
-use crate::text::shorten;
 use crate::outcome::record::Note;
+use crate::text::shorten;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -158,6 +158,9 @@ notes! {
     /// Ratios beyond which nothing can be walked.
     NotWalked { networks: u64, reason: String } "search" "design.md"
         "The search could go no further ({networks:network}): {reason}.";
+    /// An end of the range of a density that was not searched.
+    SparedEnd { density: String, ratio: f64 } "search" "design.md"
+        "The end {density} holds clearly more (D15F/D85B {ratio} on its first network); its boundary was not searched.";
     /// A finest part of the base that is enough to erode.
     PanErodes { finest_percent: f64 } "finest part" "design.md"
         "{finest_percent} of the base is finer than its finest sieve, which is enough to count as erosion."
@@ -203,9 +206,6 @@ notes! {
     /// A base that is broadly graded.
     BroadlyGraded { cu: f64 } "grading" "soils.md"
         "The model errs on the unsafe side for a broadly graded base (Cu {cu}): a few coarse grains block for the rest.";
-    /// A base that was regraded in another size.
-    RegradedElsewhere { sieve_mm: f64 } "grading" "design.md"
-        "The base was regraded on {sieve_mm} and then scaled; practice would regrade the scaled base elsewhere.";
     /// A dispersive base.
     DispersiveBase {} "dispersion" "rules.md"
         "The base is dispersive; the model knows its sizes alone.";

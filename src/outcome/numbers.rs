@@ -238,6 +238,20 @@ impl SizeUnit {
         std::array::from_fn(|_| both.next().map(|(mm, inches)| format!("{mm}{name}{inches}")))
     }
 
+    /// A least and a greatest size in mm, each rounded to its safe side.
+    pub fn limits(self, least: f64, most: f64) -> String {
+        let [low, high] = [rounded_up(least), rounded_down(most)];
+        let [shown_low, shown_high] = [shown(&low, least), shown(&high, most)];
+        let inches = format!("{} to {}", rounded_up(shown_low / INCH_MM), rounded_down(shown_high / INCH_MM));
+        format!("{low} to {high} mm{}", self.bracket(inches))
+    }
+
+    /// A range of sizes in mm that tests left, with ends rounded outward.
+    pub fn range_of_tests(self, low: f64, high: f64) -> String {
+        let inches = format!("{} to {}", rounded_down(low / INCH_MM), rounded_up(high / INCH_MM));
+        format!("{} to {} mm{}", rounded_down(low), rounded_up(high), self.bracket(inches))
+    }
+
     /// What stands behind a range of sizes in mm, where inches are shown.
     pub fn beside_range(self, from: f64, to: f64) -> String {
         self.bracket(format!("{} to {}", significant(from / INCH_MM), significant(to / INCH_MM)))

@@ -18,9 +18,11 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::words::batch::{answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks};
-use crate::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
+use crate::words::batch::{
+    answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,
+};
+use crate::words::capital;
 
 const RECORD: &str = "batch.json";
 
@@ -155,7 +157,7 @@ fn d15f(rules: &[BatchRow]) -> Option<String> {
 fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
     let unit = SizeUnit::of(false, inches);
-    let [d15f, limit] = rules.d15f_and_limit(unit, " mm").map(|size| size.unwrap_or("not known".into()));
+    let [d15f, limit] = d15f_and_limit(rules, unit, " mm").map(|size| size.unwrap_or("not known".into()));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }

@@ -11,11 +11,11 @@ use super::numbers::whole;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
-use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
+use crate::words::{sentence, undecided_by};
 
 /// Cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
@@ -48,7 +48,7 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
         @for (by, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
             p {
                 "Undecided, " (whole(count)) @if count == 1 { " case: " } @else { " cases: " }
-                (by.words()) "."
+                (undecided_by(by)) "."
             }
         }
     }

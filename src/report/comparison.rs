@@ -19,8 +19,8 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Verdict;
-use crate::words::left_out::left_out_in_brief;
 use crate::words::capital;
+use crate::words::left_out::left_out_in_brief;
 use crate::words::{FOREMOST, lines_of, sentence};
 
 const RECORD: &str = "compare.json";
@@ -168,7 +168,7 @@ fn answers(comparison: &Comparison) -> Markup {
         section.verdict.(colour(case.headline)) {
             p.practice { b { bdi { (name(&case.name)) } } }
             ul {
-                @for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, unit) { li { b { (name) } ": " (unbroken(&words)) "." } }
+                @for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, SizeUnit::of(case.scale_free, comparison.inches)) { li { b { (name) } ": " (unbroken(&words)) "." } }
             }
         }
     } }

@@ -16,7 +16,9 @@ use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::sizes::{SizedSoil, of_many};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples, DesignedWalks};
+use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks};
+use crate::words::designed::{columns, lines};
+use crate::words::specification::DESIGN_EACH_AGAIN;
 
 const RECORD: &str = "designs.json";
 
@@ -40,7 +42,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         @if all.filter.is_empty() { ", by the rules of practice alone" }
         @else { ", " (titled_by_file("filter", "filter of the shape", &all.filter)) }
     };
-    let said = all.in_words(DESIGN_EACH_AGAIN);
+    let said = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::of(false, all.inches));
     let has_walks = !all.model_leaves_out.is_empty();
     let first = html! { div.first[has_walks] {
         section.verdict {
@@ -141,7 +143,7 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
     };
     let table = Table::of(all.rows.iter().take(LISTED))
         .class("cases")
-        .columns(DesignedSample::columns(SizeUnit::of(false, all.inches)), |row| row)
+        .columns(columns(SizeUnit::of(false, all.inches)), |row| row)
         .named_by("sample", sample);
     html! {
         (table.render())

@@ -14,11 +14,11 @@ use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::words::left_out::left_out_in_brief;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
-use crate::words::rule::{self, limit_begins, limit_ends, value_begins};
 use crate::words::capital;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::rule::{self, limit_begins, limit_ends, value_begins};
 use crate::words::{first_lines, foremost, judged_alone, sentence};
 
 /// What the scene says of the page, and nothing else of it.

@@ -16,11 +16,10 @@ use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_word
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
-use crate::words::capital;
 use crate::words::left_out::left_out_words;
 use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
 
 /// What errors call the record.
 const RECORD: &str = "outcome";

@@ -19,10 +19,14 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
-use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
-use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::fitting::FITS;
+use crate::outcome::design::{Specification, SpecificationStep};
+use crate::words::design::limit;
+use crate::words::products::{FITS, product as product_result, products as products_line};
 use crate::words::row_note;
+use crate::words::specification::{
+    DESIGN_AGAIN, band, beside_limits, if_dispersive, no_band, raised, step_name, step_notes, step_value,
+    still_to_set as still_to_set_line, without_margin,
+};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -49,7 +53,7 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .inches(of.inches)
         .words(&html! { section.sheet { (answer(&of)) } })
-        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()));
+        .figures(soils.figure(of.band.as_ref(), band(&of, SizeUnit::of(false, of.inches)).as_deref()));
     with_details(page, &of)
         .section(soils.heading(), &soils.appendix())
         .section(
@@ -73,20 +77,21 @@ pub(super) fn with_details(page: Sections, of: &Specification) -> Sections {
 
 /// The answer of practice.
 pub(super) fn answer(of: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, of.inches);
     html! {
         section.verdict {
-            @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
-            p { "Limit: " (clean(&of.limit_in_words())) "." }
+            @if let Some(band) = band(of, unit) { p.word.long { (clean(&band)) ", by practice." } }
+            p { "Limit: " (clean(&limit(of, unit))) "." }
             (to_specify(of))
-            @if let Some(said) = of.without_margin_in_words() { p { (unbroken(&said)) "." } }
-            @if let Some(said) = of.if_dispersive_in_words(DESIGN_AGAIN) {
+            @if let Some(said) = without_margin(of, unit) { p { (unbroken(&said)) "." } }
+            @if let Some(said) = if_dispersive(of, DESIGN_AGAIN, unit) {
                 p { (clean(&said)) "." }
             }
-            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
+            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(&no_band(why, unit))) } }
             (cautions(of))
             @if of.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
-            p { (clean(&of.products_in_words())) "." }
+            p { (clean(&products_line(of))) "." }
         }
     }
 }
@@ -113,7 +118,7 @@ fn cautions(of: &Specification) -> Markup {
 
 /// What the specification lacks; nothing without a band.
 fn still_to_set(of: &Specification) -> Markup {
-    html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
+    html! { @if let Some(said) = still_to_set_line(of, SizeUnit::of(false, of.inches)) { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
@@ -129,7 +134,7 @@ fn to_specify(of: &Specification) -> Markup {
         })
     });
     html! {
-        @if let Some(raised) = of.raised_in_words() { p { (clean(&raised)) "." } }
+        @if let Some(raised) = raised(of, unit) { p { (clean(&raised)) "." } }
         (table)
     }
 }
@@ -144,15 +149,15 @@ fn steps(of: &Specification) -> Markup {
         }
         (Table::of(&of.steps).class("study steps")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
-                (step.step) ". " (clean(&step.does))
-                @for text in [&step.formula, &step.note] {
+                (step.step) ". " (step_name(step.does))
+                @for text in [&step.formula, &step_notes(step, unit)] {
                     @if !text.is_empty() { br; span.small { (clean(text)) } }
                 }
                 @if !step.source.is_empty() { br; span.small { "Source: " (clean(&step.source)) } }
             })
             .text("Numbers", |step| html! {
                 @for value in &step.values {
-                    (clean(&value.name)) " = " b { (known(value.words_in(unit), |words| words)) } br;
+                    (clean(&value.name)) " = " b { (known(step_value(value, unit), |words| words)) } br;
                 }
             })
             .render())
@@ -161,7 +166,7 @@ fn steps(of: &Specification) -> Markup {
 
 fn limits(of: &Specification) -> Markup {
     if of.band.is_none() {
-        return html! { @if let Some(why) = &of.no_band { p { (clean(why)) } } };
+        return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, SizeUnit::of(false, of.inches)))) } } };
     }
     html! {
         (Table::of(&of.limits)
@@ -170,8 +175,8 @@ fn limits(of: &Specification) -> Markup {
             .number("Least finer (%)", |limit| trimmed(limit.min_percent_finer))
             .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), trimmed))
             .render())
-        @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
-        @if of.if_dispersive_in_words(DESIGN_AGAIN).is_some() {
+        @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
+        @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
@@ -197,7 +202,7 @@ fn products(of: &Specification) -> Markup {
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
         .text("What else its sides do not keep", |of| clean(&of.not_kept))
-        .text("", |product| match (&*of.product_in_words(product), product.fits()) {
+        .text("", |product| match (&*product_result(of, product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
             (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
             (said, _) => html! { (said) },
@@ -226,15 +231,15 @@ mod tests {
     fn products_are_said_to_fit_as_far_as_is_known() {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
-        let said = core.products_in_words();
+        let said = products_line(&core);
         assert_eq!(said, "Standard products that fit: ASTM C33 fine aggregate");
-        assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
+        assert!(limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
         // The greatest is not known, and the least alone refuses the finest product.
         let unknown =
             Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };
-        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
+        assert!(products_line(&unknown).starts_with("No other product is known to fit"));
         let unknown = Specification { products: margins((Some(0.1), 0.1), None), ..unknown };
-        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
+        assert!(products_line(&unknown).starts_with("No other product is known to fit"));
         let page = products(&core).into_string();
         assert!(
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),

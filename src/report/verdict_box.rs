@@ -10,11 +10,11 @@ use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{ModelLimit, Note, RunSummary, Verdict};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::meaning;
 use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {

@@ -12,10 +12,10 @@ use super::prepare::{Draft, PrepareOptions};
 use super::replicates::{have_networks, left_out_of_first_run};
 use super::results::left_out;
 use crate::case::{CaseError, PackedFilter, PackingPlan};
-use crate::outcome::record::{Inputs, Ratios};
+use crate::outcome::record::Note;
+use crate::outcome::record::{Inputs, LeftOut, Ratios};
 use crate::scene::Scene;
 use crate::store::Placement;
-use crate::outcome::record::Note;
 use crate::verdict::ordered;
 
 /// What a run of a scene would do; sizes and times are estimates.

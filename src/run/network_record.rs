@@ -6,6 +6,7 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use crate::case::base_record;
 use crate::gradation::Gradation;
 use crate::network::Network;
+use crate::outcome::left_out::LeftOut;
 use crate::outcome::network_walk::{GivenNetwork, NetworkWalkRecord};
 use crate::outcome::{Modelled, leaves_out, verdict};
 
@@ -29,9 +30,8 @@ impl NetworkOutcome {
             replicates: self.replicates.iter().map(|walked| walked.result.replicate.clone()).collect(),
             summary: self.summary.clone(),
             threshold: verdict::THRESHOLD,
-            left_out: first.map_or(Vec::new(), |first| {
-                first.left_out.iter().copied().map(LeftOut::Walk).collect()
-            }),
+            left_out: first
+                .map_or(Vec::new(), |first| first.left_out.iter().copied().map(LeftOut::Walk).collect()),
             model_leaves_out: leaves_out(Modelled {
                 flow: network.exit_rule().needs_flow(),
                 ..Modelled::default()

@@ -20,6 +20,7 @@ use crate::outcome::record::{Replicate, Run, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::classify;
 
+use crate::outcome::record::Note;
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
@@ -28,7 +29,6 @@ use crate::walk::{
     Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl,
     WalkError, from_words,
 };
-use crate::outcome::record::Note;
 
 /// How replicates are walked: who follows them, and what saves them.
 #[derive(Clone, Copy)]

@@ -12,6 +12,8 @@ use super::studies::Studies;
 use super::summary::{concluded, summarise};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::digest::digest;
+use crate::outcome::left_out::LeftOut;
+use crate::outcome::record::Note;
 use crate::outcome::record::{
     ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Verdict,
     VoidRow, commit,
@@ -22,10 +24,8 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
-use crate::outcome::left_out::LeftOut;
 use crate::verdict::{dispersion, ordered, practice};
 use crate::walk::Shortcut;
-use crate::outcome::record::Note;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
 /// where they are to come.
@@ -93,7 +93,9 @@ pub fn outcome(
         found.extend(outcome.if_dispersive.map(dispersion::note));
     }
     outcome.notes = ordered(&outcome.rules, found);
-    let is_beyond = outcome.if_dispersive.and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
+    let is_beyond = outcome
+        .if_dispersive
+        .and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
     let is_beyond = is_beyond.is_some();
     outcome.headline = practice::headline(&outcome.rules, is_beyond);
     outcome.digest = digest(&outcome).expect("an outcome is JSON");

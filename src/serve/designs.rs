@@ -7,12 +7,15 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::constrictions;
-use crate::outcome::design::{Design, DesignFinding, Specification, share_of_networks};
+use crate::outcome::design::{Design, RowNote, share_of_networks};
+use crate::outcome::numbers::SizeUnit;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
-use crate::outcome::numbers::SizeUnit;
-use crate::verdict::DESIGN_AGAIN;
+use crate::words::design::design_lines;
+use crate::words::left_out::model_limit;
+use crate::words::products::products;
 use crate::words::row_note;
+use crate::words::specification::{DESIGN_AGAIN, if_dispersive, without_margin};
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -174,20 +177,21 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         }
     }
     let practice = design.specification.as_ref();
-    let words = |of: &[DesignFinding]| of.iter().map(DesignFinding::words).collect::<Vec<_>>();
+    let unit = SizeUnit::of(false, design.inches);
+    let words = |notes: &[RowNote]| notes.iter().map(|row| row_note(row, unit)).collect::<Vec<_>>();
     Ok(json!({
-        "lines": design.first_lines(),
-        "beside": practice.map(|of| [of.without_margin_in_words(), of.if_dispersive_in_words(DESIGN_AGAIN)]),
+        "lines": design_lines(design, unit),
+        "beside": practice.map(|of| [without_margin(of, unit), if_dispersive(of, DESIGN_AGAIN, unit)]),
         "base": design.base.name,
         "d85b": design.base.size().map(|base| base.words()),
         "filter": design.filter,
         "boundaries": boundaries,
         "share_of_networks": share_of_networks(design.replicates),
         "replicates": design.replicates,
-        "cautions": practice.map(|of| words(&of.findings)),
-        "warnings": words(&design.findings),
-        "products": practice.map(Specification::products_in_words),
-        "model_leaves_out": design.model_leaves_out,
+        "cautions": practice.map(|of| words(&of.notes)),
+        "warnings": words(&design.notes),
+        "products": practice.map(products),
+        "model_leaves_out": design.model_leaves_out.iter().map(|limit| model_limit(*limit)).collect::<Vec<_>>(),
     }))
 }
 
@@ -208,7 +212,7 @@ mod tests {
                 "tail_mass_fraction": 0.0},
             "threshold": 0.075, "replicates": 5, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
             "step": 0.005,
-            "findings": [], "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
+            "notes": [], "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": boundary, "continuing": null, "not_monotone": 0,
                 "networks": networks}],

@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 
 use super::batches::so_far;
 use crate::campaign::CaseEvent;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;
 use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
 
 /// Fewer replicates have no class while more are to come.
 const FEW: usize = 4;

@@ -7,25 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
 use crate::gradation::SoilSample;
-use crate::outcome::design::specification::SizeBand;
+use crate::outcome::design::specification::{NoBand, SizeBand};
 use crate::outcome::design::{Design, Specification};
-use crate::outcome::numbers::{SizeUnit, rounded_down};
 use crate::outcome::record::{IfDispersive, InputFile, ModelLimit, Note, SheetCover, commit};
-use crate::outcome::table::{Columns, TableCell};
-
-/// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 10] = [
-    "sample",
-    "group",
-    "d85b_mm",
-    "d15f_max_mm",
-    "rule",
-    "d15f_min_mm",
-    "band_d15f_max_mm",
-    "governs",
-    "model_d15f_over_d85b",
-    "model_d15f_mm",
-];
 
 /// The whole of `designs.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -147,9 +131,9 @@ pub struct DesignedSample {
     /// What a reader must know of the sample itself, as for a filter of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<Note>,
-    /// Why the sample has no band of its own, though both limits may be known; empty where it has one.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub no_band: String,
+    /// Why the sample has no band of its own, though both limits may be known; `None` where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_band: Option<NoBand>,
     /// 1 for the sample that governs, 2 and 3 for those next to it: by `d15f_max_mm`.
     pub governs: Option<u64>,
     /// What the model says of it; `None` where it was not walked.
@@ -192,7 +176,7 @@ impl DesignedSample {
             if_dispersive: practice.if_dispersive,
             band_d15f_mm: practice.band.as_ref().map(SizeBand::d15_mm),
             notes: practice.notes.iter().map(|row| row.note.clone()).collect(),
-            no_band: practice.no_band.clone().unwrap_or_default(),
+            no_band: practice.no_band.clone(),
             governs: None,
             design: None,
             not_walked: String::new(),
@@ -212,57 +196,7 @@ impl DesignedSample {
 
     /// Whether practice has a maximum D15F and a band for it.
     pub fn is_settled(&self) -> bool {
-        self.d15f_max_mm.is_some() && self.no_band.is_empty()
-    }
-
-    /// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
-    /// unit.
-    pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
-        let design = |row: &Self| row.design.clone();
-        let why_not = |row: &Self| Some(row.not_walked.clone()).filter(|why| !why.is_empty());
-        let drains = move |row: &Self| {
-            let at_most = if row.d15f_min_at_most { " at most" } else { "" };
-            row.d15f_min_mm.map(|least| format!("{}{at_most}", unit.least(least)))
-        };
-        let band = move |row: &Self| match row.band_d15f_mm {
-            Some([least, greatest]) => format!("{} to {}", unit.least(least), unit.greatest(greatest)),
-            None => "none".into(),
-        };
-        Columns::default()
-            .column("sample", |row: &Self| row.sample.clone())
-            .headed("Sample")
-            .column("group", |row: &Self| row.group.clone())
-            .headed("Group")
-            .column("category", |row: &Self| row.category.map(u64::from))
-            .digits("fines_percent", 1, |row| row.fines_percent)
-            .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
-            .digits("d85b_mm", 4, |row| row.d85b_mm)
-            .number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| unit.short(mm)))
-            .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
-            .number("Limit of practice, mm", move |row| row.d15f_max_mm.map(|mm| unit.greatest(mm)))
-            .column("rule", |row: &Self| row.rule.clone())
-            .headed("Whose limit")
-            .digits("d15f_min_mm", 4, |row| row.d15f_min_mm)
-            .number("Drains from, mm", drains)
-            .column("d15f_min_at_most", |row: &Self| row.d15f_min_at_most.to_string())
-            .digits("band_d15f_min_mm", 4, |row| row.band_d15f_mm.map(|[least, _]| least))
-            .digits("band_d15f_max_mm", 4, |row| row.band_d15f_mm.map(|[_, greatest]| greatest))
-            .number("Band, D15F, mm", band)
-            .column("governs", |row: &Self| row.governs)
-            .headed("Governs")
-            .column("no_band", |row: &Self| row.no_band.clone())
-            .digits("model_d15f_over_d85b", 3, move |row| design(row)?.model_d15f_over_d85b)
-            .number("Model (research): D15F/D85B", move |row| {
-                let ratio = design(row).and_then(|of| of.model_d15f_over_d85b).map(rounded_down);
-                ratio.shown().below(why_not(row))
-            })
-            .digits("model_d15f_mm", 4, move |row| design(row)?.model_d15f_mm)
-            .number("Model (research): D15F, mm", move |row| {
-                design(row).and_then(|of| of.model_d15f_mm).map(|mm| unit.greatest(mm))
-            })
-            .column("not_walked", |row: &Self| row.not_walked.clone())
-            .column("folder", move |row| design(row).map(|of| of.folder))
-            .only(&SHOWN)
+        self.d15f_max_mm.is_some() && self.no_band.is_none()
     }
 }
 

@@ -159,7 +159,10 @@ impl PairRules {
             false => IfDispersive::of_bases(bases, filter),
         };
         let is_beyond = if_dispersive.is_some_and(|limit| limit.broken_by(&rules, filter.d(15.0)).is_some());
-        let range = tested_range(&RuleInputs { dispersive: options.dispersive, ..RuleInputs::of_soils(base, filter) });
+        let range = tested_range(&RuleInputs {
+            dispersive: options.dispersive,
+            ..RuleInputs::of_soils(base, filter)
+        });
         Self {
             filter: FilterSizes {
                 curves: names(filters),

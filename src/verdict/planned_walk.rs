@@ -109,7 +109,9 @@ impl PlannedWalk<'_> {
     fn cu_of_base(&self) -> Option<Note> {
         let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
         match (self.base.cu(), self.base.d(60.0)) {
-            (None, Some(d60)) => Some(Note::CuAtLeast { soil: "base".into(), least_cu: d60 / sieve, d10_mm: sieve, low, high }),
+            (None, Some(d60)) => {
+                Some(Note::CuAtLeast { soil: "base".into(), least_cu: d60 / sieve, d10_mm: sieve, low, high })
+            }
             (cu, _) => not_as_uniform("base", cu, BASE_CU),
         }
     }
@@ -125,7 +127,9 @@ impl PlannedWalk<'_> {
         let percent = Some(100.0 * self.base.pan_fraction()).filter(|percent| *percent > 0.0)?;
         let (sieve, finest) = (self.base.smallest_mm(), self.finest_constriction_mm);
         Some(match sieve > finest {
-            true => Note::PanCountsAsPassing { finest_percent: percent, sieve_mm: sieve, constriction_mm: finest },
+            true => {
+                Note::PanCountsAsPassing { finest_percent: percent, sieve_mm: sieve, constriction_mm: finest }
+            }
             false => Note::PanPassive { finest_percent: percent },
         })
     }

@@ -5,8 +5,8 @@ use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
 use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{
-    AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass, Verdict,
-    d15f_between,
+    AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
+    Verdict, d15f_between,
 };
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
@@ -247,7 +247,9 @@ mod tests {
                     let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
                     let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
                     let mut said: Vec<String> = vec![pair.practice.clone()];
-                    said.extend(notes(&pair.rules).iter().map(|note| crate::words::sentence(note, SizeUnit::Mm)));
+                    said.extend(
+                        notes(&pair.rules).iter().map(|note| crate::words::sentence(note, SizeUnit::Mm)),
+                    );
                     said.extend(pair.if_dispersive.map(|of| of.words()));
                     let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
                     said.extend(

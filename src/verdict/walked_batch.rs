@@ -6,9 +6,7 @@ use super::batch::BatchRow;
 use super::batch_table::BatchFilter;
 use super::practice::counts_as;
 use crate::outcome::BaseSize;
-use crate::outcome::record::{
-    Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit,
-};
+use crate::outcome::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use crate::outcome::verdict::THRESHOLD;
 
 /// The whole of `batch.json`.

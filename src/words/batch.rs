@@ -131,7 +131,9 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
         all.push(format!("if the base is dispersive, D15F must be {}", dispersive_limit(limit, unit)));
     }
     match row.too_coarse_without_percent {
-        Some(part) => all.push(format!("too coarse without its finest {} %, which it may lose", fixed(part, 1))),
+        Some(part) => {
+            all.push(format!("too coarse without its finest {} %, which it may lose", fixed(part, 1)))
+        }
         None if row.may_lose_fines => all.push("may lose its finer part".into()),
         None => {}
     }
@@ -268,7 +270,9 @@ fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
         let as_placed = || row.d15f_mm.is_some_and(|d15f| limit.is_broken_by(d15f));
         row.breaks_if_dispersive || row.met.is_none() && as_placed()
     };
-    let name = |(row, limit): &(BatchRow, IfDispersive)| format!("{} (D15F {})", row.sample, dispersive_limit(*limit, unit));
+    let name = |(row, limit): &(BatchRow, IfDispersive)| {
+        format!("{} (D15F {})", row.sample, dispersive_limit(*limit, unit))
+    };
     let broken: Vec<String> = open.iter().filter(is_broken).map(name).collect();
     let samples = if open.len() == 1 { "sample" } else { "samples" };
     let then = match broken.is_empty() {

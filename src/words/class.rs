@@ -5,15 +5,17 @@ use crate::outcome::undecided::UndecidedBy;
 
 /// Why a class is undecided, in a sentence without its end.
 pub fn undecided_by(cause: UndecidedBy) -> &'static str {
-        match cause {
-            UndecidedBy::Curve => {
-                "the constriction curve is known within a range only, and its ends do not give one class"
-            }
-            UndecidedBy::SecondRun => {
-                "some and continuing erosion differ by the second run, and only a first was asked for"
-            }
-            UndecidedBy::Replicates => "the replicates do not separate the classes; more replicates may decide it",
+    match cause {
+        UndecidedBy::Curve => {
+            "the constriction curve is known within a range only, and its ends do not give one class"
         }
+        UndecidedBy::SecondRun => {
+            "some and continuing erosion differ by the second run, and only a first was asked for"
+        }
+        UndecidedBy::Replicates => {
+            "the replicates do not separate the classes; more replicates may decide it"
+        }
+    }
 }
 
 /// A text with a capital letter at its beginning.

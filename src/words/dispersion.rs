@@ -13,10 +13,14 @@ pub fn beyond_dispersive(
 ) -> Option<String> {
     let beyond = limit.broken_by(rules, d15f_mm)?;
     let at_most = if limit.at_most { "at most " } else { "" };
-    let [value, most] = unit.within([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], " mm").map(Option::unwrap_or_default);
-    let without = beyond.without_percent.map(|part| format!(" (without the filter's finest {} %)", fixed(part, 1)));
+    let [value, most] =
+        unit.within([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], " mm").map(Option::unwrap_or_default);
+    let without =
+        beyond.without_percent.map(|part| format!(" (without the filter's finest {} %)", fixed(part, 1)));
     let without = without.unwrap_or_default();
-    Some(format!("if the base is dispersive, the limit is {at_most}{most}, and {value}{without} is beyond it"))
+    Some(format!(
+        "if the base is dispersive, the limit is {at_most}{most}, and {value}{without} is beyond it"
+    ))
 }
 
 /// The limit behind a D15F (mm) that is recommended; `None` where that holds for a dispersive base too.
@@ -33,7 +37,9 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
     let most = unit.limit(limit.d15f_max_mm, "mm", false);
     match limit.lacks.filter(|_| limit.at_most) {
-        Some(DispersiveLack::AnyLimit) => format!("less than {most}, by how much no source that was read says"),
+        Some(DispersiveLack::AnyLimit) => {
+            format!("less than {most}, by how much no source that was read says")
+        }
         Some(DispersiveLack::D85B) => format!("at most {most}, as D85B is not known"),
         Some(DispersiveLack::LimitOfDesign) | None => format!("at most {most}"),
     }

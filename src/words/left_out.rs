@@ -1,38 +1,40 @@
 //! The words of what an answer leaves out: what the model does not contain, and what a scene does not need.
 
-use crate::outcome::numbers::{fixed, given};
 use crate::outcome::left_out::{LayerKind, LeftOut};
+use crate::outcome::numbers::{fixed, given};
 use crate::outcome::record::ModelLimit;
 use crate::walk::{Engine, Finest, Shortcut};
 
 /// A limit of the model in brief, and the rest of what it means.
 fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
-        const HYDRAULICS: &str = "no flow, no gradient, no time; an increment is not an interval of time";
-        const GRADIENT: &str = "no gradient, no time; an increment is not an interval of time";
-        match limit {
-            ModelLimit::Hydraulics => ("hydraulics", HYDRAULICS),
-            ModelLimit::HydraulicsElsewhere => ("hydraulics, in the other cases", HYDRAULICS),
-            ModelLimit::Gradient => ("hydraulics but for the direction and the shares of slow flow", GRADIENT),
-            ModelLimit::GradientThere => (
-                "hydraulics but for the direction and the shares of slow flow, where water gives particles \
+    const HYDRAULICS: &str = "no flow, no gradient, no time; an increment is not an interval of time";
+    const GRADIENT: &str = "no gradient, no time; an increment is not an interval of time";
+    match limit {
+        ModelLimit::Hydraulics => ("hydraulics", HYDRAULICS),
+        ModelLimit::HydraulicsElsewhere => ("hydraulics, in the other cases", HYDRAULICS),
+        ModelLimit::Gradient => ("hydraulics but for the direction and the shares of slow flow", GRADIENT),
+        ModelLimit::GradientThere => (
+            "hydraulics but for the direction and the shares of slow flow, where water gives particles \
                  their way",
-                GRADIENT,
-            ),
-            ModelLimit::Bridging => ("bridging", "a particle is stopped only by a constriction finer than itself"),
-            ModelLimit::PartialClogging => {
-                ("partial clogging", "a constriction is open at its full size or blocked")
-            }
-            ModelLimit::Supply => ("a limit to what enters", "all base particles are offered to the filter"),
-            ModelLimit::Excessive => (
-                "the excessive-erosion class of Foster and Fell",
-                "the verdict knows no, some and continuing erosion",
-            ),
-            ModelLimit::Cohesion => (
-                "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the \
-                 filter",
-                "",
-            ),
+            GRADIENT,
+        ),
+        ModelLimit::Bridging => {
+            ("bridging", "a particle is stopped only by a constriction finer than itself")
         }
+        ModelLimit::PartialClogging => {
+            ("partial clogging", "a constriction is open at its full size or blocked")
+        }
+        ModelLimit::Supply => ("a limit to what enters", "all base particles are offered to the filter"),
+        ModelLimit::Excessive => (
+            "the excessive-erosion class of Foster and Fell",
+            "the verdict knows no, some and continuing erosion",
+        ),
+        ModelLimit::Cohesion => (
+            "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the \
+                 filter",
+            "",
+        ),
+    }
 }
 
 /// A limit of the model.
@@ -57,59 +59,59 @@ const AMOUNTS: &str = "sensitivity to the number of base particles";
 
 /// A part of the program that a scene does not need, in a part of a sentence; sizes have this unit.
 pub fn left_out(part: &LeftOut, unit: &str) -> String {
-        let times = |factors: &[f64]| {
-            factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
-        };
-        let text = match part {
-            LeftOut::Walk(shortcut) => return shortcut_words(*shortcut, unit),
-            LeftOut::Lattice => "a lattice: the voids of the packing are the network",
-            LeftOut::BeforeNetwork => "packing, triangulation and constriction curve: the network is given",
-            LeftOut::GivenCurve => "a given constriction curve: it is measured on the packing",
-            LeftOut::PackingByLibrary => {
-                "packing and triangulation: the constriction curve is from the library of packings"
-            }
-            LeftOut::PackingByGuess => {
-                "packing and triangulation: the constriction curve is guessed from the gradation"
-            }
-            LeftOut::PackingByCurve => "packing and triangulation: the constriction curve is given",
-            LeftOut::PackingOfShape(folder, factor) => {
-                let factor = fixed(*factor, 4);
-                return format!(
-                    "packing the filter: the packing in {folder} has its shape, and was taken {factor} \
+    let times = |factors: &[f64]| {
+        factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
+    };
+    let text = match part {
+        LeftOut::Walk(shortcut) => return shortcut_words(*shortcut, unit),
+        LeftOut::Lattice => "a lattice: the voids of the packing are the network",
+        LeftOut::BeforeNetwork => "packing, triangulation and constriction curve: the network is given",
+        LeftOut::GivenCurve => "a given constriction curve: it is measured on the packing",
+        LeftOut::PackingByLibrary => {
+            "packing and triangulation: the constriction curve is from the library of packings"
+        }
+        LeftOut::PackingByGuess => {
+            "packing and triangulation: the constriction curve is guessed from the gradation"
+        }
+        LeftOut::PackingByCurve => "packing and triangulation: the constriction curve is given",
+        LeftOut::PackingOfShape(folder, factor) => {
+            let factor = fixed(*factor, 4);
+            return format!(
+                "packing the filter: the packing in {folder} has its shape, and was taken {factor} \
                      times as large"
-                );
-            }
-            LeftOut::SecondRun => "the second run: it was not asked for",
-            LeftOut::AmountsAboveCap(factors, cap) => {
-                let cap = given(*cap);
-                return format!("{AMOUNTS}, {}: more than base.cap, {cap}, allows", times(factors));
-            }
-            LeftOut::AmountsTheSame(factors) => {
-                return format!(
-                    "{AMOUNTS}, {}: the same number of particles as the scene itself or another factor",
-                    times(factors)
-                );
-            }
-            LeftOut::ThicknessOfFile => {
-                "filters of another thickness: a network from a file is as thick as it is"
-            }
-            LeftOut::ThicknessRefused(factor, why) => {
-                return format!("a filter {} times as thick: {why}", given(*factor));
-            }
-            LeftOut::ThicknessTheSame(factor, parts, kind) => {
-                let noun = match (kind, parts) {
-                    (LayerKind::Copy, 1) => "copy of the packing",
-                    (LayerKind::Copy, _) => "copies of the packing",
-                    (LayerKind::Layer, 1) => "layer",
-                    (LayerKind::Layer, _) => "layers",
-                };
-                return format!(
-                    "a filter {} times as thick: to the nearest whole number it has the same {parts} {noun}",
-                    given(*factor)
-                );
-            }
-        };
-        text.into()
+            );
+        }
+        LeftOut::SecondRun => "the second run: it was not asked for",
+        LeftOut::AmountsAboveCap(factors, cap) => {
+            let cap = given(*cap);
+            return format!("{AMOUNTS}, {}: more than base.cap, {cap}, allows", times(factors));
+        }
+        LeftOut::AmountsTheSame(factors) => {
+            return format!(
+                "{AMOUNTS}, {}: the same number of particles as the scene itself or another factor",
+                times(factors)
+            );
+        }
+        LeftOut::ThicknessOfFile => {
+            "filters of another thickness: a network from a file is as thick as it is"
+        }
+        LeftOut::ThicknessRefused(factor, why) => {
+            return format!("a filter {} times as thick: {why}", given(*factor));
+        }
+        LeftOut::ThicknessTheSame(factor, parts, kind) => {
+            let noun = match (kind, parts) {
+                (LayerKind::Copy, 1) => "copy of the packing",
+                (LayerKind::Copy, _) => "copies of the packing",
+                (LayerKind::Layer, 1) => "layer",
+                (LayerKind::Layer, _) => "layers",
+            };
+            return format!(
+                "a filter {} times as thick: to the nearest whole number it has the same {parts} {noun}",
+                given(*factor)
+            );
+        }
+    };
+    text.into()
 }
 
 /// The same of several.
@@ -119,49 +121,49 @@ pub fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
 
 /// A shortcut of a walk, in a sentence; sizes have this unit.
 fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
-        let followed = |engine: Engine| match engine {
-            Engine::Expected => "only their expected number in each void is followed",
-            _ => "only their number in each void is followed, which is exact",
-        };
-        let finest_open = |finest: Finest| {
-            format!("the finest open constriction of this walk ({} {unit})", fixed(finest.size_mm, 4))
-        };
-        match shortcut {
-            Shortcut::NothingOpen => {
-                "No constriction is open: every base particle stays in the void it starts in.".into()
-            }
-            Shortcut::NonePassive(finest) => {
-                let fine = if finest.arches { "too fine to arch in" } else { "as fine as" };
-                let open = finest_open(finest);
-                format!("No base particle is {fine} {open}, so none is kept as a count.")
-            }
-            Shortcut::Openings => {
-                "Blocked constrictions leave openings that may stop a particle of any size: none is \
+    let followed = |engine: Engine| match engine {
+        Engine::Expected => "only their expected number in each void is followed",
+        _ => "only their number in each void is followed, which is exact",
+    };
+    let finest_open = |finest: Finest| {
+        format!("the finest open constriction of this walk ({} {unit})", fixed(finest.size_mm, 4))
+    };
+    match shortcut {
+        Shortcut::NothingOpen => {
+            "No constriction is open: every base particle stays in the void it starts in.".into()
+        }
+        Shortcut::NonePassive(finest) => {
+            let fine = if finest.arches { "too fine to arch in" } else { "as fine as" };
+            let open = finest_open(finest);
+            format!("No base particle is {fine} {open}, so none is kept as a count.")
+        }
+        Shortcut::Openings => {
+            "Blocked constrictions leave openings that may stop a particle of any size: none is \
                                kept as a count."
-                    .into()
-            }
-            Shortcut::AllPassive(finest, engine) => format!(
-                "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
+                .into()
+        }
+        Shortcut::AllPassive(finest, engine) => format!(
+            "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
                  blocked, and none is walked on its own; {}.",
-                fixed(finest.size_mm, 4),
-                if finest.arches { ", and is too fine to arch" } else { "" },
-                followed(engine)
-            ),
-            Shortcut::MostPassive(percent, finest, engine) => format!(
-                "All but {} % of the base particles by number are {} {} and can block nothing: {}, and \
+            fixed(finest.size_mm, 4),
+            if finest.arches { ", and is too fine to arch" } else { "" },
+            followed(engine)
+        ),
+        Shortcut::MostPassive(percent, finest, engine) => format!(
+            "All but {} % of the base particles by number are {} {} and can block nothing: {}, and \
                  their sizes are drawn where they come to rest.",
-                digits(percent),
-                if finest.arches { "too fine to arch in" } else { "no coarser than" },
-                finest_open(finest),
-                followed(engine)
-            ),
-            Shortcut::OneSize => "The base has one size: no column of diameters is kept.".into(),
-            Shortcut::FewPassive(passive, start_nodes) => format!(
-                "None is kept as a count: {passive} passive base particles an increment for {start_nodes} \
+            digits(percent),
+            if finest.arches { "too fine to arch in" } else { "no coarser than" },
+            finest_open(finest),
+            followed(engine)
+        ),
+        Shortcut::OneSize => "The base has one size: no column of diameters is kept.".into(),
+        Shortcut::FewPassive(passive, start_nodes) => format!(
+            "None is kept as a count: {passive} passive base particles an increment for {start_nodes} \
                  start nodes are so few that walking each by itself is faster, and the distribution is the \
                  same."
-            ),
-        }
+        ),
+    }
 }
 
 /// A number of percent with four digits that mean something: `19.65`, `0.002500`, `3.000e-7`.

@@ -7,16 +7,20 @@
 mod answer;
 pub mod batch;
 mod class;
+pub mod design;
+pub mod designed;
 mod dispersion;
 pub mod left_out;
 mod next;
 mod note;
 mod practice;
+pub mod products;
 pub mod rule;
 pub mod rule_note;
+pub mod specification;
 
 pub use answer::{FOREMOST, first_lines, foremost, lines_of, model};
-pub use class::{capital, meaning, undecided_by, within};
+pub use class::{capital, meaning, undecided_by};
 pub use dispersion::{beside_dispersive, beyond_dispersive, dispersive_limit, test};
 pub use next::next;
 pub use note::{row_note, sentence, setting};

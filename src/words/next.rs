@@ -136,7 +136,8 @@ impl Pair<'_> {
             (Some(least), Some((most, false))) if most >= least => {
                 let range = format!("{} to {} mm", rounded_up(least), rounded_down(most));
                 let inches = self.unit.beside_range(least, most);
-                let dispersive = self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
+                let dispersive =
+                    self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
                 Some(format!("take a coarser filter, D15F {range}{inches}{dispersive}{clean}"))
             }
             (Some(_), _) => {

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
+use crate::outcome::design::RowNote;
 use crate::outcome::digits::count;
-use crate::outcome::design::DesignFinding;
 use crate::outcome::note::Note;
 use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, trimmed_significant};
 
@@ -25,7 +25,7 @@ pub fn setting(note: &Note) -> String {
 }
 
 /// The sentence of a note on a part of a design, behind the name of that part.
-pub fn row_note(row: &DesignFinding, unit: SizeUnit) -> String {
+pub fn row_note(row: &RowNote, unit: SizeUnit) -> String {
     let words = sentence(&row.note, unit);
     row.row.as_ref().map_or(words.clone(), |name| format!("{name}: {words}"))
 }
@@ -49,7 +49,9 @@ fn filled(note: &Note, template: &str, unit: SizeUnit) -> String {
 fn shown(name: &str, noun: Option<&str>, value: &Value, unit: SizeUnit) -> String {
     match value {
         Value::String(text) => one_line(text),
-        Value::Array(names) => listed(&names.iter().filter_map(Value::as_str).map(one_line).collect::<Vec<_>>()),
+        Value::Array(names) => {
+            listed(&names.iter().filter_map(Value::as_str).map(one_line).collect::<Vec<_>>())
+        }
         Value::Number(number) if number.is_u64() => counted(number.as_u64().unwrap_or(0), noun),
         Value::Number(number) => measured(name, number.as_f64().unwrap_or(f64::NAN), unit),
         _ => "an unknown number of".into(),
@@ -114,7 +116,11 @@ mod tests {
     fn every_sentence_has_at_most_25_words() {
         for note in all(12.5, 3, "some") {
             for words in [sentence(&note, SizeUnit::Mm), setting(&note)] {
-                assert!(words.split_whitespace().count() <= 25, "{}: {words}", words.split_whitespace().count());
+                assert!(
+                    words.split_whitespace().count() <= 25,
+                    "{}: {words}",
+                    words.split_whitespace().count()
+                );
             }
         }
     }
@@ -151,12 +157,15 @@ mod tests {
             let begin = entry.sentence.chars().next().unwrap();
             assert!((begin.is_uppercase() || begin == '{') && entry.sentence.ends_with(['.', '?']), "{id}");
             for name in record["numbers"].as_object().into_iter().flat_map(|numbers| numbers.keys()) {
-                let is_used = |text: &str| [format!("{{{name}}}"), format!("{{{name}:")].iter().any(|field| text.contains(field));
+                let is_used = |text: &str| {
+                    [format!("{{{name}}}"), format!("{{{name}:")].iter().any(|field| text.contains(field))
+                };
                 assert!(is_used(entry.sentence) || is_used(entry.setting), "{id} does not say {name}");
             }
             // No words of the program where a client reads.
             for word in ["base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {
-                let is_key = |(at, _)| entry.sentence[at + word.len()..].starts_with(|c: char| c.is_ascii_lowercase());
+                let is_key =
+                    |(at, _)| entry.sentence[at + word.len()..].starts_with(|c: char| c.is_ascii_lowercase());
                 assert!(!entry.sentence.match_indices(word).any(is_key), "{id}: {}", entry.sentence);
             }
         }

@@ -133,7 +133,9 @@ pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
 fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
     let more = if washout.is_capped() { "; more may go" } else { "" };
     let d15f = match washout.unit {
-        "mm" => unit.within([Some(washout.left.d15f), Some(washout.least)], " mm")[0].clone().unwrap_or_default(),
+        "mm" => {
+            unit.within([Some(washout.left.d15f), Some(washout.least)], " mm")[0].clone().unwrap_or_default()
+        }
         name => format!("{} {name}", fixed(washout.left.d15f, 3)),
     };
     format!(

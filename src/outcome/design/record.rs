@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::finding::DesignFinding;
+use super::row_note::RowNote;
 use super::specification::Specification;
 use super::spread::{Beyond, are_few, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{InputFile, ModelLimit, SheetCover};
+use crate::outcome::record::{InputFile, ModelLimit, Note, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -57,7 +57,7 @@ pub struct Design {
     pub step: f64,
     /// What a reader must know of the model's boundaries, the weightiest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<DesignFinding>,
+    pub notes: Vec<RowNote>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
@@ -119,8 +119,8 @@ pub struct DesignRow {
     /// Where no erosion turns into some; `None` where that lies beyond what can be walked.
     pub no_erosion: Option<Boundary>,
     /// Why there is none, or what else is to be said of it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub no_erosion_note: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub no_erosion_notes: Vec<Note>,
     /// D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched,
     /// so that there is no boundary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -128,11 +128,11 @@ pub struct DesignRow {
     /// Where some erosion turns into continuing.
     pub continuing: Option<Boundary>,
     /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub continuing_notes: Vec<Note>,
+    /// The note on a boundary that few particles decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub continuing_note: Option<String>,
-    /// Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unsteady: Option<String>,
+    pub unsteady: Option<Note>,
     /// Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
     /// that erodes counts.
     pub not_monotone: u64,

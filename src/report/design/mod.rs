@@ -1,9 +1,6 @@
 //! The page of a design: the specification by practice and, apart from it, the boundaries of the model; from
 //! `design.json` and `design.csv` alone.
 
-use crate::words::sentence;
-use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::Note;
 mod figure;
 mod tables;
 #[cfg(test)]
@@ -24,10 +21,11 @@ use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
 use super::specification::{answer, with_details};
 use super::written::Written;
-use crate::outcome::design::{Design, DesignFinding, WalkRow};
-use crate::verdict::FOREMOST;
-use crate::words::capital;
+use crate::outcome::design::{Design, WalkRow};
+use crate::words::design::design_model;
 use crate::words::left_out::left_out_in_brief;
+use crate::words::specification::band as band_words;
+use crate::words::{FOREMOST, row_note};
 use words::size_unit;
 
 /// Writes `design.html` and its figures into the folder of a design, from `design.json` and `design.csv`
@@ -43,8 +41,9 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     let names = html! {
         (titled_by_file("Base", "Base", &design.base.name)) ", " (filter_words(&design))
     };
-    let findings = told(&design);
-    let (foremost, rest) = findings.split_at(findings.len().min(FOREMOST));
+    let unit = size_unit(&design);
+    let notes: Vec<String> = design.notes.iter().map(|row| row_note(row, unit)).collect();
+    let (foremost, rest) = notes.split_at(notes.len().min(FOREMOST));
     let sheet = html! { section.sheet {
         @if let Some(specification) = &design.specification { (answer(specification)) }
         (model(&design, foremost, rest.len()))
@@ -61,7 +60,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         super::workbook::write_specification_workbook(folder, specification)?;
     }
     let soils = GivenSoils::of_design(&design);
-    let band = design.specification.as_ref().and_then(|of| Some((of.band.as_ref()?, of.band_in_words()?)));
+    let band = design.specification.as_ref().and_then(|of| Some((of.band.as_ref()?, band_words(of, unit)?)));
     let drawn = soils.figure(band.as_ref().map(|(band, _)| *band), band.as_ref().map(|(_, said)| &**said));
     let page = Sections::new(title, title, &names)
         .model()
@@ -74,7 +73,7 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
         Some(specification) => with_details(page, specification),
         None => page,
     };
-    page.section("Other findings", &others(rest))
+    page.section("Other notes", &others(rest))
         .section("Boundaries of the model", &tables::boundaries(&design))
         .figures(figure::erosion(&design, &walks))
         .section("Network by network", &tables::networks(&design))
@@ -105,30 +104,21 @@ fn as_given(design: &Design) -> Option<String> {
 /// What stands between the names of a filter and of its curve.
 const CURVE: &str = ", constrictions ";
 
-/// What was found of the model, without the names of settings.
-fn told(design: &Design) -> Vec<String> {
-    let words = |of: &DesignFinding| {
-        let said = &of.finding.sentence;
-        of.row.as_ref().map_or_else(|| said.clone(), |row| format!("{}: {said}", capital(row)))
-    };
-    design.findings.iter().map(words).collect()
-}
-
-/// The findings that do not stand on the first sheet: folded on a screen, and open in print.
+/// The notes that do not stand on the first sheet: folded on a screen, and open in print.
 fn others(rest: &[String]) -> Markup {
     html! { @if !rest.is_empty() {
         details { summary { (rest.len()) " more" } ul { @for said in rest { li { (clean(said)) } } } }
     } }
 }
 
-/// The line of the model, and the findings that matter most.
+/// The line of the model, and the notes that matter most.
 fn model(design: &Design, foremost: &[String], more: usize) -> Markup {
     html! {
         section.verdict {
-            p.practice { b { "Model (research)" } ": " (unbroken(&design.model_in_words())) "." }
+            p.practice { b { "Model (research)" } ": " (unbroken(&design_model(design, size_unit(design)))) "." }
             @if let Some(base) = design.base.size() { p { (base.words()) "." } }
             @if !foremost.is_empty() { ul { @for said in foremost { li { (unbroken(said)) } } } }
-            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
+            @if more > 0 { p.small { "and " (more) " more below, under “Other notes”" } }
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use maud::{Markup, Render, html};
 
-use super::words::{in_band, ratio, sentence, size_unit};
+use super::words::{in_band, ratio, size_unit};
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, share_of_networks};
+use crate::outcome::record::Note;
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, significant, threshold, trimmed, whole};
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
+use crate::words::sentence;
 
 /// The boundaries of the model, a row a density and thickness.
 pub(super) fn boundaries(design: &Design) -> Markup {
@@ -17,7 +19,7 @@ pub(super) fn boundaries(design: &Design) -> Markup {
     let unit = size_unit(design);
     let limit = |mm: f64| unit.limit(mm, "mm", false);
     let found = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
-    let cell = |boundary: Option<&Boundary>, note: Option<&String>, is_limit: bool| {
+    let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
         let end = if is_limit { rounded_down } else { significant };
         html! {
             @match boundary {
@@ -31,7 +33,7 @@ pub(super) fn boundaries(design: &Design) -> Markup {
                 },
                 None => "no number",
             }
-            @if let Some(note) = note { br; span.small { (sentence(note)) } }
+            @for note in notes { br; span.small { (clean(&sentence(note, unit))) } }
         }
     };
     let thick = |row: &DesignRow| {
@@ -54,11 +56,11 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             })
             .text("No erosion in the model up to", |row| {
                 let [no_erosion, _] = row.shown();
-                cell(no_erosion.as_ref(), row.no_erosion_note.as_ref(), true)
+                cell(no_erosion.as_ref(), &row.no_erosion_notes, true)
             })
             .text("Continuing erosion from", |row| {
                 let [_, continuing] = row.shown();
-                cell(continuing.as_ref(), row.continuing_note.as_ref(), false)
+                cell(continuing.as_ref(), &row.continuing_notes, false)
             })
             .number("Not monotone", |row| {
                 format!("{} of {}", row.not_monotone, row.networks.len())

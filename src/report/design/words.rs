@@ -2,13 +2,6 @@
 
 use crate::outcome::design::Design;
 use crate::report::numbers::SizeUnit;
-use crate::report::shell::clean;
-use crate::words::capital;
-
-/// A note as a sentence.
-pub(super) fn sentence(note: &str) -> String {
-    clean(&format!("{}.", capital(note.trim_end_matches('.'))))
-}
 
 /// What sizes in mm are shown in.
 pub(super) fn size_unit(design: &Design) -> SizeUnit {

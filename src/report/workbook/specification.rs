@@ -3,7 +3,9 @@
 use super::sheet::{Entry, Sheet};
 use crate::outcome::design::Specification;
 use crate::outcome::numbers::SizeUnit;
-use crate::words::row_note;
+use crate::words::products::product as product_result;
+use crate::words::specification::{beside_limits, no_band, step_rows, still_to_set, without_margin};
+use crate::words::{dispersive_limit, row_note};
 
 /// What the page says too.
 const CAUTIONS: [(&str, &str); 3] = [
@@ -24,15 +26,16 @@ fn summary(of: &Specification) -> Sheet {
     sheet.item("Dispersive", of.dispersive, "");
     sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
     sheet.item("Maximum D15F, which retains the base", of.d15f_max_mm, "mm");
-    let dispersive = of.if_dispersive.map(|of| of.words_of_base());
+    let mm = SizeUnit::Mm;
+    let dispersive = of.if_dispersive.map(|limit| format!("D15F {}", dispersive_limit(limit, mm)));
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
-    sheet.item("Margin", of.without_margin_in_words(), "");
+    sheet.item("Margin", without_margin(of, mm), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
-    sheet.item("No band, because", of.no_band.as_deref(), "");
+    sheet.item("No band, because", of.no_band.as_ref().map(|why| no_band(why, mm)), "");
     of.notes.iter().for_each(|row| sheet.item("Warning", row_note(row, SizeUnit::Mm), ""));
-    sheet.item("Still to be set", of.still_to_set(), "");
+    sheet.item("Still to be set", still_to_set(of, mm), "");
     sheet.item("Basis", "By the rules of practice alone, without a walk.", "");
     CAUTIONS.iter().for_each(|(item, caution)| sheet.item(item, *caution, ""));
     sheet.item("voidwalk", &of.version, "");
@@ -42,7 +45,7 @@ fn summary(of: &Specification) -> Sheet {
 fn limits(of: &Specification) -> Sheet {
     let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)", "Note"];
     // Said once, beside the first sieve.
-    let mut note = of.beside_limits();
+    let mut note = beside_limits(of, SizeUnit::Mm);
     let mut sheet = Sheet::new("Limits", &headings);
     for limit in &of.limits {
         sheet.row([
@@ -85,7 +88,7 @@ fn products(of: &Specification) -> Sheet {
             product.drains_by.into(),
             product.holds_by.into(),
             product.fits().into(),
-            of.product_in_words(product).into(),
+            product_result(of, product).into(),
             (&product.not_kept).into(),
             (&product.source).into(),
         ]);
@@ -96,7 +99,7 @@ fn products(of: &Specification) -> Sheet {
 fn steps(of: &Specification) -> Sheet {
     let headings = ["Step", "What is done", "Quantity", "Value", "Unit", "Formula", "Note", "Source"];
     let mut sheet = Sheet::new("Steps", &headings);
-    for row in of.steps.iter().flat_map(|step| step.rows()) {
+    for row in of.steps.iter().flat_map(step_rows) {
         sheet.row([
             row.step.into(),
             row.does.into(),

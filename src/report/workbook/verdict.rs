@@ -1,6 +1,7 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
@@ -8,7 +9,6 @@ use crate::verdict::rule_result::result_of;
 use crate::words::rule::result;
 use crate::words::rule_note::rule_notes;
 use crate::words::{first_lines, sentence};
-use crate::outcome::numbers::SizeUnit;
 
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {

@@ -7,6 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::callbacks::Callbacks;
@@ -21,7 +22,6 @@ use crate::study::batch::{self, BatchPlan};
 use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
 use crate::words::{first_lines, sentence};
-use crate::outcome::numbers::SizeUnit;
 
 /// What is done with results that are whole.
 pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;

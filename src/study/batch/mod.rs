@@ -24,6 +24,7 @@ use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, shown};
 use crate::store::Folder;
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
+use crate::words::batch::walked_columns;
 
 /// Folder of the campaign, inside the batch's.
 const WALKS: &str = "pairs";

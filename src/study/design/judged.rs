@@ -2,11 +2,10 @@
 
 use super::row::Row;
 use crate::case::{Case, StatedBase};
-use crate::outcome::record::FindingRecord;
+use crate::outcome::record::Note;
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
-use crate::verdict::{Finding, finding, ordered};
-use crate::outcome::record::Note;
+use crate::verdict::ordered;
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
@@ -16,15 +15,15 @@ const COARSE_BASE_MM: f64 = 10.0;
 
 /// What the search itself finds of a row: a band over so few networks says little, and a number of base
 /// particles may not be that of Eq. (2) at every ratio.
-fn of_search(row: &Row) -> Vec<Finding> {
+fn of_search(row: &Row) -> Vec<Note> {
     let networks = row.case.scene.walk.replicates;
-    let few = (networks < FEW_NETWORKS).then(|| finding::few_networks(networks));
+    let few = (networks < FEW_NETWORKS).then_some(Note::FewNetworks { networks });
     few.into_iter().chain(of_amount(row)).collect()
 }
 
-fn of_amount(row: &Row) -> Option<Finding> {
+fn of_amount(row: &Row) -> Option<Note> {
     match row.case.scene.base.amount() {
-        Amount::Number(n) | Amount::MassRatio(_, Some(n)) => Some(finding::amount_held(n)),
+        Amount::Number(n) | Amount::MassRatio(_, Some(n)) => Some(Note::AmountHeld { particles: n }),
         Amount::MassRatio(_, None) => None,
     }
 }
@@ -78,13 +77,15 @@ impl Judged {
     }
 
     /// What a reader must know of the model, with what else was found.
-    pub fn findings(&self, row: &Row, others: Vec<Finding>) -> Vec<FindingRecord> {
+    pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
-        let coarse = self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(finding::coarse_base);
-        let not_compared = self.real_thickness.map(|real| finding::thickness_without_unit(real, "D85B"));
-        let of_case = self.case.findings().into_iter();
-        let found = of_case.filter(|finding| Some(finding) != of_one.as_ref());
+        let coarse =
+            self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85_mm| Note::CoarseBase { d85_mm });
+        let not_compared =
+            self.real_thickness.map(|real_mm| Note::ThicknessWithoutUnit { real_mm, unit: "D85B".into() });
+        let of_case = self.case.notes().into_iter();
+        let found = of_case.filter(|note| Some(note) != of_one.as_ref());
         let found = found
             .chain(self.case.unchecked_clogging())
             .chain(coarse)

@@ -9,14 +9,13 @@ use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, repli
 use crate::gradation::Gradation;
 use crate::network::{Network, Passage};
 use crate::outcome::design::Beyond;
+use crate::outcome::record::Note;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
-use crate::verdict::{Finding, finding};
 use crate::walk::{Clogged, PlainExits};
-use crate::outcome::record::Note;
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -101,10 +100,10 @@ impl Row {
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// The same as a finding.
-    pub fn thicker(&self, ratio: f64) -> Option<Finding> {
-        let layer = self.thicker_than_asked(ratio)?;
-        Some(finding::layer_thicker(ratio, layer, &self.wanted.thickness.to_string()))
+    /// The same as a note.
+    pub fn thicker(&self, ratio: f64) -> Option<Note> {
+        let layer_mm = self.thicker_than_asked(ratio)?;
+        Some(Note::LayerThicker { ratio, layer_mm, thickness: self.wanted.thickness.to_string() })
     }
 
     /// The case at a ratio.

@@ -10,16 +10,15 @@ use super::steadiness;
 use crate::case::Input;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::outcome::design::{
-    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignFinding, DesignRow, NetworkBoundaries,
+    BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, RowNote,
     Specification, WalkRow, spread,
 };
 use crate::outcome::leaves_out;
-use crate::outcome::record::{FindingRecord, InputFile, commit};
+use crate::outcome::record::{InputFile, Note, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::study::days::today;
-use crate::outcome::record::Note;
 use crate::verdict::SpecificationOptions;
 
 /// Ratio at which a row is judged where no boundary is known.
@@ -57,9 +56,8 @@ pub(super) fn design(
     for at in asked() {
         let row = &rows[at];
         let unbounded = unbounded(row, rows, &found);
-        let notes = found[at].of.no_erosion_note.take().into_iter().chain(spared_ends(row, rows, &found));
-        let notes: Vec<String> = notes.collect();
-        found[at].of.no_erosion_note = (!notes.is_empty()).then(|| notes.join(" "));
+        let spared = spared_ends(row, rows, &found);
+        found[at].of.no_erosion_notes.extend(spared);
         let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], unbounded)?));
     }
@@ -77,11 +75,11 @@ pub(super) fn design(
     let (first, stated) = (&rows[0], &rows[0].stated.scene.about);
     let judged = Judged::new(first, USUAL_RATIO)?;
     let specification = specification(first, &judged.base_name, options);
-    let mut findings = all_found(judgements, &boundaries);
+    let mut notes = all_notes(judgements, &boundaries);
     // What the specification says of the base is not said again.
-    let stated_of_base = specification.iter().flat_map(|of| &of.findings);
-    let stated_of_base: Vec<&str> = stated_of_base.map(|of| &*of.finding.id).collect();
-    findings.retain(|of| !stated_of_base.contains(&&*of.finding.id));
+    let in_specification: Vec<usize> =
+        specification.iter().flat_map(|of| &of.notes).map(|row| row.note.place()).collect();
+    notes.retain(|row| !in_specification.contains(&row.note.place()));
     let record = judged.case.record();
     Ok(Design {
         version: env!("CARGO_PKG_VERSION").into(),
@@ -98,7 +96,7 @@ pub(super) fn design(
         engine: first.case.scene.walk.engine.name().into(),
         bracket: options.bracket,
         step: BETWEEN_STEPS,
-        findings,
+        notes,
         model_leaves_out: leaves_out(first.case.modelled()),
         settings: settings(options),
         cover: stated.cover().dated(today()),
@@ -129,7 +127,7 @@ struct FoundRow {
     /// Networks that erode at every ratio of the search.
     eroding: u64,
     /// What is to be said of its boundary of no erosion.
-    of_boundary: Vec<Finding>,
+    of_boundary: Vec<Note>,
     /// Of an end that cannot set the answer: the ratio that its first network holds, and no more is known.
     spared_at: Option<f64>,
 }
@@ -140,12 +138,12 @@ impl FoundRow {
         self.spared_at.is_some()
     }
 
-    /// Why no ratio is known that holds; `at` names the curve.
-    fn unheld(&self, at: &str) -> Option<Finding> {
+    /// Why no ratio is known that holds.
+    fn unheld(&self) -> Option<Note> {
         let networks = self.of.networks.len() as u64;
         self.of.held().is_none().then(|| match self.eroding {
-            0 => finding::nothing_walked(at),
-            eroding => finding::erodes_everywhere(eroding, networks, at),
+            0 => Note::NothingWalked {},
+            networks_eroding => Note::ErodesEverywhere { networks_eroding, networks },
         })
     }
 
@@ -178,17 +176,12 @@ fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Itera
 }
 
 /// That an end of a row's range was not searched.
-fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<String> {
+fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<Note> {
     let in_range = rows.iter().zip(found).filter(|(other, _)| is_in_range(row, other));
-    let said = |(_, end): (&Row, &FoundRow)| {
-        let ratio = end.spared_at?;
-        Some(format!(
-            "The end {} holds clearly more: D15F/D85B {ratio:.2} on the first of {} networks. It is taken \
-             that it does not set the answer, and its boundary was not searched.",
-            end.of.density, row.case.scene.walk.replicates
-        ))
+    let spared = |(_, end): (&Row, &FoundRow)| {
+        Some(Note::SparedEnd { density: end.of.density.clone(), ratio: end.spared_at? })
     };
-    in_range.filter_map(said).collect()
+    in_range.filter_map(spared).collect()
 }
 
 /// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
@@ -200,44 +193,37 @@ fn held_over_range(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<f64> {
 
 /// Why the model has no boundary: networks erode at every ratio that was searched, with some curve of the
 /// range, or they hold every one, and the end of the search is none.
-fn unbounded(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Finding> {
-    if let Some(unheld) = range(row, rows, found).find_map(|of| of.unheld(&curve(row, of))) {
+fn unbounded(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Note> {
+    if let Some(unheld) = range(row, rows, found).find_map(FoundRow::unheld) {
         return Some(unheld);
     }
     let least = range(row, rows, found).filter_map(|found| Some((found, found.of.held()?)));
     let (least, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let at = curve(row, least);
     least.of.no_erosion.is_none().then(|| match least.of.eroding_networks() as u64 {
-        0 => finding::holds_everywhere(ratio, &at),
-        eroding => finding::median_beyond(ratio, eroding, least.of.networks.len() as u64, &at),
+        0 => Note::HoldsEverywhere { ratio },
+        networks_eroding => {
+            Note::MedianBeyond { ratio, networks_eroding, networks: least.of.networks.len() as u64 }
+        }
     })
 }
 
-/// The name of a curve of a row's range, where it is not the row's own.
-fn curve(row: &Row, found: &FoundRow) -> String {
-    let density = &found.of.density;
-    if *density == row.wanted.density { String::new() } else { format!(" ({density})") }
-}
-
-/// What was found about all rows: what not all of them have with the row's name.
-fn all_found(each: Vec<(String, Vec<FindingRecord>)>, boundaries: &[DesignRow]) -> Vec<DesignFinding> {
-    let same = |a: &FindingRecord, b: &FindingRecord| a.with_to_do() == b.with_to_do();
-    let mut findings: Vec<DesignFinding> = Vec::new();
-    for (name, found) in &each {
-        for finding in found {
-            let by_all = each.iter().all(|(_, other)| other.iter().any(|other| same(other, finding)));
-            let row = (!by_all).then(|| name.clone());
-            if !findings.iter().any(|of| of.row == row && same(&of.finding, finding)) {
-                findings.push(DesignFinding { row, finding: finding.clone() });
+/// The notes on all rows: those that not all of them have with the row's name.
+fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[DesignRow]) -> Vec<RowNote> {
+    let mut all: Vec<RowNote> = Vec::new();
+    for (name, notes) in &rows {
+        for note in notes {
+            let by_all = rows.iter().all(|(_, other)| other.contains(note));
+            let one = RowNote { row: (!by_all).then(|| name.clone()), note: note.clone() };
+            if !all.contains(&one) {
+                all.push(one);
             }
         }
     }
-    let not_monotone: u64 = boundaries.iter().map(|of| of.not_monotone).sum();
-    if not_monotone > 0 {
-        let finding = finding::not_monotone(not_monotone).record();
-        findings.push(DesignFinding { row: None, finding });
+    let networks: u64 = boundaries.iter().map(|row| row.not_monotone).sum();
+    if networks > 0 {
+        all.push(RowNote { row: None, note: Note::NotMonotone { networks } });
     }
-    findings
+    all
 }
 
 /// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its curve.
@@ -245,23 +231,24 @@ fn judged(
     row: &Row,
     (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
     held: Option<f64>,
-    unbounded: Option<Finding>,
-) -> Result<Vec<FindingRecord>, RunError> {
+    unbounded: Option<Note>,
+) -> Result<Vec<Note>, RunError> {
     let of = &own.of;
     let Some(held) = held else {
         let why = unbounded.into_iter().chain(own.of_boundary.iter().cloned());
-        return Ok(Judged::new(row, USUAL_RATIO)?.findings(row, why.collect()));
+        return Ok(Judged::new(row, USUAL_RATIO)?.notes(row, why.collect()));
     };
     let judged = Judged::new(row, held)?;
     let least = range(row, rows, found).min_by(|a, b| holds_less(a, b));
-    let unsteady = least.and_then(|of| Some((of.unsteady?, curve(row, of))));
-    let unsteady = unsteady.map(|([held, eroding], at)| finding::unsteady(held, eroding, &at));
+    let unsteady = least.and_then(|of| of.unsteady);
+    let unsteady =
+        unsteady.map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding });
     let of_boundary = match &of.no_erosion {
         Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(held))),
         None => own.of_boundary.clone(),
     };
     let why = [unsteady, unbounded].into_iter().flatten();
-    Ok(judged.findings(row, why.chain(of_boundary).collect()))
+    Ok(judged.notes(row, why.chain(of_boundary).collect()))
 }
 
 /// `design.csv`.
@@ -348,14 +335,10 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         |done| done.found.continuing,
         |done| done.found.continuing_beyond.as_ref().map(|(beyond, _)| *beyond),
     );
-    // Why some networks have none, in the words of the first of them.
+    // Why some networks have none, as the first of them has it.
     let ended = |of: fn(&Done) -> Option<&Beside>| {
         let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&of(done)?.1)).collect();
-        let on = match all.len() == done.len() {
-            true => String::new(),
-            false => format!(" ({} of {} networks)", all.len(), done.len()),
-        };
-        all.first().map(|why| why.finding(&on))
+        all.first().map(|why| why.note(all.len() as u64))
     };
     let [no_erosion, continuing] = [&first, &second].map(|networks| Boundary::of(networks, row.d85_mm));
     let holds_to = if no_erosion.is_none() { holds_to(done) } else { None };
@@ -373,12 +356,8 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     };
     let of_first = ended(|done| done.found.no_erosion_beyond.as_ref());
     let of_pan = of_first.as_ref().and_then(|_| of_pan(row));
-    let of_boundary: Vec<Finding> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
+    let of_boundary: Vec<Note> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
     let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
-    let note = |findings: &[Finding]| {
-        let said: Vec<String> = findings.iter().map(Finding::with_to_do).collect();
-        (!said.is_empty()).then(|| said.join(" "))
-    };
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
     let of = DesignRow {
         density: row.wanted.density.clone(),
@@ -390,11 +369,12 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         },
         grains_per_void: row.case.grains_per_void,
         no_erosion,
-        no_erosion_note: note(&of_boundary),
+        no_erosion_notes: of_boundary.clone(),
         holds_to,
         continuing,
-        continuing_note: note(&of_second.into_iter().flatten().collect::<Vec<_>>()),
-        unsteady: unsteady.map(|[held, eroding]| finding::unsteady(held, eroding, "").sentence()),
+        continuing_notes: of_second.into_iter().flatten().collect(),
+        unsteady: unsteady
+            .map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding }),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
             .iter()
@@ -425,7 +405,7 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
 }
 
 /// What is to be said where the base's pan fraction alone is enough to erode.
-fn of_pan(row: &Row) -> Option<Finding> {
+fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.gradation.pan_fraction();
-    (pan >= THRESHOLD).then(|| finding::pan_erodes(100.0 * pan))
+    (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
 }

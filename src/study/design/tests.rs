@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::*;
 use crate::case::Case;
 use crate::gradation::Gradation;
-use crate::outcome::design::DesignFinding;
 use crate::outcome::design::DesignRow;
+use crate::outcome::design::RowNote;
 use crate::run::prepare::PrepareOptions;
 use crate::run::walk_case;
 use crate::scene::Scene;
@@ -360,8 +360,8 @@ fn what_is_found_of_one_row_alone_is_said_with_its_name() {
         for (row, alone) in [("3 layers", &thin), ("16 layers", &thick)] {
             let row = format!("loose, {row}");
             let of_row = alone.findings.iter().filter(|found| found.finding.id != "not_monotone");
-            for DesignFinding { finding, .. } in of_row {
-                let is_there = |other: &DesignFinding| {
+            for RowNote { finding, .. } in of_row {
+                let is_there = |other: &RowNote| {
                     other.finding == *finding && other.row.as_ref().is_none_or(|name| *name == row)
                 };
                 assert!(both.findings.iter().any(is_there), "{finding:?}: {:?}", both.findings);

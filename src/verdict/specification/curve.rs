@@ -1,11 +1,11 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
 use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
-use crate::outcome::design::DesignFinding;
+use crate::outcome::design::RowNote;
 use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
 use crate::outcome::numbers::rounded_down;
-use crate::outcome::record::{AppliedRule, IfDispersive, Note};
+use crate::outcome::record::{AppliedRule, IfDispersive, Note, RuleNote};
 use crate::outcome::rules::{
     BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInputs, apply, sieved_limit,
 };
@@ -35,7 +35,7 @@ pub(super) struct ReadCurve {
     /// The mildest minimum D15F (mm) that its sieves leave possible; 0 where none of them tells.
     drains_from: f64,
     /// Why its maximum D15F is not known.
-    pub unknown: Option<String>,
+    pub unknown: Option<Vec<RuleNote>>,
 }
 
 impl ReadCurve {
@@ -46,10 +46,8 @@ impl ReadCurve {
         let open = OpenBase::of(base, false);
         let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.hangs_on);
         // A limit that can only be less may be the strictest.
-        let unknown = open_retention(&rules).map(|rule| rule.needs.to_string());
-        let unknown = over_sieves.map(|note| note.words()).or(unknown);
-        let unknown =
-            unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
+        let unknown = open_retention(&rules).map(|rule| rule.needs.clone());
+        let unknown = over_sieves.map(|note| vec![note]).or(unknown);
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
         let drains = sieved_limit(PERMEABILITY, base, &open, dispersive);
@@ -99,7 +97,8 @@ impl ReadCurve {
         if within_percent < GAP_PERCENT {
             return Some(vec![Note::GapOfBase { within_percent, from_mm, to_mm }]);
         }
-        let is_other = |limit: &f64| self.of.d15f_max_mm.is_none_or(|most| rounded_down(most) != rounded_down(*limit));
+        let is_other =
+            |limit: &f64| self.of.d15f_max_mm.is_none_or(|most| rounded_down(most) != rounded_down(*limit));
         let limit = self.greatest_regraded_on(from_mm).filter(is_other);
         let limit = limit.map(|most_d15f_mm| Note::FlatBaseLimit { sieve_mm: from_mm, most_d15f_mm });
         Some([Note::FlatBase { from_mm, to_mm, within_percent }].into_iter().chain(limit).collect())
@@ -136,10 +135,10 @@ fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
 }
 
 /// What a reader must know of a base of these curves, with the name of the curve where there are several.
-pub(super) fn notes(read: &[ReadCurve]) -> Vec<DesignFinding> {
+pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
     let of = |curve: &ReadCurve| {
-        curve.notes().into_iter().map(|note| DesignFinding { row: row(curve), note }).collect::<Vec<_>>()
+        curve.notes().into_iter().map(|note| RowNote { row: row(curve), note }).collect::<Vec<_>>()
     };
     read.iter().flat_map(of).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::gradation::Gradation;
-use crate::outcome::design::DesignFinding;
+use crate::outcome::design::RowNote;
 use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::verdict::practice::broken;
 use crate::verdict::washout::washout;
@@ -158,7 +158,7 @@ fn what_is_wrong_with_the_base_itself_is_among_the_findings() {
     let sand = soil(&[(0.1, 0.0), (0.5, 100.0)]);
     let both = [("sand".to_owned(), sand), ("till".to_owned(), soil(&points))];
     let both = Specification::of("site", &both, SpecificationOptions::default());
-    let row = |of: &DesignFinding| of.row.clone().unwrap_or_default();
+    let row = |of: &RowNote| of.row.clone().unwrap_or_default();
     assert_eq!(both.findings.iter().map(row).collect::<Vec<_>>(), ["till", "till", "till", ""]);
     // That of the band is of all: 0.636 to 0.700 mm, with a fine side that runs far out to its D5.
     assert_eq!(ids(&both)[3], "unstable_side");

@@ -71,7 +71,9 @@ impl Ended {
     pub fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
-            Self::ErodesTo(ratio, reason) => Note::ErodesTo { ratio: *ratio, networks, reason: reason.clone() },
+            Self::ErodesTo(ratio, reason) => {
+                Note::ErodesTo { ratio: *ratio, networks, reason: reason.clone() }
+            }
             Self::Holds(run, ratio) => Note::HoldsToEnd { run: *run, ratio: *ratio, networks },
             Self::NotWalked(reason) => Note::NotWalked { networks, reason: reason.clone() },
         }

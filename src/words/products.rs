@@ -16,33 +16,31 @@ fn does_not_fit(not_kept: &str) -> String {
     if not_kept.is_empty() { "does not fit".into() } else { format!("does not fit: {not_kept}") }
 }
 
-impl Specification {
-    /// What is said of a standard product.
-    pub fn product_in_words(&self, of: &ProductMargin) -> String {
-        match of.fits() {
-            Some(true) => FITS.into(),
-            Some(false) => does_not_fit(&of.not_kept),
-            None if self.d15f_min_at_most && of.drains_by.is_none() => MAY_DRAIN.into(),
-            None => "no result".into(),
-        }
+/// The result of a standard product beside a specification.
+pub fn product(specification: &Specification, product: &ProductMargin) -> String {
+    match product.fits() {
+        Some(true) => FITS.into(),
+        Some(false) => does_not_fit(&product.not_kept),
+        None if specification.d15f_min_at_most && product.drains_by.is_none() => MAY_DRAIN.into(),
+        None => "no result".into(),
     }
+}
 
-    /// Which standard products fit, or which comes closest: sentences without the last end.
-    pub fn products_in_words(&self) -> String {
-        let fitting = self.products.iter().filter(|of| of.fits() == Some(true));
-        let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();
-        if !fitting.is_empty() {
-            return format!("Standard products that fit: {}", fitting.join(", "));
+/// The standard products that fit, or the one that comes closest: sentences without the last end.
+pub fn products(specification: &Specification) -> String {
+    let fitting = specification.products.iter().filter(|of| of.fits() == Some(true));
+    let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();
+    if !fitting.is_empty() {
+        return format!("Standard products that fit: {}", fitting.join(", "));
+    }
+    let other =
+        if specification.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
+    match specification.nearest_product() {
+        Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
+        None if specification.d15f_min_at_most => {
+            "Whether a standard product fits is not known: D15B must be tested".into()
         }
-        let other =
-            if self.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
-        match self.nearest_product() {
-            Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
-            None if self.d15f_min_at_most => {
-                "Whether a standard product fits is not known: D15B must be tested".into()
-            }
-            None => format!("No {other} product is known to fit: a limit of D15F is not known"),
-        }
+        None => format!("No {other} product is known to fit: a limit of D15F is not known"),
     }
 }
 
@@ -60,7 +58,7 @@ mod tests {
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let fits: Vec<_> = core.products.iter().filter(|of| of.fits() == Some(true)).collect();
         assert_eq!(fits.iter().map(|of| &*of.product).collect::<Vec<_>>(), ["ASTM C33 fine aggregate"]);
-        assert_eq!(core.product_in_words(fits[0]), FITS);
+        assert_eq!(product(&core, fits[0]), FITS);
         // No. 8 stone may be delivered with a Cu of 1.6.
         let stone = core.products.iter().find(|of| of.product.contains("No. 8 ")).unwrap();
         assert!(stone.not_kept.starts_with("Cu of its coarse side is 1.59"), "{stone:?}");

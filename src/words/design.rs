@@ -1,53 +1,45 @@
 //! The lines that every face of a design begins with: those of practice, and that of the model.
 
-use crate::outcome::design::{Design, DesignRow, Specification};
-use crate::outcome::numbers::rounded_down;
+use super::specification::{band, no_band};
+use crate::outcome::design::{Design, Specification};
+use crate::outcome::numbers::{SizeUnit, rounded_down};
 
-impl Design {
-    /// The lines, each under its name: of a base without a size the model's alone.
-    pub fn first_lines(&self) -> Vec<(&'static str, String)> {
-        let practice = self.specification.iter().flat_map(Specification::first_lines);
-        practice.chain([("Model (research)", self.model_in_words())]).collect()
-    }
-
-    /// The least D15F/D85B that nearly all networks hold, and its D15F where the base has a size.
-    pub fn model_in_words(&self) -> String {
-        let Some((row, ratio)) = self.least_held() else {
-            return "no D15F/D85B is known that nearly all networks hold".into();
-        };
-        let size = self.base.d85_mm.map(|d85| format!(", D15F {} mm", rounded_down(ratio * d85)));
-        format!(
-            "nearly all networks hold D15F/D85B {}{}{}",
-            rounded_down(ratio),
-            size.unwrap_or_default(),
-            if row.holds_whole_search() { ", as far as was searched" } else { "" }
-        )
-    }
+/// The lines, each under its name: of a base without a size the model's alone.
+pub fn design_lines(design: &Design, unit: SizeUnit) -> Vec<(&'static str, String)> {
+    let practice =
+        design.specification.iter().flat_map(|specification| specification_lines(specification, unit));
+    practice.chain([("Model (research)", design_model(design, unit))]).collect()
 }
 
-impl DesignRow {
-    /// Whether no network was seen to erode, so that the ratio that it holds is no boundary.
-    fn holds_whole_search(&self) -> bool {
-        self.no_erosion.is_none() && self.eroding_networks() == 0
-    }
+/// The least D15F/D85B that nearly all networks hold, and its D15F where the base has a size.
+pub fn design_model(design: &Design, unit: SizeUnit) -> String {
+    let Some((row, ratio)) = design.least_held() else {
+        return "no D15F/D85B is known that nearly all networks hold".into();
+    };
+    let size = design.base.d85_mm.map(|d85| format!(", D15F {}", unit.limit(ratio * d85, "mm", false)));
+    let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
+    format!(
+        "nearly all networks hold D15F/D85B {}{}{}",
+        rounded_down(ratio),
+        size.unwrap_or_default(),
+        if holds_whole_search { ", as far as was searched" } else { "" }
+    )
 }
 
-impl Specification {
-    /// The band, and the limit with whose it is.
-    fn first_lines(&self) -> [(&'static str, String); 2] {
-        let band = self.band_in_words().unwrap_or_else(|| match &self.no_band {
-            Some(why) => format!("no band. {}", why.trim_end_matches('.')),
-            None => "no band".into(),
-        });
-        [("Practice", band), ("Limit", self.limit_in_words())]
-    }
+/// The band, and the limit with whose it is.
+fn specification_lines(specification: &Specification, unit: SizeUnit) -> [(&'static str, String); 2] {
+    let band = band(specification, unit).unwrap_or_else(|| match &specification.no_band {
+        Some(why) => format!("no band. {}", no_band(why, unit).trim_end_matches('.')),
+        None => "no band".into(),
+    });
+    [("Practice", band), ("Limit", limit(specification, unit))]
+}
 
-    /// The maximum D15F and whose rule sets it.
-    pub fn limit_in_words(&self) -> String {
-        match self.strictest() {
-            Some((curve, limit)) => format!("D15F {} mm ({})", rounded_down(limit), curve.d15f_max_rule),
-            None => "not known".into(),
-        }
+/// The maximum D15F and whose rule sets it.
+pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
+    match specification.strictest() {
+        Some((curve, limit)) => format!("D15F {} ({})", unit.limit(limit, "mm", false), curve.d15f_max_rule),
+        None => "not known".into(),
     }
 }
 
@@ -84,9 +76,12 @@ mod tests {
     fn neither_practice_nor_the_model_changes_the_lines_of_the_other() {
         let core = specified(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let lines = |ratios: &[f64], specification: Option<&Specification>| {
-            Design { specification: specification.cloned(), ..design(ratios, Some(0.2)) }.first_lines()
+            Design { specification: specification.cloned(), ..design(ratios, Some(0.2)) }.clone()
         };
-        let practice = core.first_lines();
+        let lines = |ratios: &[f64], specification: Option<&Specification>| {
+            design_lines(&lines(ratios, specification), SizeUnit::Mm)
+        };
+        let practice = specification_lines(&core, SizeUnit::Mm);
         for ratios in [&[][..], &[0.6, 0.6], &[9.0, 9.0]] {
             let [alone, beside] = [lines(ratios, None), lines(ratios, Some(&core))];
             assert_eq!(beside[..2], practice);
@@ -106,13 +101,13 @@ mod tests {
         assert!(two.least_held().is_none());
         // What holds all that was searched counts to its end, and is said to.
         two.boundaries[1].holds_to = Some(1.08);
-        assert!(two.model_in_words().ends_with("1.08, as far as was searched"));
+        assert!(design_model(&two, SizeUnit::Mm).ends_with("1.08, as far as was searched"));
     }
 
     #[test]
     fn a_limit_of_which_only_the_most_is_known_is_not_known() {
         let open = [(0.25, 30.0), (0.5, 45.0), (1.0, 60.0), (2.0, 90.0), (4.0, 100.0)];
-        let [(_, band), (_, limit)] = specified(&open).first_lines();
+        let [(_, band), (_, limit)] = specification_lines(&specified(&open), SizeUnit::Mm);
         assert!(band.starts_with("no band. ") && limit == "not known", "{band} {limit}");
     }
 }

@@ -1,0 +1,345 @@
+//! The specification of a filter in words.
+
+use super::class::capital;
+use super::dispersion::{beside_dispersive, dispersive_limit, test};
+use super::rule_note::{regrade_reason, rule_notes};
+use serde::{Deserialize, Serialize};
+
+use crate::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT};
+use crate::outcome::design::products::LEAST_CU;
+use crate::outcome::design::size_band::{D15_OVER_D10, SizeBand};
+use crate::outcome::design::specification::{NoBand, StepName, StepNote, StepValue};
+use crate::outcome::design::{Specification, SpecificationStep};
+use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::rules::{
+    DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND,
+    range_of_tests,
+};
+
+/// What to do where a base is found to be dispersive.
+pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
+
+/// The same of many samples.
+pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
+
+/// The band to specify: D15F of both sides, and Cu. `None` without a band.
+///
+/// ```
+/// use voidwalk::Gradation;
+/// use voidwalk::outcome::{design::Specification, numbers::SizeUnit};
+/// use voidwalk::verdict::SpecificationOptions;
+/// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
+/// let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+/// let band = voidwalk::words::specification::band(&core, SizeUnit::Mm);
+/// assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700 mm, Cu from 2 to 6"));
+/// # Ok::<(), voidwalk::gradation::GradationError>(())
+/// ```
+pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
+    let [least, most] = specification.band.as_ref()?.d15_mm();
+    let is_open =
+        specification.d15f_min_at_most && specification.d15f_min_mm.is_some_and(|drains| drains >= least);
+    let open = if is_open { " (what drains the base is not known and at most the lower D15F)" } else { "" };
+    Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", unit.limits(least, most)))
+}
+
+/// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains it,
+/// in a sentence without its end; `None` where it does neither.
+pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
+    let [least, most] = specification.band.as_ref()?.d15_mm();
+    if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
+        let [retains, most] = [retains, most].map(|mm| unit.limit(mm, "mm", false));
+        return Some(format!(
+            "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
+             the band is no wider than {WIDEST_BAND} to 1"
+        ));
+    }
+    let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
+    let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
+    let [drains, least] = [drains, least].map(|mm| unit.limit(mm, "mm", true));
+    Some(format!(
+        "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
+         that the band is no wider than {WIDEST_BAND} to 1"
+    ))
+}
+
+/// What a specification lacks that no text with its numbers could be read for: the maximum D90F, which keeps a
+/// filter from segregating. `None` without a band.
+pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
+    let least = specification.band.as_ref().map(SizeBand::least_d10_mm)?;
+    Some(format!(
+        "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be set \
+         from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
+         minimum D10F of {}.",
+        // Where a table is entered: a finer D10F allows no coarser D90F.
+        unit.limit(least, "mm", false)
+    ))
+}
+
+/// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band or have
+/// a gap. `None` without a band.
+pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<String> {
+    let [least, most] = specification.band.as_ref()?.d15_mm();
+    Some(format!(
+        "The limits alone are not enough: D15F of each delivery must lie within {}, its Cu between {LEAST_CU} \
+         and {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
+        unit.limits(least, most)
+    ))
+}
+
+/// That the maximum D15F has no margin, where it is the boundary of no erosion of tests itself: a sentence
+/// without its end.
+pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<String> {
+    let (curve, limit) = specification.strictest()?;
+    let fines = curve.fines_percent.filter(|_| curve.without_margin)?;
+    let why = match (specification.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
+        // The limit of design is the floor of any filter then, and above the boundary of tests.
+        (true, _) if limit < DESIGN_FLOOR_MM => {
+            "it is the boundary of no erosion in tests (Fell et al., Table 9.2, note b)".into()
+        }
+        (true, _) => {
+            "Fell et al. (Table 9.2, note b) give it for no erosion in tests; it is taken for design, too"
+                .into()
+        }
+        (false, [low, high]) => {
+            let place = match limit {
+                limit if limit <= low * (1.0 + 1e-9) => "is the lower end of",
+                limit if limit > high => "lies beyond",
+                _ => "lies in",
+            };
+            format!(
+                "it {place} the range in which tests put the boundary of no erosion ({}; Fell et al., Table 9.2)",
+                unit.range_of_tests(low, high)
+            )
+        }
+    };
+    Some(format!("This limit has no margin: {why}"))
+}
+
+/// The maximum D15F if the base is dispersive, and what to do, as [`DESIGN_AGAIN`]: sentences, the last without
+/// its end; `None` where all holds for such a base too, or somebody has said whether it is one.
+pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
+    let most = specification.d15f_max_mm.unwrap_or(f64::INFINITY);
+    let limit =
+        specification.if_dispersive.filter(|limit| beside_dispersive(*limit, most, unit).is_some())?;
+    let [before, invalid] = match specification.band {
+        Some(_) => ["this band is specified", "this band is not valid: "],
+        None => ["a filter is specified", ""],
+    };
+    let with_filter = "have the base tested with the filter";
+    let test = if limit.at_most { format!(", and {}", test(limit, with_filter)) } else { String::new() };
+    Some(format!(
+        "Whether the base is dispersive is not stated: have it tested (pinhole or crumb) before {before}. If \
+         it is, {invalid}D15F is to be {}. {}{test}",
+        dispersive_limit(limit, unit),
+        capital(again)
+    ))
+}
+
+/// Why there is no band, in sentences.
+pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
+    match why {
+        NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
+            "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
+             {} to retain the base: D15B must be tested.",
+            unit.limit(*most_drains_mm, "mm", true),
+            unit.limit(*most_mm, "mm", false)
+        ),
+        NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
+            "No filter both drains and retains this base: D15F must be at least {} to drain it and at most {} \
+             to retain it. {}",
+            unit.limit(*least_mm, "mm", true),
+            unit.limit(*most_mm, "mm", false),
+            // So fine a base is not broad: the least D15F of any filter is beyond its limit.
+            if *least_mm <= LEAST_D15F_MM {
+                "Have the base tested in the laboratory with the filter, or take a filter in two stages."
+            } else {
+                "A filter in two stages, or a base that is less broad, is needed."
+            }
+        ),
+        NoBand::TooManyFines => {
+            format!("The coarse side would have more than {MOST_FINES_PERCENT} % finer than {FINES_MM} mm.")
+        }
+        NoBand::TooCoarse { most_d60f_mm } => format!(
+            "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
+            unit.limit(*most_d60f_mm, "mm", false)
+        ),
+        NoBand::LimitNotKnown { curve, needs } => {
+            let why =
+                if needs.is_empty() { "the limit can only be less".into() } else { rule_notes(needs, unit) };
+            format!("The maximum D15F is not known for {curve}: {why}.")
+        }
+        NoBand::NoRule => "No rule of retention covers this base.".into(),
+    }
+}
+
+/// A number of a step with its unit: a minimum rounded up, a maximum and the size by which a table is entered
+/// rounded down; `None` where it is not known.
+pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
+    let number = value.value?;
+    Some(match (value.unit.as_str(), value.role()) {
+        ("mm", Some(at_least)) => unit.limit(number, "mm", at_least),
+        ("mm", None) => format!("{} mm{}", significant(number), unit.beside(number)),
+        ("", _) if number.fract() == 0.0 && number < 100.0 => format!("{number:.0}"),
+        (name, _) => format!("{} {name}", significant(number)).trim_end().to_owned(),
+    })
+}
+
+/// A step of the procedure.
+pub fn step_name(step: StepName) -> &'static str {
+    match step {
+        StepName::Plot => "Plot the gradation of the base",
+        StepName::FindGravel => "Find out whether the base has gravel or a gap",
+        StepName::Regrade => "Regrade the base",
+        StepName::Place => "Place the base in a category by its fines after regrading",
+        StepName::Retain => "Find the maximum D15F that retains the base",
+        StepName::Drain => "Find the minimum D15F that drains the base",
+        StepName::Narrow => "Keep the band narrow at 15 % finer",
+        StepName::KeepUniform => "Keep both sides uniform, without gaps",
+        StepName::LimitEnds => "Limit the fines and the greatest size",
+        StepName::KeepFromSegregating => "Keep the filter from segregating",
+        StepName::Draw => "Draw both sides of the band",
+        StepName::CheckStability => "Check both sides for internal stability",
+    }
+}
+
+/// What else to know of a step, in sentences.
+pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
+    let own = match step.does {
+        StepName::KeepUniform => format!(
+            "Cu of each delivery lies between {LEAST_CU} and {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side \
+             that is straight on the form and has a Cu of {MOST_CU}."
+        ),
+        StepName::LimitEnds => format!(
+            "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the minimum D5F. These fines \
+             must not be plastic."
+        ),
+        StepName::KeepFromSegregating => "Still to be set: no text with its numbers could be read. The \
+            maximum D90F follows from this minimum D10F by a table of FEMA and NRCS."
+            .into(),
+        StepName::Draw => "The control points are joined by straight lines on the form. Above 60 % finer \
+            neither side is drawn, as no text was read for it. Below its D5 the fine side runs level to the \
+            No. 200 sieve."
+            .into(),
+        StepName::CheckStability if !step.notes.is_empty() => "The fine side is judged from its D5 up, and \
+            both as if they went on straight above 60 % finer."
+            .into(),
+        _ => String::new(),
+    };
+    let notes = step.notes.iter().map(|note| step_note(note, unit));
+    notes.chain([own]).filter(|words| !words.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+fn step_note(note: &StepNote, unit: SizeUnit) -> String {
+    match note {
+        StepNote::Curves { curves: 1 } => "One curve.".into(),
+        StepNote::Curves { curves } => {
+            format!("{curves} curves. Each is to be retained and drained, and the strictest limit counts.")
+        }
+        StepNote::Gravel { curve, why, flattest } => {
+            let reason = regrade_reason(*why);
+            let reason = match curve {
+                Some(curve) => format!("{curve}: {reason}"),
+                None => capital(&reason),
+            };
+            format!("{reason}. {}", gap(*flattest, unit))
+        }
+        StepNote::NotRegraded => "Not regraded.".into(),
+        StepNote::SetBy { rule: Some(rule), curve: Some(curve) } => format!("Set by {rule}, for {curve}."),
+        StepNote::SetBy { rule: Some(name), curve: None }
+        | StepNote::SetBy { rule: None, curve: Some(name) } => {
+            format!("Set by {name}.")
+        }
+        StepNote::SetBy { rule: None, curve: None } => String::new(),
+        StepNote::LimitNotKnown { needs } if needs.is_empty() => "The limit can only be less.".into(),
+        StepNote::LimitNotKnown { needs: notes } | StepNote::OfRule { notes } => {
+            format!("{}.", capital(&rule_notes(notes, unit)))
+        }
+        StepNote::DrainageAtMost => {
+            "D15B is finer than the finest sieve. The minimum D15F is not known, and is at most this.".into()
+        }
+        StepNote::Raised => "The minimum D15F is raised.".into(),
+        StepNote::Lowered => "The maximum D15F is lowered.".into(),
+        StepNote::Stability { side, not_kept, .. } if !not_kept.is_empty() => {
+            format!("The {side} side is not stable by {}.", not_kept.join(" and "))
+        }
+        StepNote::Stability { side, is_known: true, .. } => format!("The {side} side keeps both."),
+        StepNote::Stability { side, .. } => format!("The {side} side is nearly of one size."),
+    }
+}
+
+/// The check for a gap, by a number of this program, as the manual leaves it to the eye.
+fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
+    const EYE: &str =
+        "The manual gives no number and leaves it to visual examination and judgment: look at the curve.";
+    let Some([from_mm, within]) = flattest else {
+        return format!("No gap by this program's own check. {EYE}");
+    };
+    let found = if within < GAP_PERCENT { "A gap" } else { "No gap" };
+    format!(
+        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {} to \
+         {} mm{}, and below {GAP_PERCENT} % counts as a gap. {EYE}",
+        significant(within),
+        significant(from_mm),
+        significant(4.0 * from_mm),
+        unit.beside_range(from_mm, 4.0 * from_mm)
+    )
+}
+
+/// A number of `specification_steps.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepRow {
+    /// Number of the step.
+    pub step: u64,
+    /// What is done.
+    pub does: String,
+    /// What the number is; empty where the step has none.
+    pub quantity: String,
+    /// The number.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// The formula.
+    pub formula: String,
+    /// What else a reader must know.
+    pub note: String,
+    /// Where formula and numbers were read.
+    pub source: String,
+}
+
+/// The numbers of a step as rows; one without a number where it has none.
+pub fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
+    let row = |value: Option<&StepValue>| StepRow {
+        step: step.step,
+        does: step_name(step.does).to_owned(),
+        quantity: value.map_or_else(String::new, |value| value.name.clone()),
+        value: value.and_then(|value| value.value),
+        unit: value.map_or_else(String::new, |value| value.unit.clone()),
+        formula: step.formula.clone(),
+        note: step_notes(step, SizeUnit::Mm),
+        source: step.source.clone(),
+    };
+    match step.values.is_empty() {
+        true => vec![row(None)],
+        false => step.values.iter().map(|value| row(Some(value))).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::design::specification::ENTERED_BY;
+
+    #[test]
+    fn a_minimum_is_rounded_up_and_a_maximum_down() {
+        let of = |name: &str, value, unit: &str| {
+            step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
+        };
+        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        // As the sentence has it that asks for D90F.
+        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191 mm");
+        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
+        assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
+        assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
+        assert_eq!(of("minimum D15F", None, "mm"), None);
+    }
+}
