@@ -337,10 +337,10 @@ def walk(trial):
         if code:
             trial.row(name + ", design", f"exit code {code}: {err.strip()}", False)
             continue
-        answer = json.loads((trial.folder / out_folder / "design.json").read_text())["answer"]
+        greatest = json.loads((trial.folder / out_folder / "design.json").read_text())["specification"]["d15f_max_mm"]
         limit = design_limit(base)
-        trial.row(name + ", design", f"D15F up to {answer['d15f_max_mm']:.3g} mm, set by {answer['set_by']} ({answer.get('rule')}); by hand {limit:.3g} mm; "
-                  f"{time.monotonic() - began:.0f} s", answer["d15f_max_mm"] <= limit * 1.0001)
+        trial.row(name + ", design", f"D15F up to {greatest:.3g} mm by practice; by hand {limit:.3g} mm; {time.monotonic() - began:.0f} s",
+                  greatest <= limit * 1.0001)
 
 
 def main():

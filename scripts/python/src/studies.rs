@@ -61,10 +61,11 @@ pub fn compare(
 #[derive(FromPyObject)]
 pub struct Search(Vec<String>, bool, Vec<String>, [f64; 2]);
 
-/// Finds how coarse a filter may be, into a folder: the JSON of `design.json`.
+/// Makes the specification of a filter by practice and finds the boundaries of the model, into a folder: the JSON of
+/// `design.json`.
 #[pyfunction]
 #[pyo3(signature = (
-    base, filter, search, settings, as_sampled, as_given, inverse, out, overwrite, packings, manner, progress
+    base, filter, search, settings, as_sampled, as_given, out, overwrite, packings, manner, progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn design(
@@ -75,7 +76,6 @@ pub fn design(
     settings: Vec<String>,
     as_sampled: bool,
     as_given: bool,
-    inverse: bool,
     out: PathBuf,
     overwrite: bool,
     packings: PathBuf,
@@ -93,7 +93,6 @@ pub fn design(
         settings,
         as_sampled,
         as_given,
-        inverse,
         bracket,
         out,
         overwrite,
@@ -127,7 +126,7 @@ pub fn specification(
     format::SPECIFICATION.json(&found).map_err(failed)
 }
 
-/// The answer in short, what a delivery must keep beside the limits, what set the maximum D15F, and whether D15 of
+/// The answer in short, what a delivery must keep beside the limits, whose rule sets the maximum D15F, and whether D15 of
 /// each product fits.
 type Said = (String, Option<String>, Option<String>, Vec<Option<bool>>);
 

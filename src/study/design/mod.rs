@@ -13,6 +13,8 @@
 //! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
 //! multiples of D50F.
 
+#[cfg(test)]
+mod finding_tests;
 mod judged;
 mod options;
 mod plan;

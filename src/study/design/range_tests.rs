@@ -27,17 +27,11 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     assert_eq!(names, ["estimate 0.5", "densest guess", "loosest guess"]);
     // The denser, the finer its constrictions, and the coarser it may be.
     assert!(found[1].1 > 1.2 * found[0].1 && found[0].1 > 1.2 * found[2].1, "{found:?}");
-    // The band is that of the whole range, and the ends have none of their own.
     let end_of: Vec<Option<&str>> = guess.boundaries.iter().map(|row| row.end_of.as_deref()).collect();
     assert_eq!(end_of, [None, Some("estimate 0.5"), Some("estimate 0.5")]);
     let least = guess.boundaries.iter().map(|row| row.no_erosion.as_ref().unwrap().cautious().unwrap());
     let least = least.fold(f64::INFINITY, f64::min);
-    let bands: Vec<Option<f64>> =
-        guess.boundaries.iter().map(|row| row.band.as_ref().map(|band| band.greatest)).collect();
-    assert!(bands[1..] == [None, None], "{bands:?}");
-    assert!((bands[0].unwrap() / least - 1.0).abs() < 1e-9, "{bands:?} {least}");
-    assert!(guess.band_of(&guess.boundaries[2]) == guess.boundaries[0].band.as_ref());
-    assert!((guess.rules_at / least - 1.0).abs() < 1e-9, "{}", guess.rules_at);
+    assert_eq!(guess.least_held().unwrap().1.to_bits(), least.to_bits());
     let is_guess = |id: &str| guess.findings.iter().any(|found| found.finding.id == id);
     assert!(is_guess("guessed_constrictions") || is_guess("guessed_grains"), "{:?}", guess.findings);
     // An end that is asked for itself is found once, with the same bits.
@@ -63,7 +57,6 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     assert!(unknown.searched().starts_with("loose, constrictions "), "{}", unknown.searched());
     assert!(unknown.held().unwrap() < dense.held().unwrap());
     assert_eq!(unknown.networks.len(), 2);
-    assert!(unknown.band.is_some() && dense.band.is_none());
     assert_eq!(design.least_held().unwrap().0, unknown);
     let table = std::fs::read_to_string(folder.path().join("out/design.csv")).unwrap();
     let density = |line: &str| line.trim_start_matches('"').starts_with("loose") as u8;

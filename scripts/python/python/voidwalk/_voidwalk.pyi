@@ -269,7 +269,6 @@ def design(
     settings: List[str],
     as_sampled: bool,
     as_given: bool,
-    inverse: bool,
     out: _Path,
     overwrite: bool,
     packings: _Path,

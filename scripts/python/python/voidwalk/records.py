@@ -11,7 +11,6 @@ __all__ = [
     "AppliedRule",
     "ArchingByVoidRecord",
     "ArchingRecord",
-    "Band",
     "BandSize",
     "BaseRecord",
     "BaseSize",
@@ -28,13 +27,11 @@ __all__ = [
     "CurveEnd",
     "CurveRange",
     "Design",
-    "DesignAnswer",
     "DesignFinding",
     "DesignRow",
     "FilterRecord",
     "FilterSizes",
     "Finding",
-    "Fit",
     "GivenNetwork",
     "IfDispersive",
     "Infiltration",
@@ -1214,354 +1211,6 @@ class WalkOutcome(TypedDict):
     version: str
 
 
-class _DesignAnswer(TypedDict):
-    d15f_max_mm: Optional[float]
-    d15f_over_d85b: Optional[float]
-    set_by: Literal["practice", "walk"]
-    rule: Optional[str]
-    limit: str
-    said: str
-
-
-class DesignAnswer(_DesignAnswer, total=False):
-    """How coarse the filter may be; for the inverse, how fine the base.
-
-    Keys
-    ----
-    d15f_max_mm
-        Maximum D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
-        size, and for the inverse.
-    d85b_min_mm
-        Finest D85B (mm) that both allow, for the inverse.
-    d15f_over_d85b
-        The same as D15F/D85B, of the base as it was walked.
-    set_by
-        Which of the two is the stricter.
-    rule
-        Name of the rule for programs, where practice set it.
-    limit
-        The limit, and what sets it: a sentence without its full stop, as each of the next three.
-    washout
-        That the filter as given is not internally stable, and too coarse without the finer part that it may
-        lose.
-    margin
-        That a limit of practice has no margin.
-    walk
-        What the walk is worth beside a limit of practice.
-    if_dispersive
-        What holds if the base is dispersive, and what to do then.
-    said
-        All of them, without the last full stop.
-    """
-
-    d85b_min_mm: Optional[float]
-    washout: Optional[str]
-    margin: Optional[str]
-    walk: Optional[str]
-    if_dispersive: Optional[str]
-
-
-class Range(TypedDict):
-    """Median and band of a size (mm).
-
-    Keys
-    ----
-    median
-        Median over networks.
-    low
-        5 percentile.
-    high
-        95 percentile.
-    """
-
-    median: float
-    low: Optional[float]
-    high: Optional[float]
-
-
-class _Boundary(TypedDict):
-    median: float
-    low: Optional[float]
-    high: Optional[float]
-    d15f_mm: Optional[Range]
-
-
-class Boundary(_Boundary, total=False):
-    """A boundary over networks: D15F/D85B, and the same in mm.
-
-    Keys
-    ----
-    median
-        Median over networks.
-    low
-        5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
-    high
-        5 % of networks lie above; `None` likewise.
-    low_beyond
-        On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at every
-        ratio that was searched.
-    d15f_mm
-        D15F (mm) of the filter, where the base has a size.
-    d85b_mm
-        D85B (mm) of the base, for the inverse, where the filter has a size.
-    """
-
-    low_beyond: Optional[Literal["below", "above"]]
-    d85b_mm: Optional[Range]
-
-
-class NetworkBoundaries(TypedDict):
-    """What one network says; `None` where its boundary lies beyond the search.
-
-    Keys
-    ----
-    network
-        Network, counted from 1.
-    no_erosion
-        D15F/D85B from which its first run erodes.
-    continuing
-        D15F/D85B from which its second run does.
-    """
-
-    network: int
-    no_erosion: Optional[float]
-    continuing: Optional[float]
-
-
-class _Band(TypedDict):
-    least: float
-    greatest: float
-    set_by: Literal["practice", "walk"]
-    practice: Optional[float]
-    practice_rule: str
-    unit: str
-    is_empty: bool
-    said: str
-
-
-class Band(_Band, total=False):
-    """Between which D15F a filter both drains and holds.
-
-    Keys
-    ----
-    least
-        Minimum D15F, of the rule of permeability.
-    least_at_most
-        Whether the true least is not known, and is at most that.
-    greatest
-        Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
-        networks, and practice.
-    set_by
-        Which of the two set it.
-    practice
-        Maximum D15F that the strictest rule of retention allows, which was made for this base.
-    practice_rule
-        Name of that rule.
-    practice_rule_id
-        Its name for programs; `None` without one.
-    unit
-        Unit: `mm`, or `D85B`.
-    is_empty
-        Whether nothing lies between the least and what both the walk and practice allow.
-    said
-        The same in a sentence; of an empty one why it is.
-    """
-
-    least_at_most: bool
-    practice_rule_id: Optional[str]
-
-
-class _DesignRow(TypedDict):
-    density: str
-    thickness: str
-    layers: int
-    thickness_mm: Optional[float]
-    grains_per_void: Optional[float]
-    no_erosion: Optional[Boundary]
-    continuing: Optional[Boundary]
-    not_monotone: int
-    networks: List[NetworkBoundaries]
-    band: Optional[Band]
-
-
-class DesignRow(_DesignRow, total=False):
-    """The boundaries of one density and thickness.
-
-    Keys
-    ----
-    density
-        How densely the filter is packed.
-    thickness
-        The thickness that was asked for, in words.
-    layers
-        Layers of voids, at the no-erosion boundary where the thickness is in mm.
-    thickness_mm
-        Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
-    grains_per_void
-        Filter grains per void, Eq. (2).
-    no_erosion
-        Where no erosion turns into some; `None` where that lies beyond what can be walked.
-    no_erosion_note
-        Why there is none, or what else is to be said of it.
-    holds_to
-        D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched, so
-        that there is no boundary.
-    continuing
-        Where some erosion turns into continuing.
-    continuing_note
-        Why there is none, or what else is to be said of it.
-    unsteady
-        Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
-    not_monotone
-        Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
-        that erodes counts.
-    networks
-        What each network says.
-    band
-        The band of a specification, up to what holds over the whole range of its curve; `None` for the inverse,
-        where nothing limits it, and where no ratio is known that all but 5 % of networks hold.
-    band_note
-        Why there is no band, where networks erode at every ratio that was searched.
-    as_end
-        The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
-        is searched at its ends only, loose and dense.
-    end_of
-        The density of which this is an end of the range in which its constriction curve is known: its band is
-        that of the whole range, and this row has none.
-    """
-
-    no_erosion_note: Optional[str]
-    holds_to: Optional[float]
-    continuing_note: Optional[str]
-    unsteady: Optional[str]
-    band_note: Optional[str]
-    as_end: Optional[str]
-    end_of: Optional[str]
-
-
-class _BaseStated(TypedDict):
-    name: str
-    cu: Optional[float]
-    d15_mm: Optional[float]
-    d85_mm: Optional[float]
-    d95_over_d85: Optional[float]
-    tail_mass_fraction: float
-
-
-class BaseStated(_BaseStated, total=False):
-    """What is known of the base.
-
-    Keys
-    ----
-    name
-        Its name.
-    cu
-        D60/D10.
-    d15_mm
-        D15 (mm) before regrading; `None` without a size of its own.
-    d85_mm
-        D85 (mm) as walked; `None` without a size of its own.
-    d95_over_d85
-        D95/D85.
-    regraded_at_mm
-        The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
-    tail_mass_fraction
-        The part of its mass that is finer than its finest sieve, as it was walked.
-    d85_as_sampled_mm
-        D85 (mm) before regrading, where it was regraded.
-    gradation
-        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
-    regraded
-        The same as it was walked after regrading; empty where it was walked as sampled.
-    """
-
-    regraded_at_mm: Optional[float]
-    d85_as_sampled_mm: Optional[float]
-    gradation: List[List[float]]
-    regraded: List[List[float]]
-
-
-class InputFile(TypedDict):
-    """A file that was read.
-
-    Keys
-    ----
-    name
-        Its name as given.
-    xxh3
-        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
-    """
-
-    name: str
-    xxh3: str
-
-
-class _DesignFinding(TypedDict):
-    id: str
-    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
-    label: str
-    sentence: str
-
-
-class DesignFinding(_DesignFinding, total=False):
-    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
-
-    Keys
-    ----
-    row
-        The row or the curve that it is of, in words; `None` where it is of all.
-    id
-        Its name for programs, as `cohesive_fines`.
-    about
-        What it is about.
-    label
-        Its name in a word or two.
-    numbers
-        Its numbers by name, with the unit in the name.
-    sentence
-        What it says.
-    to_do
-        Which setting changes it; may be empty.
-    """
-
-    row: Optional[str]
-    numbers: Dict[str, object]
-    to_do: str
-
-
-class _Fit(TypedDict):
-    name: str
-    d15_mm: List[float]
-    drains: bool
-    holds: bool
-    practice: Optional[bool]
-    source: str
-
-
-class Fit(_Fit, total=False):
-    """A product beside a band.
-
-    Keys
-    ----
-    name
-        Its name.
-    d15_mm
-        D15 (mm) of its fine and of its coarse side.
-    drains
-        Whether its fine side drains.
-    may_drain
-        Whether its fine side drains only if the base's D15 is finer than its sieves tell.
-    holds
-        Whether its coarse side is within what both walk and practice allow.
-    practice
-        Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
-    source
-        Where its limits were read.
-    """
-
-    may_drain: bool
-
-
 class SheetCover(TypedDict, total=False):
     """The cover of a sheet, as its author states it.
 
@@ -1593,6 +1242,21 @@ class SheetCover(TypedDict, total=False):
     checker: Optional[str]
     revision: Optional[str]
     date: Optional[str]
+
+
+class InputFile(TypedDict):
+    """A file that was read.
+
+    Keys
+    ----
+    name
+        Its name as given.
+    xxh3
+        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    """
+
+    name: str
+    xxh3: str
 
 
 class _SpecifiedCurve(TypedDict):
@@ -1642,6 +1306,39 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
 
     regraded: List[List[float]]
     without_margin: bool
+
+
+class _DesignFinding(TypedDict):
+    id: str
+    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
+    label: str
+    sentence: str
+
+
+class DesignFinding(_DesignFinding, total=False):
+    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
+
+    Keys
+    ----
+    row
+        The row or the curve that it is of, in words; `None` where it is of all.
+    id
+        Its name for programs, as `cohesive_fines`.
+    about
+        What it is about.
+    label
+        Its name in a word or two.
+    numbers
+        Its numbers by name, with the unit in the name.
+    sentence
+        What it says.
+    to_do
+        Which setting changes it; may be empty.
+    """
+
+    row: Optional[str]
+    numbers: Dict[str, object]
+    to_do: str
 
 
 class StepValue(TypedDict):
@@ -1853,27 +1550,187 @@ class Specification(_Specification, total=False):
     no_band: Optional[str]
 
 
+class Range(TypedDict):
+    """Median and band of a size (mm).
+
+    Keys
+    ----
+    median
+        Median over networks.
+    low
+        5 percentile.
+    high
+        95 percentile.
+    """
+
+    median: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+class _Boundary(TypedDict):
+    median: float
+    low: Optional[float]
+    high: Optional[float]
+    d15f_mm: Optional[Range]
+
+
+class Boundary(_Boundary, total=False):
+    """A boundary over networks: D15F/D85B, and the same in mm.
+
+    Keys
+    ----
+    median
+        Median over networks.
+    low
+        5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
+    high
+        5 % of networks lie above; `None` likewise.
+    low_beyond
+        On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at every
+        ratio that was searched.
+    d15f_mm
+        D15F (mm) of the filter, where the base has a size.
+    """
+
+    low_beyond: Optional[Literal["below", "above"]]
+
+
+class NetworkBoundaries(TypedDict):
+    """What one network says; `None` where its boundary lies beyond the search.
+
+    Keys
+    ----
+    network
+        Network, counted from 1.
+    no_erosion
+        D15F/D85B from which its first run erodes.
+    continuing
+        D15F/D85B from which its second run does.
+    """
+
+    network: int
+    no_erosion: Optional[float]
+    continuing: Optional[float]
+
+
+class _DesignRow(TypedDict):
+    density: str
+    thickness: str
+    layers: int
+    thickness_mm: Optional[float]
+    grains_per_void: Optional[float]
+    no_erosion: Optional[Boundary]
+    continuing: Optional[Boundary]
+    not_monotone: int
+    networks: List[NetworkBoundaries]
+
+
+class DesignRow(_DesignRow, total=False):
+    """The boundaries of one density and thickness.
+
+    Keys
+    ----
+    density
+        How densely the filter is packed.
+    thickness
+        The thickness that was asked for, in words.
+    layers
+        Layers of voids, at the no-erosion boundary where the thickness is in mm.
+    thickness_mm
+        Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
+    grains_per_void
+        Filter grains per void, Eq. (2).
+    no_erosion
+        Where no erosion turns into some; `None` where that lies beyond what can be walked.
+    no_erosion_note
+        Why there is none, or what else is to be said of it.
+    holds_to
+        D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched, so
+        that there is no boundary.
+    continuing
+        Where some erosion turns into continuing.
+    continuing_note
+        Why there is none, or what else is to be said of it.
+    unsteady
+        Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
+    not_monotone
+        Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
+        that erodes counts.
+    networks
+        What each network says.
+    as_end
+        The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
+        is searched at its ends only, loose and dense.
+    end_of
+        The density of which this is an end of the range in which its constriction curve is known.
+    """
+
+    no_erosion_note: Optional[str]
+    holds_to: Optional[float]
+    continuing_note: Optional[str]
+    unsteady: Optional[str]
+    as_end: Optional[str]
+    end_of: Optional[str]
+
+
+class _BaseStated(TypedDict):
+    name: str
+    cu: Optional[float]
+    d15_mm: Optional[float]
+    d85_mm: Optional[float]
+    d95_over_d85: Optional[float]
+    tail_mass_fraction: float
+
+
+class BaseStated(_BaseStated, total=False):
+    """What is known of the base.
+
+    Keys
+    ----
+    name
+        Its name.
+    cu
+        D60/D10.
+    d15_mm
+        D15 (mm) before regrading; `None` without a size of its own.
+    d85_mm
+        D85 (mm) as walked; `None` without a size of its own.
+    d95_over_d85
+        D95/D85.
+    regraded_at_mm
+        The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
+    tail_mass_fraction
+        The part of its mass that is finer than its finest sieve, as it was walked.
+    d85_as_sampled_mm
+        D85 (mm) before regrading, where it was regraded.
+    gradation
+        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
+    regraded
+        The same as it was walked after regrading; empty where it was walked as sampled.
+    """
+
+    regraded_at_mm: Optional[float]
+    d85_as_sampled_mm: Optional[float]
+    gradation: List[List[float]]
+    regraded: List[List[float]]
+
+
 class _Design(TypedDict):
     format: Literal["voidwalk-design/1"]
     voidwalk: str
     version: str
-    answer: Optional[DesignAnswer]
     boundaries: List[DesignRow]
-    inverse: bool
     base: BaseStated
     filter: str
     filter_cu: Optional[float]
     filter_d15_mm: Optional[float]
-    unit: str
     threshold: float
     replicates: int
     seed: int
     engine: str
     bracket: List[float]
     step: float
-    rules: List[AppliedRule]
-    rules_at: float
-    products: List[Fit]
     model_leaves_out: List[str]
     settings: List[str]
     seconds: float
@@ -1892,12 +1749,12 @@ class Design(_Design, total=False):
         Version of voidwalk.
     commit
         The commit that it was built from; `None` where that is not known.
-    answer
-        How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked out.
+    specification
+        The specification of a filter by the rules of practice alone, step by step; `None` of a base without a
+        size.
     boundaries
-        One per density and thickness, in the order in which they were asked for.
-    inverse
-        Whether the base was scaled against a filter of given size, to find the finest base that it holds.
+        The boundaries of the model, one row per density and thickness, in the order in which they were asked
+        for.
     base
         The base.
     filter
@@ -1905,15 +1762,12 @@ class Design(_Design, total=False):
     filter_cu
         Cu of the filter.
     filter_d15_mm
-        The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
+        The filter's own D15F (mm), where its sizes are given.
     filter_gradation
         Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
         where its sizes are not given.
     inputs
         Every file that was read.
-    unit
-        Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
-        own.
     threshold
         Mass eroded from which a run erodes.
     replicates
@@ -1927,16 +1781,7 @@ class Design(_Design, total=False):
     step
         Steps of the search, as a part of D15F/D85B.
     findings
-        What a reader must know besides, the weightiest first.
-    rules
-        Every rule of practice, of the coarsest filter that holds; of another where none is known.
-    rules_at
-        D15F/D85B that the rules are read at.
-    products
-        Standard products beside the narrowest band.
-    specification
-        The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-        mm.
+        What a reader must know of the model's boundaries, the weightiest first.
     model_leaves_out
         What the model does not contain.
     settings
@@ -1950,10 +1795,10 @@ class Design(_Design, total=False):
     """
 
     commit: Optional[str]
+    specification: Optional[Specification]
     filter_gradation: List[List[float]]
     inputs: List[InputFile]
     findings: List[DesignFinding]
-    specification: Optional[Specification]
     cover: SheetCover
     inches: bool
 
