@@ -16,7 +16,7 @@ use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::verdict::DESIGN_AGAIN;
 use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::left_out::left_out_line;
 use crate::verdict::words::capital;
 
 /// The setting of the sheet besides its cover that a specification takes.
@@ -104,7 +104,7 @@ fn words(design: &Design) -> String {
     lines.extend(design.products_in_words());
     let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
     lines.extend(to_be_checked(sources));
-    lines.push(left_out_in_brief(&design.model_leaves_out));
+    lines.push(left_out_line(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
     let said = |line: String| if design.inches { with_inches(&line) } else { line };
     lines.into_iter().map(|line| plain(&said(line)) + "\n").collect()

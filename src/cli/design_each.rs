@@ -14,7 +14,7 @@ use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::DesignOptions;
 use crate::study::designs::{SampleDesignOptions, each};
-use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::left_out::left_out_line;
 use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples};
 
 /// The folder of the results, where nobody names one.
@@ -47,7 +47,7 @@ fn words(all: &DesignedSamples, out: &Path) -> String {
         let _ = writeln!(text, "{}", plain(&said));
     }
     if !all.model_leaves_out.is_empty() {
-        let _ = writeln!(text, "{}", left_out_in_brief(&all.model_leaves_out));
+        let _ = writeln!(text, "{}", left_out_line(&all.model_leaves_out));
     }
     if let Some(walks) = &all.walks {
         let networks = counted(walks.networks, "network", "networks");

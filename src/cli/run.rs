@@ -17,7 +17,7 @@ use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::verdict::left_out::left_out_line;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -104,17 +104,12 @@ fn summary(run: &FinishedRun) -> String {
     for (name, said) in outcome.first_lines() {
         line(format!("{name}: {}", plain(&said)));
     }
-    if !outcome.findings.is_empty() {
-        let mut labels: Vec<&str> = Vec::new();
-        for finding in &outcome.findings {
-            if !labels.contains(&finding.label.as_str()) {
-                labels.push(&finding.label);
-            }
-        }
-        line(format!("{} notes on the page: {}", outcome.findings.len(), labels.join(", ")));
-    }
-    line(left_out_in_brief(&outcome.model_leaves_out));
+    line(left_out_line(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
-    line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
+    match outcome.findings.len() {
+        0 => line(format!("report: {page}")),
+        1 => line(format!("report: {page}; 1 note")),
+        notes => line(format!("report: {page}; {notes} notes")),
+    }
     text
 }

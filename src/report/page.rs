@@ -14,9 +14,9 @@ use super::infiltration::infiltration;
 use super::names::{file_name, is_named, soil_name};
 use super::numbers::{known, percent, significant, size, whole};
 use super::results::{replicates, results, varied};
-use super::rules::rules;
+use super::rules::{rules, sources};
 use super::run_figures;
-use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot};
+use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
 use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
@@ -107,6 +107,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
+    let sentences = ["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id));
     let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
     let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
         true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
@@ -115,26 +116,31 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     let main = html! {
         section.sheet {
             (answer(outcome))
-            div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
-            (in_short(outcome, unit))
+            (shell::figure(1, gradations))
+            div.pair { (in_short(outcome, unit)) (sizes(outcome, unit)) }
         }
         (shell::contents())
         (findings(outcome))
         (walk(folder, verdict))
         (leaves_out(&outcome.model_leaves_out, &html! {
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+            p { "The model does not replace a filter test or a designer’s judgement." }
         }))
-        h2 { "Figures" }
-        @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
-        (missing(folder, figures))
         (rules(outcome, unit))
-        (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
-        (infiltration(outcome))
-        (by_connectivity(&folder.walks()))
-        (replicates(&folder.walks()))
-        (varied(outcome))
-        (inputs(outcome, folder.packing.as_ref()))
+        // What a client is not handed in stays on the screen.
+        section.screen {
+            h2 { "Figures" }
+            @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
+            (missing(folder, figures))
+            (results(&folder.walks(), &sentences))
+            (infiltration(outcome))
+            (by_connectivity(&folder.walks()))
+            (replicates(&folder.walks()))
+            (varied(outcome))
+            (inputs(outcome, folder.packing.as_ref()))
+        }
         (appendix::of_run(outcome, unit))
+        (sources(outcome))
         (provenance(folder))
     };
     let foot = first_page::foot_of(folder);
@@ -158,6 +164,7 @@ fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     html! {
         h2 { "What the model found" }
+        (shell::model())
         p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
@@ -200,17 +207,12 @@ fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     }
 }
 
-/// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
-/// print.
+/// Every note on the answer.
 fn findings(outcome: &Outcome) -> Markup {
-    let rest = &outcome.findings[outcome.foremost().0.len()..];
     html! {
-        @if !rest.is_empty() {
-            h2 { "Other findings" }
-            details {
-                summary { (rest.len()) " more" }
-                ul { @for finding in rest { li { (clean(&finding.sentence)) } } }
-            }
+        @if !outcome.findings.is_empty() {
+            h2 { "Notes" }
+            ul { @for finding in &outcome.findings { li { (unbroken(&finding.sentence)) } } }
         }
     }
 }
@@ -266,6 +268,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     };
     html! {
         h2 { "Inputs" }
+        details { summary { "Filter, base and network as walked" }
         h3 { "Filter" }
         table.facts { tbody {
             (fact("Name", file_name(&filter.name)))
@@ -320,6 +323,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
             (fact("Thickness modelled", known(network.thickness_mm, mm)))
         } }
+        }
     }
 }
 
@@ -334,17 +338,20 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("voidwalk",
                 format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
+            @if !outcome.digest.is_empty() { (fact("Digest of the numbers", &outcome.digest)) }
             (appendix::input_files(&manifest.inputs))
-            @if !outcome.left_out.is_empty() {
-                (fact("Not needed here", outcome.left_out.join("; ")))
-            }
         } }
-        details open {
+        div.screen {
+        @if !outcome.left_out.is_empty() {
+            table.facts { tbody { (fact("Not needed here", outcome.left_out.join("; "))) } }
+        }
+        details {
             summary { "Settings (scene.toml)" }
             pre { (scene) }
             @if cut { p.small { "Cut here; the whole is in scene.toml." } }
             p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
                        in manifest.json." }
+        }
         }
     }
 }

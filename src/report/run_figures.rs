@@ -10,7 +10,7 @@ use super::figures::{
 use super::first_page::{coarse_left, units};
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
-use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
+use super::numbers::{interval, interval_in_percent, percent, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::numbers::in_digits;
@@ -92,7 +92,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let rows =
         filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
     let x =
-        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit, _)| *limit)));
+        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
     let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
@@ -107,7 +107,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0))
-        .sheet((510.0, 244.0));
+        .sheet((680.0, 350.0));
     if !inputs.scale_free {
         figure = figure.sieves();
     }
@@ -136,11 +136,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations by mass, and the filter’s constrictions by number. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
-        significant(folder.outcome.ratios.d15f_over_d85b),
-        inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
-        significant(folder.outcome.ratios.d15f_over_d95b),
-        boundaries::caption(&folder.outcome, &limits, unit),
+        "Gradations by mass, constrictions by number.{}{}",
+        boundaries::caption(&folder.outcome, &limits),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)

@@ -67,6 +67,20 @@ impl<'de> Deserialize<'de> for ModelLimit {
 /// What no rule covers, as no text was read that gives its numbers.
 pub const NOT_COVERED: &str = "Not covered by the rules: segregation by D90F and D10F, excessive erosion.";
 
+/// The limits of the model that matter most to a designer, in a line; the page lists all.
+pub fn left_out_line(limits: &[ModelLimit]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    if limits.contains(&ModelLimit::Hydraulics) {
+        names.push("hydraulics");
+    }
+    names.push("gradient");
+    if limits.contains(&ModelLimit::Bridging) {
+        names.push("bridging");
+    }
+    names.extend(["cohesion", "suffusion", "segregation"]);
+    format!("The model leaves out: {}; more on the page.", names.join(", "))
+}
+
 /// What the model does not contain and what no rule covers, in two sentences.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| limit.parts().0).collect();
