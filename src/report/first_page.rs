@@ -128,8 +128,15 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let rules = listed(&outcome.rules);
     let mut practice: Vec<&AppliedRule> = rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     practice.sort_by_key(|rule| place(rule));
-    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        practice.into_iter().partition(|rule| place(rule) < OTHERS);
+    let mut roles: Vec<RuleRole> = Vec::new();
+    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) = practice.into_iter().partition(|rule| {
+        // Of several rules of one kind that are not met the first is enough here.
+        let is_first = !roles.contains(&rule.role);
+        if result_of(rule) == RuleResult::NotMet {
+            roles.push(rule.role);
+        }
+        place(rule) < NOT_MET || place(rule) == NOT_MET && is_first
+    });
     let is_empty = shown.is_empty() && others.is_empty();
     let range = outcome.practice.as_ref().and_then(|practice| practice.range_of_tests_mm);
     html! {
@@ -137,10 +144,23 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
             h2 { "Rules of practice, in short" }
             @if is_empty { p { "No rule was applied." } }
             @if !shown.is_empty() { (table(&shown, unit)) }
-            @if !others.is_empty() { p.others { (counts(&others)) " See “All rules”." } }
+            @if !others.is_empty() {
+                p.others {
+                    "Others: "
+                    @for (at, (count, result)) in counts(&others).into_iter().enumerate() {
+                        @if at > 0 { ", " }
+                        @match result {
+                            RuleResult::NotMet => span.breaks { "✗ " (count) " " (result.words()) },
+                            RuleResult::DoesNotApply if count > 1 => { (count) " do not apply" }
+                            _ => { (count) " " (result.words()) }
+                        }
+                    }
+                    ". See “All rules”."
+                }
+            }
             @if let Some([low, high]) = range {
                 p {
-                    "Tests of such bases began to erode at a D15F of " (unit.greatest(low)) " to "
+                    "In tests of such bases erosion began at D15F " (unit.greatest(low)) " to "
                     (unit.least(high)) " mm (Fell et al., Table 9.2)."
                 }
             }
@@ -149,29 +169,27 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
     }
 }
 
-/// How many of these rules have each result.
-fn counts(rules: &[&AppliedRule]) -> String {
-    let met = [RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
+/// How many of these rules have each result, those that are not met first.
+fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
+    let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
     let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
-    let counts = met.into_iter().chain(RuleResult::WITHOUT).map(|result| (count(result), result));
-    let counts = counts.filter(|(count, _)| *count > 0);
-    let words: Vec<String> = counts.map(|(count, result)| format!("{count} {}", result.words())).collect();
-    format!("Others: {}.", words.join(", "))
+    let counts = with.into_iter().chain(RuleResult::WITHOUT).map(|result| (count(result), result));
+    counts.filter(|(count, _)| *count > 0).collect()
 }
 
 /// The rules that decide whether a filter retains and drains a base, in the order of a reader.
 const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEABILITY];
 
-/// The place of rules that are counted below the table.
-const OTHERS: usize = DECIDING.len() + 1;
+/// The place of other rules that are not met.
+const NOT_MET: usize = DECIDING.len();
 
 /// The place of a rule: those that decide first, then those that are not met, and then the others.
 fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
     match (deciding, result_of(rule)) {
         (Some(place), _) => place,
-        (None, RuleResult::NotMet) => DECIDING.len(),
-        (None, _) => OTHERS,
+        (None, RuleResult::NotMet) => NOT_MET,
+        (None, _) => NOT_MET + 1,
     }
 }
 
@@ -189,17 +207,23 @@ fn purpose(rule: &AppliedRule) -> &'static str {
     }
 }
 
+/// The quantity of a rule without the soil and the splits, which “All rules” names.
+fn quantity_in_brief(rule: &AppliedRule) -> &str {
+    let name = rule.quantity.name();
+    name.split([',', '(']).next().and_then(|name| name.split(" of the filter").next()).unwrap_or(name)
+}
+
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
             true => html! { b { (purpose(rule)) } },
             false => html! { (purpose(rule)) },
         })
+        .text("Quantity", |rule| clean(quantity_in_brief(rule)))
         .text("Here", |rule| match &value_and_limit(rule, unit)[0] {
-            Some(value) => html! {
-                (clean(rule.quantity.name())) " " span.q { (value_begins(rule)) " " (clean(value)) }
-            },
-            None => html! { (clean(rule.quantity.name())) " –" },
+            Some(value) if rule.value_bound.is_none() => html! { span.q { (clean(value)) } },
+            Some(value) => html! { (value_begins(rule)) " " span.q { (clean(value)) } },
+            None => html! { "–" },
         })
         .text("Limit", |rule| {
             let [_, limit] = value_and_limit(rule, unit);

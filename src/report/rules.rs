@@ -49,10 +49,19 @@ fn numbered(rules: &[&AppliedRule], unit: SizeUnit, all: &[AppliedRule]) -> Mark
 /// The sources of all rules, by the numbers that stand in the table.
 pub(super) fn sources(outcome: &Outcome) -> Markup {
     let sources = distinct_sources(&listed(&outcome.rules));
+    let is_of_walk = |source: &String| {
+        let citing = outcome.rules.iter().filter(|rule| rule.source == *source);
+        citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
+    };
     html! {
         @if !sources.is_empty() {
             h2 { "Sources" }
-            ol.sources { @for source in &sources { li { (clean(source)) } } }
+            ol.sources {
+                @for source in &sources {
+                    // Comparisons of the walk stay on the screen.
+                    li.screen[is_of_walk(source)] { (clean(source)) }
+                }
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
-use super::first_page::{coarse_left, units};
+use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
 use super::numbers::{interval, interval_in_percent, percent, size, threshold, whole};
@@ -86,7 +86,7 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let (limits, unit) = (boundaries(&folder.outcome), units(folder));
+    let limits = boundaries(&folder.outcome);
     let sampled = base.as_sampled.as_ref();
     let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
     let rows =
@@ -130,8 +130,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(constrictions.label("constrictions\n(by number)"));
     figure.add(Line::of_rows(&filter.gradation, BLACK).width(2.6).label(&name("filter", &filter.name)));
     let mark = |at: f64, percent: f64, colour, shape, text: &str| {
-        let label = format!("{text} = {}", unit.size(at));
-        Point::new(at, percent, colour, shape).dropped().label(&label)
+        Point::new(at, percent, colour, shape).dropped().label(text)
     };
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));

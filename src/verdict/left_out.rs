@@ -319,6 +319,13 @@ mod tests {
             assert_eq!(serde_json::from_str::<ModelLimit>(&text).unwrap(), limit);
         }
         assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
+        let line = left_out_line(&leaves_out(Modelled::default()));
+        for name in ["hydraulics", "gradient", "bridging", "cohesion", "suffusion", "segregation", "the page"] {
+            assert!(line.contains(name) && line.split(' ').count() <= 20, "{name}: {line}");
+        }
+        let modelled = Modelled { flow: true, arches: true, openings: false };
+        let line = left_out_line(&leaves_out(modelled));
+        assert!(line.contains("gradient") && !line.contains("hydraulics") && !line.contains("bridging"));
         let brief = left_out_in_brief(&leaves_out(Modelled::default()));
         assert!(
             brief.starts_with("The model leaves out: hydraulics; bridging; partial clogging; "),
