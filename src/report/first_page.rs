@@ -151,6 +151,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
                         @if at > 0 { ", " }
                         @match result {
                             RuleResult::NotMet => span.breaks { "✗ " (count) " " (result.words()) },
+                            RuleResult::NoResult => b { (count) " " (result.words()) },
                             RuleResult::DoesNotApply if count > 1 => { (count) " do not apply" }
                             _ => { (count) " " (result.words()) }
                         }

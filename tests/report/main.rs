@@ -59,7 +59,7 @@ fn the_page_says_what_an_engineer_reads_first() {
         "What the model found",
         "Model (“the walk”): base particles are moved through voids",
         "What the model leaves out",
-        "All rules",
+        "Limits are rounded to the safe side",
         "Figure 2.",
         "Figure 4.",
         "Largest particle eroded, over D15F",
