@@ -44,7 +44,9 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
     html! {
         div.title {
             dl.about { @for (name, value) in shown { @match value {
-                Some(value) => div.signed[SIGNED.contains(name)] { dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } } },
+                Some(value) => div.signed[SIGNED.contains(name)] {
+                    dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
+                },
                 None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" { dt { (name) } " " dd {} },
             } } }
             (signatures(of))

@@ -268,61 +268,62 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     };
     html! {
         h2 { "Inputs" }
-        details { summary { "Filter, base and network as walked" }
-        h3 { "Filter" }
-        table.facts { tbody {
-            (fact("Name", file_name(&filter.name)))
-            (fact("Cu = D60/D10", known(filter.cu, significant)))
-            (fact("D0, D15, D50, D85 (by mass)",
-                [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
-            (fact("D50 by number", mm(filter.d50_by_number_mm)))
-            @if let Some(packing) = packing {
-                (fact("Packing", format!(
-                    "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
-                    whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
-                    significant(packing.after.coordination), packing.seed)))
-            }
-            (fact("Void ratio", void_ratio(outcome)))
-            (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
-            (fact("Constriction curve",
-                format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
-                    significant(filter.cu_csd))))
-            (fact("Credit for the curve",
-                if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
-        } }
-        h3 { "Base" }
-        table.facts { tbody {
-            (fact("Name", file_name(&base.name)))
-            (fact("Cu = D60/D10", known(base.cu, significant)))
-            (fact("D0, D15, D50 (by mass)",
-                [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
-            (fact(&format!("D85, D95, D100 (by mass){grading}"),
-                [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
-            @if let Some(before) = &base.as_sampled {
-                (fact("D85, D95, D100 as sampled (not walked)",
-                    [before.d85_mm, before.d95_mm, Some(before.d100_mm)].map(|d| known(d, mm)).join(", ")))
-            }
-            @if base.tail_mass_fraction > 0.0 {
-                (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; taken as too fine to block any constriction (passive)",
-                        percent(base.tail_mass_fraction))))
-            }
-            (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
-                significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
-            (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
-            (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
-                if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
-                else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
-            (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
-        } }
-        h3 { "Network" }
-        table.facts { tbody {
-            (fact("Kind", &kind))
-            @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
-            (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
-            (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
-            (fact("Thickness modelled", known(network.thickness_mm, mm)))
-        } }
+        details {
+            summary { "Filter, base and network as walked" }
+            h3 { "Filter" }
+            table.facts { tbody {
+                (fact("Name", file_name(&filter.name)))
+                (fact("Cu = D60/D10", known(filter.cu, significant)))
+                (fact("D0, D15, D50, D85 (by mass)",
+                    [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
+                (fact("D50 by number", mm(filter.d50_by_number_mm)))
+                @if let Some(packing) = packing {
+                    (fact("Packing", format!(
+                        "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
+                        whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
+                        significant(packing.after.coordination), packing.seed)))
+                }
+                (fact("Void ratio", void_ratio(outcome)))
+                (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
+                (fact("Constriction curve",
+                    format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
+                        significant(filter.cu_csd))))
+                (fact("Credit for the curve",
+                    if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
+            } }
+            h3 { "Base" }
+            table.facts { tbody {
+                (fact("Name", file_name(&base.name)))
+                (fact("Cu = D60/D10", known(base.cu, significant)))
+                (fact("D0, D15, D50 (by mass)",
+                    [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
+                (fact(&format!("D85, D95, D100 (by mass){grading}"),
+                    [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
+                @if let Some(before) = &base.as_sampled {
+                    (fact("D85, D95, D100 as sampled (not walked)",
+                        [before.d85_mm, before.d95_mm, Some(before.d100_mm)].map(|d| known(d, mm)).join(", ")))
+                }
+                @if base.tail_mass_fraction > 0.0 {
+                    (fact("Pan fraction (finer than the finest sieve)",
+                        format!("{} by mass; taken as too fine to block any constriction (passive)",
+                            percent(base.tail_mass_fraction))))
+                }
+                (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
+                    significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
+                (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
+                (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
+                    if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
+                    else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
+                (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
+            } }
+            h3 { "Network" }
+            table.facts { tbody {
+                (fact("Kind", &kind))
+                @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
+                (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
+                (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
+                (fact("Thickness modelled", known(network.thickness_mm, mm)))
+            } }
         }
     }
 }
@@ -342,16 +343,16 @@ fn provenance(folder: &RunFolder) -> Markup {
             (appendix::input_files(&manifest.inputs))
         } }
         div.screen {
-        @if !outcome.left_out.is_empty() {
-            table.facts { tbody { (fact("Not needed here", outcome.left_out.join("; "))) } }
-        }
-        details {
-            summary { "Settings (scene.toml)" }
-            pre { (scene) }
-            @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-            p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
-                       in manifest.json." }
-        }
+            @if !outcome.left_out.is_empty() {
+                table.facts { tbody { (fact("Not needed here", outcome.left_out.join("; "))) } }
+            }
+            details {
+                summary { "Settings (scene.toml)" }
+                pre { (scene) }
+                @if cut { p.small { "Cut here; the whole is in scene.toml." } }
+                p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
+                           in manifest.json." }
+            }
         }
     }
 }

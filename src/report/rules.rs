@@ -151,11 +151,7 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
 }
 
 /// Rules as a table, with what stands for the source behind the name of each.
-fn table_with(
-    rules: &[&AppliedRule],
-    unit: SizeUnit,
-    source: impl Fn(&AppliedRule) -> Markup,
-) -> Markup {
+fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
     let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {

@@ -320,7 +320,8 @@ mod tests {
         }
         assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
         let line = left_out_line(&leaves_out(Modelled::default()));
-        for name in ["hydraulics", "gradient", "bridging", "cohesion", "suffusion", "segregation", "the page"] {
+        for name in ["hydraulics", "gradient", "bridging", "cohesion", "suffusion", "segregation", "the page"]
+        {
             assert!(line.contains(name) && line.split(' ').count() <= 20, "{name}: {line}");
         }
         let modelled = Modelled { flow: true, arches: true, openings: false };

@@ -77,7 +77,8 @@ fn inches_stand_beside_mm_where_a_scene_asks_for_them() {
     let us = words(&made(&plan).0);
     assert!(us.contains("US sieveSize (mm)") && us.contains("mm (in)") && us.contains("9.5 (0.374)"), "{us}");
     // Every length of a rule.
-    for row in ["D15F5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)", "= 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)"] {
+    for row in ["D15F5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)", "= 5.08 mm (0.200 in)≤ 2.54 mm (0.100 in)"]
+    {
         assert!(us.contains(row) && !metric.contains("(0.200 in)"), "{row}: {us}");
     }
     for row in ["No. 44.750", "3/8 in9.550", "3/4 in19100"] {
@@ -178,7 +179,8 @@ fn the_rules_that_decide_come_first() {
     let page = made(&plan).0;
     let short = page.split("Rules of practice, in short").nth(1).unwrap().split("</section>").next().unwrap();
     let rows: Vec<&str> = short.split("</table>").next().unwrap().split("<tr><th>").skip(2).collect();
-    for (row, name) in rows.iter().zip(["<b>Design", "<b>No erosion", "<b>Continuing erosion", "<b>Drainage"]) {
+    for (row, name) in rows.iter().zip(["<b>Design", "<b>No erosion", "<b>Continuing erosion", "<b>Drainage"])
+    {
         assert!(row.starts_with(name), "{name}: {row}");
     }
     let is_broken = |rule: &&voidwalk::outcome::record::AppliedRule| rule.is_broken();
@@ -189,7 +191,8 @@ fn the_rules_that_decide_come_first() {
     assert!(rows[4..].iter().all(|row| row.contains("✗ not met") && !row.starts_with("<b>")), "{rows:?}");
     // None of those that are not met is lost.
     let shown = rows.iter().filter(|row| row.contains("✗ not met")).count();
-    let counted = short.split("✗ ").filter_map(|rest| rest.split_once(" not met</span>")?.0.parse::<usize>().ok());
+    let counted =
+        short.split("✗ ").filter_map(|rest| rest.split_once(" not met</span>")?.0.parse::<usize>().ok());
     assert_eq!(shown + counted.sum::<usize>(), broken.len(), "{short}");
 }
 
@@ -355,12 +358,19 @@ fn the_first_printed_sheet_is_complete() {
             for part in ["Figure 1.", "D5 ", "D95 ", "Group by ASTM D2487", "The model leaves out: "] {
                 assert!(text.contains(part), "{at}, {paper}, {findings} findings, {part}: {text}");
             }
-            assert!(text.split(' ').count() <= 400, "{at}, {paper}: {} words: {text}", text.split(' ').count());
+            assert!(
+                text.split(' ').count() <= 400,
+                "{at}, {paper}: {} words: {text}",
+                text.split(' ').count()
+            );
             let whole = Command::new("pdftotext").arg(&pdf).arg("-").output().unwrap().stdout;
             let whole = String::from_utf8(whole).unwrap();
             assert!(whole.matches('\u{c}').count() <= 4, "{at}, {paper}: more than four sheets");
             let broken = plan.outcome.rules.iter().filter(|rule| rule.is_broken());
-            assert!(whole.matches("✗ not met").count() >= broken.count(), "{at}: a rule not met is not printed");
+            assert!(
+                whole.matches("✗ not met").count() >= broken.count(),
+                "{at}: a rule not met is not printed"
+            );
             for word in PROGRAM_WORDS {
                 assert!(!text.contains(word), "{at}, {word}: {text}");
             }
