@@ -15,7 +15,7 @@ use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
-use crate::words::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_line;
 use crate::words::{FOREMOST, lines_of, sentence};
 
 impl CompareArgs {
@@ -129,6 +129,6 @@ fn words(comparison: &Comparison) -> String {
     if let Some(what) = comparison.not_in_intervals() {
         line(format!("Not in these intervals: {what}"));
     }
-    line(left_out_in_brief(&comparison.model_leaves_out));
+    line(left_out_line(&comparison.model_leaves_out));
     text
 }

@@ -16,7 +16,7 @@ use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
 use crate::words::design::design_lines;
-use crate::words::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_line;
 use crate::words::products::products;
 use crate::words::specification::{DESIGN_AGAIN, if_dispersive, raised, still_to_set, without_margin};
 use crate::words::{FOREMOST, row_note, sentence};
@@ -98,7 +98,7 @@ fn words(design: &Design) -> String {
     if design.notes.len() > FOREMOST {
         lines.push(format!("- and {} more on the page", design.notes.len() - FOREMOST));
     }
-    lines.push(left_out_in_brief(&design.model_leaves_out));
+    lines.push(left_out_line(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
     lines.iter().map(|line| plain(line) + "\n").collect()
 }

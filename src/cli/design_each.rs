@@ -15,7 +15,7 @@ use crate::study::design::DesignOptions;
 use crate::study::designs::{SampleDesignOptions, each};
 use crate::verdict::DesignedSamples;
 use crate::words::designed::{columns, lines};
-use crate::words::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_line;
 use crate::words::specification::DESIGN_EACH_AGAIN;
 
 /// The folder of the results, where nobody names one.
@@ -46,7 +46,7 @@ fn words(all: &DesignedSamples, out: &Path) -> String {
         let _ = writeln!(text, "{}", plain(&line));
     }
     if !all.model_leaves_out.is_empty() {
-        let _ = writeln!(text, "{}", left_out_in_brief(&all.model_leaves_out));
+        let _ = writeln!(text, "{}", left_out_line(&all.model_leaves_out));
     }
     if let Some(walks) = &all.walks {
         let networks = counted(walks.networks, "network", "networks");

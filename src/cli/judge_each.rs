@@ -15,7 +15,7 @@ use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
 use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, walked_columns, walks};
-use crate::words::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_line;
 
 /// Folder of a batch for which no other is named.
 const OUT: &str = "voidwalk-batch";
@@ -84,7 +84,7 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
         let _ = writeln!(text, "\n--as-given walks pairs that look exchanged");
     }
     let _ = writeln!(text, "\n{}", plain(constrictions));
-    let _ = writeln!(text, "{}", left_out_in_brief(&batch.model_leaves_out));
+    let _ = writeln!(text, "{}", left_out_line(&batch.model_leaves_out));
     let _ = writeln!(text, "table: {}", shown(&out.join("batch.csv")));
     let _ = writeln!(text, "report: {}", shown(&out.join("batch.html")));
     text

@@ -19,7 +19,7 @@ use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
 use crate::words::first_lines;
-use crate::words::left_out::left_out_in_brief;
+use crate::words::left_out::left_out_line;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -106,17 +106,17 @@ fn summary(run: &FinishedRun) -> String {
     for (name, said) in first_lines(outcome, SizeUnit::Mm) {
         line(format!("{name}: {}", plain(&said)));
     }
-    if !outcome.notes.is_empty() {
-        let mut labels: Vec<&str> = Vec::new();
-        for note in &outcome.notes {
-            if !labels.contains(&note.entry().label) {
-                labels.push(note.entry().label);
-            }
-        }
-        line(format!("{} notes on the page: {}", outcome.notes.len(), labels.join(", ")));
-    }
-    line(left_out_in_brief(&outcome.model_leaves_out));
+    line(left_out_line(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
-    line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
+    let mut labels: Vec<&str> = Vec::new();
+    for note in &outcome.notes {
+        if !labels.contains(&note.entry().label) {
+            labels.push(note.entry().label);
+        }
+    }
+    match labels.len() {
+        0 => line(format!("report: {page}")),
+        _ => line(format!("report: {page}; {} notes: {}", outcome.notes.len(), labels.join(", "))),
+    }
     text
 }

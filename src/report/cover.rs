@@ -13,6 +13,9 @@ pub(super) const LINE: usize = 120;
 /// Characters that stand at the foot of a printed page.
 const FOOT: usize = 60;
 
+/// Those who sign: on paper their names stand where they do.
+const SIGNED: [&str; 2] = ["Author", "Checked by"];
+
 /// Version and commit of the program, in short.
 pub(super) fn program(version: &str, commit: Option<&str>) -> String {
     match commit {
@@ -41,8 +44,10 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
     html! {
         div.title {
             dl.about { @for (name, value) in shown { @match value {
-                Some(value) => div { dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } } },
-                None => div.blank aria-hidden="true" { dt { (name) } " " dd {} },
+                Some(value) => div.signed[SIGNED.contains(name)] {
+                    dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
+                },
+                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" { dt { (name) } " " dd {} },
             } } }
             (signatures(of))
         }

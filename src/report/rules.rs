@@ -6,6 +6,7 @@ use super::numbers::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::words::left_out::NOT_COVERED;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends, value_begins};
@@ -17,17 +18,61 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
         listed.iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
-        h2 { "Filter rules beside the verdict" }
+        h2 { "All rules" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p.small { (LIMITS_ROUNDED) }
-            (table(&practice, unit))
+            p.small { (LIMITS_ROUNDED) " " (NOT_COVERED) " In brackets: sources, below." }
+            (numbered(&practice, unit, &outcome.rules))
             @if !walk.is_empty() {
-                h3 { "Comparisons of the walk with tests and with the paper" }
-                p.small { "They show whether the walk agrees with both. No filter fails by them." }
-                (table(&walk, unit))
+                div.screen {
+                    h3 { "Comparisons of the walk with tests and with the paper" }
+                    p.small { "They show whether the walk agrees with both. No filter fails by them." }
+                    (numbered(&walk, unit, &outcome.rules))
+                }
             }
         }
     }
+}
+
+/// Rules as a table in which numbers stand for the sources.
+fn numbered(rules: &[&AppliedRule], unit: SizeUnit, all: &[AppliedRule]) -> Markup {
+    let listed = distinct_sources(&listed(all));
+    table_with(rules, unit, |rule| match listed.iter().position(|source| *source == rule.source) {
+        Some(place) => html! { " [" (place + 1) "]" },
+        None => html! {},
+    })
+}
+
+/// The sources of all rules, by the numbers that stand in the table.
+pub(super) fn sources(outcome: &Outcome) -> Markup {
+    let sources = distinct_sources(&listed(&outcome.rules));
+    let is_of_walk = |source: &String| {
+        let citing = outcome.rules.iter().filter(|rule| rule.source == *source);
+        citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
+    };
+    html! {
+        @if !sources.is_empty() {
+            h2 { "Sources" }
+            ol.sources {
+                @for source in &sources {
+                    // Comparisons of the walk stay on the screen.
+                    li.screen[is_of_walk(source)] { (clean(source)) }
+                }
+            }
+        }
+    }
+}
+
+/// Each source once, those of practice first.
+fn distinct_sources(rules: &[AppliedRule]) -> Vec<String> {
+    let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+        rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+    let mut sources: Vec<String> = Vec::new();
+    for rule in practice.into_iter().chain(walk) {
+        if !rule.source.is_empty() && !sources.contains(&rule.source) {
+            sources.push(rule.source.clone());
+        }
+    }
+    sources
 }
 
 /// Value and limit of a rule, which no line breaks apart from their units.
@@ -58,13 +103,18 @@ pub(super) fn authorities(rule: &AppliedRule) -> Markup {
     }
 }
 
-/// Rules as a table.
+/// Rules as a table, each with its source.
 pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
+    table_with(rules, unit, |rule| html! { br; span.small { (clean(&rule.source)) } })
+}
+
+/// Rules as a table, with what stands for the source behind the name of each.
+fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
     let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {
             html! {
-                (clean(&rule.name))
+                (clean(&rule.name)) (source(rule))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
                 @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
@@ -75,7 +125,6 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 @for notes in [&rule.notes, &rule.needs] {
                     @if !notes.is_empty() { br; span.small { b { (clean(&rule_notes(notes, unit))) } } }
                 }
-                br; span.small { (clean(&rule.source)) }
             }
         })
         .text("Authority", |rule| authorities(rule))

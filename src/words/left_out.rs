@@ -48,6 +48,20 @@ pub fn model_limit(limit: ModelLimit) -> String {
 /// What no rule covers, as no text was read that gives its numbers.
 pub const NOT_COVERED: &str = "Not covered by the rules: segregation by D90F and D10F, excessive erosion.";
 
+/// The limits of the model that matter most to a designer, in a line; the page lists all.
+pub fn left_out_line(limits: &[ModelLimit]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    if limits.contains(&ModelLimit::Hydraulics) {
+        names.push("hydraulics");
+    }
+    names.push("gradient");
+    if limits.contains(&ModelLimit::Bridging) {
+        names.push("bridging");
+    }
+    names.extend(["cohesion", "suffusion", "segregation"]);
+    format!("The model leaves out: {}; more on the page.", names.join(", "))
+}
+
 /// What the model does not contain and what no rule covers, in two sentences.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| parts(*limit).0).collect();
@@ -248,6 +262,14 @@ mod tests {
             assert_eq!(serde_json::from_str::<ModelLimit>(&text).unwrap(), limit);
         }
         assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
+        let line = left_out_line(&leaves_out(Modelled::default()));
+        for name in ["hydraulics", "gradient", "bridging", "cohesion", "suffusion", "segregation", "the page"]
+        {
+            assert!(line.contains(name) && line.split(' ').count() <= 20, "{name}: {line}");
+        }
+        let modelled = Modelled { flow: true, arches: true, openings: false };
+        let line = left_out_line(&leaves_out(modelled));
+        assert!(line.contains("gradient") && !line.contains("hydraulics") && !line.contains("bridging"));
         let brief = left_out_in_brief(&leaves_out(Modelled::default()));
         assert!(
             brief.starts_with("The model leaves out: hydraulics; bridging; partial clogging; "),

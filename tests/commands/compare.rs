@@ -196,7 +196,7 @@ fn what_the_model_leaves_out_is_that_of_the_cases() {
         (String::from_utf8(said.stdout).unwrap(), page, json(&at.join("c/compare.json")))
     };
     let (text, page, record) = compare(&["wet.toml", "wetter.toml"]);
-    assert!(text.contains("The model leaves out: hydraulics but for the direction"), "{text}");
+    assert!(text.contains("The model leaves out: gradient, bridging"), "{text}");
     assert!(text.contains(" grains per void") && page.contains("Grains per void"), "{text}");
     assert!(record["cases"][0]["grains_per_void"].as_f64().is_some());
     let left_out = record["model_leaves_out"].to_string();

@@ -50,23 +50,23 @@ fn the_page_says_what_an_engineer_reads_first() {
     let text = words(&page);
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
-        "Model (“the walk”): base particles are moved through voids",
         "Model (research): some erosion; ",
-        "18 % of the base is finer than 0.075 mm",
         "Figure 1.",
-        "Group by ASTM D2487",
         "Rules of practice, in short",
-        "The model leaves out: ",
-        "hydraulics; ",
+        "The model leaves out: hydraulics, ",
+        "Group by ASTM D2487",
+        "18 % of the base is finer than 0.075 mm",
         "What the model found",
+        "Model (“the walk”): base particles are moved through voids",
         "What the model leaves out",
+        "Limits are rounded to the safe side",
         "Figure 2.",
         "Figure 4.",
-        "Filter rules beside the verdict",
         "Largest particle eroded, over D15F",
         "Inputs",
         "21 443 871 (Eq. 2)",
         "Appendix: the two gradations",
+        "Sources",
         "0.1.0 (commit 4f2c43f)",
         "curve = \"shire2016-cu1.5-loose\"".replace('"', "&quot;").as_str(),
         "How to cite",
@@ -218,7 +218,7 @@ fn one_replicate_has_no_interval_and_says_so() {
     plan.outcome.findings.clear();
     let text = words(&made(&plan).0);
     assert!(text.contains("One replicate: the scatter is unknown"));
-    assert!(!text.contains("Other findings") && !text.contains("more below"));
+    assert!(!text.contains("Notes") && !text.contains("notes below"));
     // Ended before the studies were walked.
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
