@@ -182,7 +182,6 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::Topic;
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -190,23 +189,21 @@ mod tests {
         Case::new(Scene::built_in(&changes).unwrap()).map_err(|error| error.to_string())
     }
 
-    fn said(changes: &[&str]) -> String {
-        let found = case(changes).unwrap().findings();
-        let of_thickness = found.iter().filter(|finding| finding.entry.about == Topic::Thickness);
-        of_thickness.map(Finding::with_to_do).collect()
+    fn of_thickness(changes: &[&str]) -> Option<Note> {
+        case(changes).unwrap().notes().into_iter().find(|note| note.entry().label == "thickness")
     }
 
     #[test]
     fn a_real_thickness_is_compared_in_mm_and_to_half_a_layer() {
-        let said_of = said(&["filter.thickness_mm=50"]);
-        assert!(said_of.contains("is 50 mm, but sizes are multiples of D0F"), "{said_of}");
-        let sized = |real: &str| said(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
+        let without_unit = Note::ThicknessWithoutUnit { real_mm: 50.0, unit: "D0F".into() };
+        assert_eq!(of_thickness(&["filter.thickness_mm=50"]), Some(without_unit));
+        let sized = |real: &str| of_thickness(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
         let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
         let (layer, modelled) = (case.filter.d_by_number(50.0).unwrap(), case.thickness().unwrap());
-        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_empty());
-        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_empty());
+        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_none());
+        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_none());
         let thinner = sized(&format!("filter.thickness_mm={}", modelled - 0.51 * layer));
-        assert!(thinner.contains("layers of voids are") && thinner.contains("network.nz"), "{thinner}");
+        assert!(matches!(thinner, Some(Note::LayersThicker { .. })), "{thinner:?}");
     }
 
     #[test]
@@ -217,45 +214,42 @@ mod tests {
         }
         assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
     }
-    fn doubts(set: &[&str]) -> Vec<String> {
+
+    fn doubts(set: &[&str]) -> Vec<Note> {
         let small =
             ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
         let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
-        let found = Case::new(Scene::built_in(&all).unwrap()).unwrap().findings();
-        found.iter().map(Finding::sentence).collect()
+        Case::new(Scene::built_in(&all).unwrap()).unwrap().notes()
     }
 
     #[track_caller]
-    fn says(set: &[&str], word: &str) {
-        let found = doubts(set);
-        assert!(found.iter().any(|said| said.starts_with(word)), "{set:?}: {found:?}");
+    fn has(set: &[&str], id: &str) {
+        let notes = doubts(set);
+        assert!(notes.iter().any(|note| note.id() == id), "{set:?}: {notes:?}");
     }
 
     #[test]
     fn less_base_than_eq_2_gives_is_a_doubt() {
-        assert_eq!(doubts(&[]), Vec::<String>::new());
-        says(&["base.cap=500"], "The base is capped at 500 of the");
-        says(&["base.n_base=500"], "The base has 500 of the");
-        says(&["base.mass_ratio=0.01"], "The mass of the base is 1 % of the filter's");
+        assert_eq!(doubts(&[]), []);
+        has(&["base.cap=500"], "capped_base");
+        has(&["base.n_base=500"], "few_particles");
+        has(&["base.mass_ratio=0.01"], "low_mass_ratio");
         for enough in ["base.n_base=1e9", "base.cap=1e12", "base.mass_ratio=0.1"] {
-            assert_eq!(doubts(&[enough]), Vec::<String>::new(), "{enough}");
+            assert_eq!(doubts(&[enough]), [], "{enough}");
         }
     }
 
     #[test]
     fn a_narrow_lattice_is_a_doubt() {
-        says(&["network.nx=9"], "The lattice is only 9 x 10 voids across");
-        says(
-            &["network.ny=1", "network.connectivity={4=50,8=50}"],
-            "The lattice is only 10 x 1 voids across",
-        );
+        has(&["network.nx=9"], "narrow_lattice");
+        has(&["network.ny=1", "network.connectivity={4=50,8=50}"], "narrow_lattice");
     }
 
     #[test]
     fn a_base_that_is_all_on_its_way_is_a_doubt_where_water_flows() {
-        says(&["walk.exit=flux", "inject_share=0.1"], "The whole base is inserted before");
+        has(&["walk.exit=flux", "inject_share=0.1"], "all_on_its_way");
         for converged in [["walk.exit=flux", "inject_share=0.05"], ["walk.exit=area", "inject_share=0.1"]] {
-            assert_eq!(doubts(&converged), Vec::<String>::new(), "{converged:?}");
+            assert_eq!(doubts(&converged), [], "{converged:?}");
         }
     }
 

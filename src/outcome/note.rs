@@ -59,6 +59,13 @@ macro_rules! notes {
                 }
             }
 
+            /// Its name in a file.
+            #[cfg(test)]
+            pub(crate) fn id(&self) -> String {
+                let record = serde_json::to_value(self).unwrap_or_default();
+                record["id"].as_str().unwrap_or_default().to_owned()
+            }
+
             /// Every note, with these numbers and this name.
             #[cfg(test)]
             pub(crate) fn all_with(sample: &Sample) -> Vec<Self> {

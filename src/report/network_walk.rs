@@ -137,7 +137,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 (leaves_out(&record.model_leaves_out, &html! {}))
             }
         }
-        (findings(record))
+        (notes(record))
         (shell::contents())
         h2 { "Figures" }
         (shell::figures(figures))
@@ -149,7 +149,7 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
     whole_page(&title, &header, &main, &citation())
 }
 
-fn findings(record: &NetworkWalkRecord) -> Markup {
+fn notes(record: &NetworkWalkRecord) -> Markup {
     html! {
         @if !record.notes.is_empty() {
             section.sheet {

@@ -6,9 +6,9 @@ use super::numbers::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
-use crate::words::left_out::NOT_COVERED;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::words::left_out::NOT_COVERED;
 use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends, value_begins};
 use crate::words::rule_note::rule_notes;
 

@@ -78,6 +78,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::outcome::record::ModelLimit;
     use crate::network::{ExitRule, NetworkColumns};
     use crate::run::{Callbacks, walk_networks};
 
@@ -105,12 +106,8 @@ mod tests {
         assert!(given.diameters.iter().all(|&[mm, percent]| (mm == 0.25) == (percent <= 50.0)));
         assert_eq!((record.base.name.as_str(), record.base.d85_mm), ("one size", 0.1));
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
-        assert!(record.model_leaves_out[0].to_string().starts_with("hydraulics but for"));
+        assert!(record.model_leaves_out.contains(&ModelLimit::Gradient));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
-        assert!(
-            record.findings.iter().any(|finding| finding.id == "amount_unknown"),
-            "{:?}",
-            record.findings
-        );
+        assert!(record.notes.iter().any(|note| note.id() == "amount_unknown"), "{:?}", record.notes);
     }
 }

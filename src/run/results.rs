@@ -239,9 +239,11 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::numbers::SizeUnit;
     use crate::outcome::record::Headline;
     use crate::run::{Callbacks, walk_case};
     use crate::scene::Scene;
+    use crate::words;
 
     /// What comes of a soil with so many percent of fines and a uniform filter of this D15F.
     fn walked(fines: f64, d15f: f64, set: &[&str]) -> Outcome {
@@ -269,21 +271,24 @@ mod tests {
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
-        let next = coarse.next_in_words();
+        let next = words::next(&coarse, SizeUnit::Mm);
         let beside =
             "at most 0.700 mm (0.500 mm if the base is dispersive, which is not stated) and at least ";
         assert!(next.contains(beside), "{next}");
-        let next = walked(45.0, 0.06, &[]).next_in_words();
+        let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
-        let open = walked(25.0, 9.0, &[]).next_in_words();
+        let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
         let beside = "(if the base is dispersive, which is not stated: less than ";
         assert!(open.contains(beside), "{open}");
         let test = " mm, by how much no source that was read says; have the pair tested)";
         assert!(open.contains(test), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
-            assert!(said.if_dispersive.is_none() && !said.next_in_words().contains("dispersive"), "{set}");
+            assert!(
+                said.if_dispersive.is_none() && !words::next(&said, SizeUnit::Mm).contains("dispersive"),
+                "{set}"
+            );
         }
     }
 
@@ -291,12 +296,22 @@ mod tests {
     fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
         let broken = walked(45.0, 0.6, &[]);
         assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
-        assert!(broken.practice_in_words().contains("; if the base is dispersive, the limit is 0.500 mm, "));
-        assert_eq!(broken.next_in_words(), "have the base tested for dispersion by a pinhole or crumb test");
+        assert!(
+            words::practice(&broken, SizeUnit::Mm)
+                .contains("; if the base is dispersive, the limit is 0.500 mm, ")
+        );
+        assert_eq!(
+            words::next(&broken, SizeUnit::Mm),
+            "have the base tested for dispersion by a pinhole or crumb test"
+        );
         let kept = walked(45.0, 0.45, &[]);
         assert_eq!(kept.headline, Some(Headline::Meets));
-        assert!(!kept.next_in_words().contains("dispers"), "{}", kept.next_in_words());
-        assert!(!kept.practice_in_words().contains("dispersive"));
+        assert!(
+            !words::next(&kept, SizeUnit::Mm).contains("dispers"),
+            "{}",
+            words::next(&kept, SizeUnit::Mm)
+        );
+        assert!(!words::practice(&kept, SizeUnit::Mm).contains("dispersive"));
     }
 
     /// With 38 % fines design allows 0.860 mm, more than the boundary of no erosion, and a dispersive base
@@ -304,9 +319,9 @@ mod tests {
     /// enough.
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
-        let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();
+        let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
         let begin = "take a filter with a D15F of at most 0.860 mm (if the base is dispersive, which is not \
-                     stated: at most 0.500 mm, and have the pair tested) and at least ";
+                     stated: at most 0.500 mm; have the pair tested) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
         let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");
@@ -331,7 +346,7 @@ mod tests {
     fn the_next_step_goes_down_to_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
-            let next = walked_base(rows, d15f, set).next_in_words();
+            let next = words::next(&walked_base(rows, d15f, set), SizeUnit::Mm);
             next.split("at most ").nth(1).map(|of| of.split(' ').next().unwrap().to_owned())
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
@@ -339,10 +354,10 @@ mod tests {
         // Within the floor nothing is to be done.
         let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
         let fine = of(0.18);
-        assert_eq!(fine.next_in_words(), "nothing by these rules");
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "nothing by these rules");
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = of(0.08);
-        assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.200 mm");
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200 mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {

@@ -341,7 +341,7 @@ const ROLES = [["retention", "The filter retains the base"],
 const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
 
 function showRules(pair) {
-  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at] }))
+  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at], words: pair.rule_words[at] }))
     .filter((row) => row.named);
   const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
   const parts = pair.notes.map((note) => el("p", { class: "problem" }, note));
@@ -356,11 +356,11 @@ function showRules(pair) {
   if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), named(open)));
   if (!broken.length && !open.length) parts.push(el("p", {}, "Every rule that was made for these soils is met. What the walk says is another question."));
   parts.push(el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound }) => {
+  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound, words }) => {
     return el("tr", {}, el("td", {}, result(found)), el("td", {}, name), el("td", {}, authorities || "–"),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
       el("td", { class: "n" }, limit ? `${sign} ${limit}${ends}` : "–"),
-      el("td", { class: "small" }, [rule.note, rule.needs, source].filter(Boolean).join(" – ")));
+      el("td", { class: "small" }, [words, source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
     ...["Result", "Rule", "Authority", "Quantity"].map((text) => el("th", {}, text)),
@@ -582,18 +582,19 @@ const between = (range) => (range.low === null && range.high === null ? ""
   : `${number(range.low)} to ${number(range.high)}`);
 
 /** A boundary over networks, or why there is none; in bold where the walk decides. */
-function boundary(of, note) {
-  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, note || "it lies beyond the search")];
+function boundary(of, notes = []) {
+  const words = notes.join(" ");
+  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, words || "it lies beyond the search")];
   return [
     ...(of.d15f_mm ? [`D15F ${number(of.d15f_mm.median)} mm`, el("br"), between(of.d15f_mm), el("br")] : []),
     `D15F/D85B ${number(of.median)}`, el("br"), between(of),
-    note ? el("span", { class: "small" }, el("br"), note) : null];
+    words ? el("span", { class: "small" }, el("br"), words) : null];
 }
 
 function boundariesOf(job) {
   const done = job.result;
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
-    el("td", {}, boundary(row.no_erosion, row.no_erosion_note)), el("td", {}, boundary(row.continuing, row.continuing_note),
+    el("td", {}, boundary(row.no_erosion, row.no_erosion_notes)), el("td", {}, boundary(row.continuing, row.continuing_notes),
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
   return [...answer(done.lines),
     ...(done.beside || []).filter(Boolean).map((said) => el("p", {}, `${said}.`)),
@@ -627,7 +628,7 @@ function verdictOf(job) {
         el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.first_lines), ...notes(one.notes)]),
+      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.lines), ...notes(one.notes)]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
   return [...answer(done.lines), ...plot(done.runs), ...notes(done.notes)];

@@ -286,8 +286,9 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::outcome::numbers::SizeUnit;
     use crate::verdict::BatchFilter;
-    use crate::verdict::batch_counts::counts_in_words;
+    use crate::words::batch::{columns, counts, of_filter, open_limits};
 
     fn soil(points: &[(f64, f64)]) -> Gradation {
         Gradation::from_lines(points).unwrap()
@@ -319,11 +320,11 @@ mod tests {
         let d15f = filter.d(15.0).unwrap();
         assert_eq!(rows[0].d15f_mm, Some(d15f));
         assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
-        assert_eq!((rows[0].met, rows[0].tests.as_str()), (Some(true), "no erosion"));
+        assert_eq!((rows[0].met, rows[0].tests), (Some(true), TestedClass::None));
         assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
         // Fines that nobody sieved: a limit at most, and no result for a filter within it.
         assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
-        assert!(rows[4].met.is_none() && rows[4].note.contains("exchanged"), "{:?}", rows[4]);
+        assert!(rows[4].met.is_none() && rows[4].is_refused, "{:?}", rows[4]);
         let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
         assert!(
             csv.starts_with("sample,filter,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_mm,")
@@ -346,7 +347,11 @@ mod tests {
                 [cell("D15F, mm"), cell("Limit, mm")]
             };
             let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: Some(d15f) };
-            (shown(SizeUnit::Mm), shown(SizeUnit::MmAndInches), filter.in_words(std::slice::from_ref(&row)))
+            (
+                shown(SizeUnit::Mm),
+                shown(SizeUnit::MmAndInches),
+                of_filter(&filter, std::slice::from_ref(&row), SizeUnit::Mm),
+            )
         };
         let (mm, inches, said) = of(2.376, 2.3784);
         assert_eq!(mm, ["2.376", "2.378"]);
@@ -368,7 +373,7 @@ mod tests {
         let named = names(governing(&rows, "F", NAMED));
         let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
         assert_eq!(names(may_govern(&rows, "F")), open);
-        let said = open_in_words(&rows, "F").join("\n");
+        let said = open_limits(&rows, "F").join("\n");
         assert!(said.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{said}");
         assert!(governing(&rows, "G", 3).is_empty());
     }
@@ -381,10 +386,9 @@ mod tests {
             row("silt", &silt, &[("F".to_owned(), filter)], PairOptions::default())
         };
         let (beyond, within) = (of(0.61), of(0.45));
-        assert_eq!((beyond.met, beyond.result()), (Some(true), "met unless the base is dispersive"));
-        assert!(beyond.note.contains("if the base is dispersive, the limit is 0.500 mm"), "{beyond:?}");
-        assert_eq!((within.breaks_if_dispersive, within.result()), (false, "met"));
-        let said = counts_in_words(&[beyond], "F");
+        assert_eq!((beyond.met, beyond.breaks_if_dispersive), (Some(true), true));
+        assert_eq!((within.met, within.breaks_if_dispersive), (Some(true), false));
+        let said = counts(&[beyond], "F");
         assert!(said.contains("1 met (1 of them unless the base is dispersive), 0 not met"), "{said}");
     }
 
@@ -399,15 +403,11 @@ mod tests {
             row("till", &soil(&REGRADED_TILL), &filter, PairOptions::default())
         };
         let (coarse, fine) = (of(1.0), of(0.1));
-        assert_eq!((coarse.met, coarse.may_lose_fines, coarse.result()), (Some(false), true, "not met"));
-        let note = "may lose its finer part, too coarse without its finest 19.4 %";
-        assert!(coarse.note.starts_with(note), "{coarse:?}");
+        assert_eq!((coarse.met, coarse.may_lose_fines), (Some(false), true));
+        assert!((coarse.too_coarse_without_percent.unwrap() - 19.4).abs() < 0.05, "{coarse:?}");
         assert_eq!((fine.met, fine.may_lose_fines), (None, true));
-        assert!(
-            fine.note.starts_with("may lose its finer part") && !fine.note.contains("coarse"),
-            "{fine:?}"
-        );
-        assert!(counts_in_words(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
+        assert_eq!(fine.too_coarse_without_percent, None);
+        assert!(counts(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
     }
 
     #[test]
@@ -415,14 +415,14 @@ mod tests {
         let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
         let gravel = soil(&[(10.0, 0.0), (30.0, 100.0)]);
         let given = row("gravel", &gravel, &filter, PairOptions { as_given: true, ..PairOptions::default() });
-        assert!(given.limit_mm.is_some() && given.note.contains("are the two files exchanged?"), "{given:?}");
+        assert!(given.limit_mm.is_some() && given.notes.len() == 1, "{given:?}");
         let sand = soil(&[(0.08, 0.0), (0.3, 100.0)]);
         let joint =
             |mm| row("sand", &sand, &filter, PairOptions { joint_mm: Some(mm), ..Default::default() });
-        assert_eq!(joint(2.0).note, "joint: 90 % continuing");
+        assert_eq!(joint(2.0).joint, Some(JointErosion { percent: Some(90.0), is_below_source: false }));
         // D95B = 0.3 (0.08/0.3)^(1/20): 0.45 of it lies below the table of the source.
         let d95b = sand.d(95.0).unwrap();
-        assert_eq!(joint(0.45 * d95b).note, "joint: less than 0.01 % continuing");
+        assert_eq!(joint(0.45 * d95b).joint, Some(JointErosion { percent: None, is_below_source: true }));
     }
 
     /// Limits of fines are the same for many samples: 0.7 mm. The finer one comes first.

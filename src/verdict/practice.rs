@@ -159,11 +159,8 @@ pub fn counts_as(rules: &[AppliedRule]) -> Option<Verdict> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::Specification;
     use crate::outcome::rules::NamedCurve;
-    use crate::outcome::with_inches;
-    use crate::verdict::practice_words::practice_line;
-    use crate::verdict::{BatchRow, PairOptions, PairRules, SpecificationOptions};
+    use crate::verdict::{BatchRow, PairOptions, PairRules};
 
     fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
         vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
@@ -179,20 +176,20 @@ mod tests {
     const SILTY: [(f64, f64); 6] =
         [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
 
-    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    /// Sherard and Dunnigan allow 0.2 and 1.28 mm, Foster and Fell 0.166 and 0.7 mm.
     #[test]
     fn practice_goes_by_design_where_tests_are_stricter() {
-        for (base, d15f, [design, tests]) in
-            [(&CLAY, 0.178, ["0.200 mm", "0.166 mm"]), (&SILTY, 0.85, ["1.28 mm", "0.700 mm"])]
-        {
+        for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
             let options = PairOptions { dispersive: false, ..PairOptions::default() };
             let rules = PairRules::of_envelopes(&soil(base), &filter(d15f), options).rules;
             assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
             assert_eq!(standing(&rules), Standing::Met);
             assert_eq!(counts_as(&rules), Some(Verdict::None));
             assert!(notes(&rules).is_empty());
-            let line = practice_line(&rules, None, None);
-            assert!(line.contains(design) && line.contains(tests), "{line}");
+            for (id, wanted) in [(DESIGN, design), (TESTS_NO_EROSION, tests)] {
+                let limit = rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
+                assert!((limit - wanted).abs() < 0.005, "{id} {limit}");
+            }
             let sample = crate::gradation::SoilSample {
                 name: "s".into(),
                 path: "s".into(),
@@ -223,72 +220,5 @@ mod tests {
             assert_eq!((record(&rules, None).unwrap().class, counts_as(&rules)), (class, Some(counts)));
         }
         assert_eq!(counts_as(&[]), None);
-    }
-
-    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
-    #[test]
-    fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
-        let soil = |points: &[(f64, f64)], by: f64| {
-            let points: Vec<(f64, f64)> =
-                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
-            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
-        };
-        let bases: [&[(f64, f64)]; 4] = [
-            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
-            &[(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)],
-            &[(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)],
-            &[(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)],
-        ];
-        let (mut checked, mut missed) = (0, Vec::new());
-        for step in 0..60 {
-            let by = libm::pow(1.01, f64::from(step));
-            for base in bases {
-                for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
-                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
-                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
-                    let mut said: Vec<String> = vec![pair.practice.clone()];
-                    said.extend(
-                        notes(&pair.rules).iter().map(|note| crate::words::sentence(note, SizeUnit::Mm)),
-                    );
-                    said.extend(pair.if_dispersive.map(|of| of.words()));
-                    let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
-                    said.extend(
-                        [of.band_in_words(), of.raised_in_words(), of.no_band.clone()].into_iter().flatten(),
-                    );
-                    said.extend(of.if_dispersive_in_words("again"));
-                    let limits = pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F);
-                    for rule in limits {
-                        let [value, limit] = against(rule, 3);
-                        if value == limit {
-                            continue;
-                        }
-                        let Ok(mm) = limit.trim_end_matches(" mm").parse::<f64>() else { continue };
-                        for sentence in &said {
-                            let text = with_inches(sentence);
-                            for (at, _) in text.match_indices(&format!(" {limit} (")) {
-                                let behind = text[at..].split_once('(').unwrap().1.split('\u{202f}').next();
-                                let inches = behind.unwrap().rsplit(' ').next().unwrap();
-                                let back = 25.4 * inches.parse::<f64>().unwrap();
-                                checked += 1;
-                                let is_within = if rule.at_least {
-                                    back >= mm * (1.0 - 1e-9)
-                                } else {
-                                    back <= mm * (1.0 + 1e-9)
-                                };
-                                if !is_within {
-                                    missed.push(text.clone());
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        assert!(
-            checked > 1000 && missed.is_empty(),
-            "{checked} {} {:#?}",
-            missed.len(),
-            &missed[..missed.len().min(6)]
-        );
     }
 }

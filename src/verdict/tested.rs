@@ -59,7 +59,7 @@ mod tests {
         ] {
             let rules = rules(base, d15f);
             assert_eq!(tested(&rules), class, "{d15f}");
-            assert_eq!(crate::words::tested(&rules).contains("not excluded"), !excluded, "{d15f}");
+            assert_eq!(crate::words::tested_class(&rules).contains("not excluded"), !excluded, "{d15f}");
             assert_eq!(is_beyond_unclear(&rules), d15f == 40.0);
         }
     }

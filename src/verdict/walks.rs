@@ -122,7 +122,7 @@ mod tests {
         serde_json::from_value(replicate).unwrap()
     }
 
-    fn of(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<String> {
+    fn of(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<Note> {
         with_openings(verdict, runs, clogged, false)
     }
 
@@ -131,35 +131,31 @@ mod tests {
         runs: &[(f64, u64, Option<f64>)],
         clogged: &[[u64; 3]],
         openings: bool,
-    ) -> Vec<String> {
+    ) -> Vec<Note> {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
         let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30, openings };
-        findings(verdict, &walked).iter().map(Finding::with_to_do).collect()
+        notes(verdict, &walked)
     }
 
     #[test]
     fn a_filter_that_clogs_before_its_base_is_through_is_a_doubt() {
         let closed = [(0.021, 0, Some(0.0)), (0.0, 0, Some(0.0))];
-        let found = of(Verdict::None, &closed, &[[1, 1, 41], [1, 2, 0]]);
-        assert_eq!(found.len(), 1);
-        let begin =
-            "The filter clogged wholly in the first run, after 41.0 % of the base. No water flows then";
-        assert!(found[0].starts_with(begin) && found[0].contains("at least 30 % of the base"), "{found:?}");
-        assert!(found[0].ends_with("Try inject_share = 0.001."), "{found:?}");
-        let found = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
-        assert!(found[0].starts_with("No water flows in the second run, as the filter clogged"), "{found:?}");
+        let least_on_its_way = |clogged: &[[u64; 3]]| match &of(Verdict::None, &closed, clogged)[..] {
+            [Note::Clogged { run: 1, replicates: 1, walked: 1, least_on_its_way_percent, .. }] => {
+                least_on_its_way_percent.round()
+            }
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(least_on_its_way(&[[1, 1, 41], [1, 2, 0]]), 30.0);
         // Less than has been inserted cannot be on its way.
-        let found = of(Verdict::None, &closed, &[[1, 1, 10], [1, 2, 0]]);
-        assert!(found[0].contains("its way, at least 10 % of"), "{found:?}");
-        let found = of(Verdict::None, &closed, &[[1, 1, 24], [2, 1, 32], [1, 2, 0]]);
-        assert!(
-            found[0].contains("24.0 % to 32.0 % of the base")
-                && found[0].contains("its way, at least 24 % of")
-        );
-        assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), Vec::<String>::new());
+        assert_eq!(least_on_its_way(&[[1, 1, 10], [1, 2, 0]]), 10.0);
+        assert_eq!(least_on_its_way(&[[1, 1, 24], [2, 1, 32], [1, 2, 0]]), 24.0);
+        let before = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
+        assert!(matches!(before[..], [Note::CloggedBefore { .. }]), "{before:?}");
+        assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), []);
         for open in [Some(0.01), None] {
-            assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), Vec::<String>::new());
+            assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), []);
         }
     }
 
@@ -176,16 +172,16 @@ mod tests {
     #[test]
     fn trapped_particles_that_could_turn_the_class_are_a_doubt() {
         let found = of(Verdict::None, &[(0.0, 9985, None), (0.0, 0, None)], &[]);
-        assert!(found[0].contains("They are 9 985 of 10 000 particles of a run"), "{found:?}");
+        assert!(matches!(found[..], [Note::TrappedCouldTurn { trapped: 9985, inserted: 10_000, .. }]));
         // A few, but perhaps the coarsest.
         assert_eq!(of(Verdict::None, &[(0.06, 30, None)], &[]).len(), 1);
-        assert_eq!(of(Verdict::None, &[(0.0, 1, None)], &[]), Vec::<String>::new());
+        assert_eq!(of(Verdict::None, &[(0.0, 1, None)], &[]), []);
     }
 
     #[test]
     fn no_erosion_whose_second_run_erodes_is_a_doubt() {
         let found = of(Verdict::None, &[(0.07, 0, None), (0.2, 0, None)], &[]);
-        assert!(found[0].starts_with("The second run erodes 20 % of its base, more than 7.5 %"), "{found:?}");
-        assert_eq!(of(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), Vec::<String>::new());
+        assert_eq!(found, [Note::SecondRunErodes { eroded_percent: 20.0 }]);
+        assert_eq!(of(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), []);
     }
 }

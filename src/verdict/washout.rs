@@ -86,7 +86,7 @@ impl Washout<'_> {
 }
 
 #[cfg(test)]
-pub(in crate::verdict) mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::ValueBound;
@@ -98,7 +98,7 @@ pub(in crate::verdict) mod tests {
     }
 
     /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
-    pub(in crate::verdict) const REGRADED_TILL: [(f64, f64); 9] = [
+    pub(crate) const REGRADED_TILL: [(f64, f64); 9] = [
         (0.075, 28.0),
         (0.15, 37.0),
         (0.425, 48.0),
@@ -110,7 +110,7 @@ pub(in crate::verdict) mod tests {
         (37.5, 100.0),
     ];
     /// A gravel of 0 to 32 mm that is not internally stable by three of four criteria.
-    pub(in crate::verdict) const GRAVEL_0_32: [(f64, f64); 11] = [
+    pub(crate) const GRAVEL_0_32: [(f64, f64); 11] = [
         (0.075, 2.0),
         (0.125, 4.0),
         (0.25, 8.0),
@@ -132,7 +132,7 @@ pub(in crate::verdict) mod tests {
         assert_eq!((found.by.id.as_str(), found.continues()), (KEZDI, false));
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
-        assert_eq!(washout(&read).unwrap().without_finer(), found.without_finer());
+        assert_eq!(washout(&read).unwrap().left, found.left);
     }
 
     /// Without a fifth of it a gap-graded filter is beyond the boundary of continuing erosion, too.
@@ -145,7 +145,7 @@ pub(in crate::verdict) mod tests {
 
     /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
     /// 14 %, where it is 0.993, much more is lost, and what is left has a D15F beyond 4.00 and 7.00 mm.
-    pub(in crate::verdict) const STEPPED: [(f64, f64); 8] = [
+    pub(crate) const STEPPED: [(f64, f64); 8] = [
         (0.1, 0.0),
         (0.2, 4.0),
         (0.8, 4.0),
@@ -155,8 +155,7 @@ pub(in crate::verdict) mod tests {
         (16.0, 60.0),
         (32.0, 100.0),
     ];
-    pub(in crate::verdict) const SAND_OF_1_MM: [(f64, f64); 4] =
-        [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];
+    pub(crate) const SAND_OF_1_MM: [(f64, f64); 4] = [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];
 
     #[test]
     fn the_greatest_part_that_may_be_lost_counts_and_not_where_the_index_is_worst() {

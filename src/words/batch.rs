@@ -290,3 +290,78 @@ fn classes(walks: &[&SampleWalk]) -> String {
     let counted = Verdict::ALL.into_iter().filter(|class| count(*class) > 0);
     counted.map(|class| format!("{} {}", count(class), class.words())).collect::<Vec<_>>().join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::{Gradation, SoilSample};
+    use crate::outcome::record::Ratios;
+    use crate::verdict::{BatchFilter, BatchRow, PairOptions};
+
+    fn walked(sample: &str, met: bool, walk: Option<(Verdict, Verdict, bool)>) -> WalkedRow {
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
+        let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
+        let of = SoilSample { name: sample.into(), path: sample.into(), curve };
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let rules =
+            BatchRow { if_dispersive: None, ..BatchRow::of(&of, ("F", &filter), PairOptions::default()) };
+        let walk = walk.map(|(verdict, by_practice, in_full)| SampleWalk {
+            folder: String::new(),
+            in_full,
+            headline: None,
+            verdict,
+            by_practice: Some(by_practice),
+            replicates: 2,
+            ratios: Ratios { d15f_over_d85b: 4.0, d15f_over_d95b: 3.0 },
+            base: None,
+            runs: Vec::new(),
+            curve_range: Vec::new(),
+        });
+        let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
+        WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
+    }
+
+    #[test]
+    fn walks_are_counted_by_class_and_practice_speaks_against_some() {
+        let rows = vec![
+            walked("A", true, Some((Verdict::None, Verdict::None, true))),
+            walked("B", false, Some((Verdict::None, Verdict::Some, false))),
+            walked("C", true, Some((Verdict::Some, Verdict::None, false))),
+            walked("D", true, None),
+        ];
+        let against: Vec<bool> = rows.iter().map(WalkedRow::is_against_practice).collect();
+        assert_eq!(against, [false, true, false, false]);
+        let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
+        assert_eq!(doubted, [false, true, true, false]);
+        assert_eq!(answer(&rows[3]), "not walked: no table");
+        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
+        assert!(walks(&batch, "F", SizeUnit::Mm)[0].contains("2 no erosion, 1 some erosion"));
+    }
+
+    /// The filter has a D15F of 0.725 mm.
+    #[test]
+    fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
+        let of = |name: &str, verdict, d15f_max_mm| {
+            let mut row = walked(name, true, Some((verdict, Verdict::None, true)));
+            row.rules.if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
+            row.rules.breaks_if_dispersive = d15f_max_mm < 0.725;
+            row
+        };
+        let sand = walked("D", true, Some((Verdict::None, Verdict::None, true)));
+        let rows = [
+            of("A", Verdict::None, 0.5),
+            of("B", Verdict::None, 0.9),
+            of("C", Verdict::Some, 0.5),
+            sand.clone(),
+        ];
+        let words = dispersive_samples(&rows.each_ref(), SizeUnit::Mm).unwrap();
+        assert!(words.contains(" 3 samples ") && words.contains("A (D15F at most 0.500 mm)"), "{words}");
+        assert!(!words.contains("B ("), "{words}");
+        assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
+        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows.to_vec());
+        let last = walks(&batch, "F", SizeUnit::Mm).pop().unwrap();
+        assert!(last.starts_with("not known whether dispersive: 3 samples"), "{last}");
+    }
+}

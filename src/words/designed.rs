@@ -383,7 +383,7 @@ mod tests {
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
-        let said = one.for_all_in_words();
+        let said = for_all(&one, SizeUnit::Mm);
         assert!(said.starts_with("A filter for the sample: D15F from 0.140 to 0.700 mm (the"), "{said}");
         let open = DesignedSample {
             path: "other".into(),
@@ -391,7 +391,7 @@ mod tests {
             d15f_min_at_most: true,
             ..core.clone()
         };
-        let said = DesignedSamples::new("s".into(), vec![core, open]).for_all_in_words();
+        let said = for_all(&DesignedSamples::new("s".into(), vec![core, open]), SizeUnit::Mm);
         assert!(
             said.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
             "{said}"

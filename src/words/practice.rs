@@ -163,10 +163,12 @@ fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::record::PracticeClass;
-    use crate::verdict::practice::record;
+    use crate::outcome::design::Specification;
+    use crate::outcome::record::{PracticeClass, RuleQuantity};
+    use crate::verdict::practice::{notes, record};
     use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
-    use crate::verdict::{PairOptions, PairRules};
+    use crate::verdict::{PairOptions, PairRules, SpecificationOptions};
+    use crate::words::{dispersive_limit, sentence, specification};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
         let one = |points| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
@@ -221,8 +223,10 @@ mod tests {
             let pair = PairRules::of_envelopes(&one(&base), &one(&filter(d15f)), PairOptions::default());
             let limit = pair.if_dispersive.unwrap();
             assert_eq!((limit.d15f_max_mm, limit.is_broken_by(d15f)), (0.5, breaks));
-            let words = Headline::MeetsUnlessDispersive.words();
-            assert_eq!(pair.practice.starts_with(words), breaks, "{}", pair.practice);
+            assert_eq!(pair.headline == Some(Headline::MeetsUnlessDispersive), breaks);
+            let line = practice_line(&pair.rules, pair.if_dispersive, Some(d15f), SizeUnit::Mm);
+            assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
+            assert_eq!(line.contains("if the base is dispersive, the limit is 0.500 mm"), breaks, "{line}");
         }
         assert_eq!(headline(&rules(&filter(0.61), &base, true), false), Some(Headline::DoesNotMeet));
     }
@@ -244,5 +248,91 @@ mod tests {
         assert_eq!(headline(&rules, false), Some(Headline::SievesMissing));
         assert_eq!(record(&rules, None).unwrap().d15f_mm, Some([0.3, 38.0]));
         assert!(practice_line(&rules, None, None, SizeUnit::Mm).contains("D15F lies between 0.3 and 38 mm"));
+    }
+
+    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    #[test]
+    fn where_tests_are_stricter_than_design_both_limits_are_said() {
+        for (base, d15f, limits) in
+            [(&CLAY, 0.178, ["0.200 mm", "0.166 mm"]), (&SILTY, 0.85, ["1.28 mm", "0.700 mm"])]
+        {
+            let rules = rules(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)], base, false);
+            let line = practice_line(&rules, None, Some(d15f), SizeUnit::Mm);
+            assert!(limits.iter().all(|limit| line.contains(limit)), "{line}");
+        }
+    }
+
+    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
+    const CLAY: [(f64, f64); 6] =
+        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
+    const SILTY: [(f64, f64); 6] =
+        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
+
+    /// The inches behind the last mm of a text, in mm; without inches there are none.
+    fn back_in_mm(behind: &str) -> Option<f64> {
+        let bracket = behind.strip_prefix(" (")?.split_once("\u{202f}in)")?.0;
+        bracket.rsplit(' ').next()?.parse::<f64>().ok().map(|inches| 25.4 * inches)
+    }
+
+    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
+    #[test]
+    fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
+        const UNIT: SizeUnit = SizeUnit::MmAndInches;
+        let soil = |points: &[(f64, f64)], by: f64| {
+            let points: Vec<(f64, f64)> =
+                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
+            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
+        };
+        let bases: [&[(f64, f64)]; 4] = [
+            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+            &[(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)],
+            &SILTY,
+            &CLAY,
+        ];
+        let (mut checked, mut missed) = (0, Vec::new());
+        for step in 0..60 {
+            let by = libm::pow(1.01, f64::from(step));
+            for base in bases {
+                let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
+                let of_band = [
+                    specification::band(&of, UNIT),
+                    specification::raised(&of, UNIT),
+                    specification::beside_limits(&of, UNIT),
+                    of.no_band.as_ref().map(|why| specification::no_band(why, UNIT)),
+                    specification::if_dispersive(&of, "again", UNIT),
+                ];
+                for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
+                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
+                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
+                    let mut said =
+                        vec![practice_line(&pair.rules, pair.if_dispersive, pair.filter.d15_mm, UNIT)];
+                    said.extend(notes(&pair.rules).iter().map(|note| sentence(note, UNIT)));
+                    said.extend(pair.if_dispersive.map(|limit| dispersive_limit(limit, UNIT)));
+                    said.extend(of_band.iter().flatten().cloned());
+                    for rule in pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F) {
+                        let [value, limit] = value_and_limit(rule, SizeUnit::Mm);
+                        let Some(limit) = limit.filter(|limit| value.as_ref() != Some(limit)) else {
+                            continue;
+                        };
+                        let mm: f64 = limit.trim_end_matches(" mm").parse().unwrap();
+                        for text in &said {
+                            for (at, found) in text.match_indices(&format!(" {limit}")) {
+                                checked += 1;
+                                let back = back_in_mm(&text[at + found.len()..]);
+                                let is_within = back.is_some_and(|back| match rule.at_least {
+                                    true => back >= mm * (1.0 - 1e-9),
+                                    false => back <= mm * (1.0 + 1e-9),
+                                });
+                                if !is_within {
+                                    missed.push(format!("{}: {text}", rule.id));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let first = &missed[..missed.len().min(6)];
+        assert!(checked > 1000 && missed.is_empty(), "{checked} {} {first:#?}", missed.len());
     }
 }

@@ -327,7 +327,18 @@ pub fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gradation::Gradation;
     use crate::outcome::design::specification::ENTERED_BY;
+    use crate::verdict::SpecificationOptions;
+
+    const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
+    const CLAY: [(f64, f64); 5] = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
+    const SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
+
+    fn of(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
+        let base = [("base".into(), Gradation::from_lines(points).unwrap())];
+        Specification::of("base", &base, SpecificationOptions { dispersive, ..Default::default() })
+    }
 
     #[test]
     fn a_minimum_is_rounded_up_and_a_maximum_down() {
@@ -341,5 +352,120 @@ mod tests {
         assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
         assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
         assert_eq!(of("minimum D15F", None, "mm"), None);
+    }
+
+    /// Of all lengths of all steps, over sizes of many digits.
+    #[test]
+    fn inches_of_a_step_lie_within_the_limit_beside_them() {
+        let mut checked = 0;
+        for step in 0..40 {
+            let by = libm::pow(1.01, f64::from(step));
+            for points in [&CORE[..], &CLAY, &SAND] {
+                let points: Vec<(f64, f64)> = points.iter().map(|(size, p)| (by * size, *p)).collect();
+                let of = of(&points, None);
+                for value in of.steps.iter().flat_map(|step| &step.values).filter(|value| value.unit == "mm")
+                {
+                    let (Some(at_least), Some(number)) = (value.role(), value.value) else { continue };
+                    let words = step_value(value, SizeUnit::MmAndInches).unwrap();
+                    let (mm, inches) = words.split_once(" mm (").unwrap();
+                    let (mm, inches) =
+                        (mm.parse::<f64>(), inches.trim_end_matches("\u{202f}in)").parse::<f64>());
+                    let (mm, back) = (mm.unwrap(), 25.4 * inches.unwrap());
+                    let order = if at_least { [back, mm, number] } else { [number, mm, back] };
+                    assert!(
+                        order.windows(2).all(|pair| pair[0] >= pair[1] * (1.0 - 1e-8)),
+                        "{value:?} {words}"
+                    );
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 500, "{checked}");
+    }
+
+    /// One band on every page: what is said first is what is drawn.
+    #[test]
+    fn the_band_that_is_said_is_the_one_that_is_drawn() {
+        for of in [of(&CORE, None), of(&SAND, None)] {
+            let sides = &of.steps[10];
+            let said = |name: &str| {
+                let value = sides.values.iter().find(|of| of.name == name).unwrap();
+                step_value(value, SizeUnit::Mm).unwrap()
+            };
+            let [least, greatest] = ["minimum D15F", "maximum D15F"].map(said);
+            let limits = format!("{} to {greatest}", least.trim_end_matches(" mm"));
+            assert!(band(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
+            assert!(beside_limits(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
+        }
+        let none = of(&[(0.4, 0.0), (0.5, 100.0)], None);
+        assert_eq!([band(&none, SizeUnit::Mm), beside_limits(&none, SizeUnit::Mm)], [None, None]);
+    }
+
+    /// A ratio of 7 is narrowed to 5, at either end; one of 2 is not.
+    #[test]
+    fn a_band_that_was_narrowed_is_said_with_both_sizes() {
+        let base = [("core".into(), Gradation::from_lines(&CORE).unwrap())];
+        let of_end = |finer| {
+            let options = SpecificationOptions { finer, ..Default::default() };
+            raised(&Specification::of("core", &base, options), SizeUnit::Mm).unwrap()
+        };
+        for (finer, sizes) in [(false, ["0.100 mm", "0.140 mm"]), (true, ["0.700 mm", "0.500 mm"])] {
+            let said = of_end(finer);
+            assert!(sizes.iter().all(|size| said.contains(size)), "{said}");
+        }
+        assert_eq!(raised(&of(&SAND, None), SizeUnit::Mm), None);
+    }
+
+    /// One size on the first sheet and in its step: that by which the table of D90F is entered.
+    #[test]
+    fn the_minimum_d10f_is_one_number() {
+        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        for of in [of(&till, None), of(&CORE, None)] {
+            let d10 = step_value(&of.steps[9].values[0], SizeUnit::Mm).unwrap();
+            assert!(still_to_set(&of, SizeUnit::Mm).unwrap().ends_with(&format!(" {d10}.")), "{d10}");
+        }
+        let none = of(&[(0.4, 0.0), (0.5, 100.0)], None);
+        assert_eq!(still_to_set(&none, SizeUnit::Mm), None);
+    }
+
+    /// A limit within what tests showed, one at its lower end, one below it, and those of dispersive soils.
+    #[test]
+    fn a_limit_without_a_margin_is_said_to_have_none() {
+        let said = |points: &[(f64, f64)], dispersive| without_margin(&of(points, dispersive), SizeUnit::Mm);
+        let has = |said: Option<String>, words: &str| said.is_some_and(|said| said.contains(words));
+        assert!(has(said(&CORE, None), "it is the lower end of the range"));
+        // 6.4 to 13.5 D85B, and a limit of 9 D85B.
+        assert!(has(said(&CLAY, None), "it lies in the range in which tests put"));
+        assert!(has(said(&CLAY, None), "0.320 to 0.675 mm"));
+        assert!(has(said(&CLAY, Some(true)), "give it for no erosion in tests"));
+        // Of a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
+        let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
+        assert!(has(said(&fine, Some(true)), "it is the boundary of no erosion in tests"));
+        assert_eq!(said(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
+        assert_eq!(said(&SAND, Some(true)), None);
+    }
+
+    /// 0.5 mm where a silt is dispersive; with 25 % fines no source has a limit, and that of other bases is
+    /// never called one.
+    #[test]
+    fn a_limit_of_dispersive_bases_that_no_source_gives_is_less_than_that_of_others() {
+        let silt = |fines| [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
+        let said = |fines, dispersive| if_dispersive(&of(&silt(fines), dispersive), "again", SizeUnit::Mm);
+        let known = said(45.0, None).unwrap();
+        assert!(known.contains("at most 0.500 mm") && known.contains("this band is not valid"), "{known}");
+        let open = said(25.0, None).unwrap();
+        assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
+        assert!(open.ends_with("have the base tested with the filter"), "{open}");
+        // Few fines, and what was said.
+        assert_eq!([said(10.0, None), said(45.0, Some(true)), said(45.0, Some(false))], [None, None, None]);
+    }
+
+    /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+    #[test]
+    fn a_base_that_is_too_fine_is_not_called_broad() {
+        let why =
+            |least_mm| no_band(&NoBand::NoneDrainsAndRetains { least_mm, most_mm: 0.0640001 }, SizeUnit::Mm);
+        assert!(why(0.1).contains("at least 0.100 mm to drain it and at most 0.0640 mm to retain it"));
+        assert!(!why(0.1).contains("less broad") && why(0.2).contains("less broad"));
     }
 }

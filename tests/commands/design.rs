@@ -110,11 +110,11 @@ fn a_base_that_was_not_checked_never_looks_reassuring() {
     done(&output);
     let out = root.path().join("voidwalk-design");
     let found = json(&out);
-    let findings = found["findings"].as_array().unwrap();
+    let findings = found["notes"].as_array().unwrap();
     let fines = findings.iter().find(|one| one["id"] == "cohesive_fines").unwrap();
     assert_eq!(fines["numbers"]["fines_percent"], 90.0);
     let page = fs::read_to_string(out.join("design.html")).unwrap();
-    assert!(!page.contains("class=\"verdict ") && page.contains("more below, under “Other findings”"));
+    assert!(!page.contains("class=\"verdict ") && page.contains("Other notes"));
 }
 
 #[test]

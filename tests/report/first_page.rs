@@ -9,7 +9,7 @@ use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::{PairOptions, PairRules};
 
-use super::folder::{Plan, finding};
+use super::folder::{Plan, note};
 use super::{made, words};
 
 #[test]
@@ -200,11 +200,11 @@ fn the_rules_that_decide_come_first() {
 #[test]
 fn notes_are_said_once() {
     let mut plan = Plan::usual();
-    plan.outcome.findings = (1..=10).map(|n| finding(&format!("Finding {n} of ten."))).collect();
+    plan.outcome.notes = (1..=10).map(|n| note(&format!("Note {n} of ten"))).collect();
     let text = words(&made(&plan).0);
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what}: {text}"));
     for n in 1..=10 {
-        let note = format!("Finding {n} of ten.");
+        let note = format!("Note {n} of ten: a table.");
         assert_eq!(text.matches(&note).count(), 1, "{note}");
         assert!(place(&note) > place("10 notes below.") && place(&note) < place("What the model found"));
     }
@@ -334,9 +334,7 @@ fn the_first_printed_sheet_is_complete() {
         plan.outcome.rules = pair.rules;
         let long = "The answer depends on the 12 % of the base that is finer than its finest sieve, 0.075 mm; the finest \
                     constriction is 0.05 mm. A hydrometer test would decide";
-        let made_up = (1..=findings).map(|n| format!("{long} ({n})."));
-        plan.outcome.findings =
-            made_up.chain(pair.warnings).take(findings).map(|said| finding(&said)).collect();
+        plan.outcome.notes = (1..=findings).map(|n| note(&format!("{long} ({n})"))).collect();
         let rows = |soil: &Gradation| soil.points().iter().map(|point| point.row()).collect();
         (plan.outcome.inputs.base.gradation, plan.outcome.inputs.filter.gradation) =
             (rows(base), rows(filter));

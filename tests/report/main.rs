@@ -11,7 +11,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleQuantity, RuleText, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, RuleNote, RuleQuantity, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 use voidwalk::store::format::OUTCOME;
 
@@ -115,10 +115,10 @@ fn every_class_has_its_words() {
                 reached.";
     assert!(words(&made(&plan).0).contains(rule));
     assert!(words(&made(&plan).0).contains("Inconclusive: the interval of the second run includes 7.5 %"));
-    let next = "more replicates may decide it";
+    let next = "The replicates do not separate the classes";
     assert!(!words(&made(&plan).0).contains(next), "they were added already");
     plan.outcome.stopping = None;
-    plan.outcome.findings = plan.outcome.found().iter().map(|finding| finding.record()).collect();
+    plan.outcome.notes = plan.outcome.notes_of_results();
     assert!(words(&made(&plan).0).contains(next));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
@@ -162,6 +162,7 @@ fn hostile_names_are_inert() {
     let mut plan = Plan::usual();
     plan.scene = format!("# </pre>{EVIL}\nseed = 1\n");
     let outcome = &mut plan.outcome;
+    outcome.notes = vec![folder::note(EVIL)];
     let (inputs, rule) = (&mut outcome.inputs, &mut outcome.rules[0]);
     for text in [
         &mut inputs.filter.name,
@@ -172,8 +173,6 @@ fn hostile_names_are_inert() {
         &mut outcome.engine,
         &mut rule.name,
         &mut rule.source,
-        &mut outcome.findings[0].sentence,
-        &mut outcome.left_out[0],
     ] {
         *text = EVIL.to_owned();
     }
@@ -192,7 +191,7 @@ fn hostile_names_are_inert() {
 fn without_a_scale_every_size_says_so() {
     let mut plan = Plan::usual();
     plan.outcome.inputs.scale_free = true;
-    plan.outcome.findings.clear();
+    plan.outcome.notes.clear();
     let (page, figures, _folder) = made(&plan);
     let text = words(&page);
     assert!(text.contains("Size / D0F (–)") && text.contains("296 D0F") && text.contains("largest (D0F)"));
@@ -215,7 +214,7 @@ fn one_replicate_has_no_interval_and_says_so() {
     let mut plan = Plan::usual();
     plan.outcome = folder::outcome(1);
     plan.outcome.sensitivity.clear();
-    plan.outcome.findings.clear();
+    plan.outcome.notes.clear();
     let text = words(&made(&plan).0);
     assert!(text.contains("One replicate: the scatter is unknown"));
     assert!(!text.contains("Notes") && !text.contains("notes below"));
@@ -383,11 +382,11 @@ fn a_rule_says_what_it_is_for_and_what_it_needs() {
     let mut plan = Plan::usual();
     plan.outcome.rules[0].value = None;
     plan.outcome.rules[0].met = None;
-    plan.outcome.rules[0].note = RuleText::Said("needs the filter's <sieve> curve".into());
+    plan.outcome.rules[0].needs = vec![RuleNote::NeedsCurveOfFilter];
     plan.outcome.rules[1].at_least = true;
     plan.outcome.rules[2].limit = None;
     let (page, ..) = made(&plan);
-    assert!(page.contains("needs the filter's &lt;sieve&gt; curve"));
+    assert!(page.contains("needs the filter's sieve curve"));
     let text = words(&page);
     for expected in ["For bases in general.", "no result", "≥ 7", "D15F/D95B = "] {
         assert!(text.contains(expected), "{expected}");

@@ -9,9 +9,10 @@ use voidwalk::Outcome;
 use voidwalk::campaign::{self as campaigns, CampaignOptions, CampaignPlan, CasePart};
 use voidwalk::case::{Case, RECORD};
 use voidwalk::run::machine::threads as pool;
-use voidwalk::run::{self as runs, CheckpointInterval, PrepareOptions, RunOptions, results};
+use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;
 use voidwalk::store::format;
+use voidwalk::verdict::ordered;
 
 use crate::problem::{failed, of_run, refused};
 use crate::tables::of_recorded;
@@ -160,7 +161,7 @@ pub fn run_in_memory<'py>(
     let started = SystemTime::now();
     let (outcome, recorded, texts) = at_work(py, progress, |callbacks| {
         let case = runs::prepare(scene, &options.prepare, &callbacks.run)?;
-        case.warnings().iter().for_each(|warning| (callbacks.run.warn)(warning));
+        (callbacks.run.on_event)(Event::Noted(&ordered(&[], case.notes())));
         let pool = pool(options.prepare.threads)?;
         let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
         let threads = pool.current_num_threads() as u64;

@@ -1,8 +1,9 @@
-//! What is found of boundaries: of thin filters, and of searches that end too soon.
+//! Notes on boundaries: of thin filters, and of searches that end too soon.
 
 use super::tests::{found, of_base, options, tiny};
 use super::*;
-use crate::outcome::design::DesignFinding;
+use crate::outcome::design::RowNote;
+use crate::outcome::record::Note;
 
 #[test]
 fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
@@ -13,10 +14,11 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
     let design = found(&DesignOptions { base: Some(base), thicknesses, ..options });
     let (thin, row) = (&design.boundaries[0], &design.boundaries[1]);
     assert!(thin.layers == 1 && thin.thickness_mm.unwrap() > 0.1, "{thin:?}");
-    assert!(thin.no_erosion_note.as_ref().unwrap().contains("a filter of 0.05 mm holds less"), "{thin:?}");
-    assert!(row.thickness_mm == Some(0.9) && row.no_erosion_note.is_none(), "{row:?}");
-    let thicker: Vec<_> =
-        design.findings.iter().filter(|found| found.finding.id == "layer_thicker").collect();
+    let is_thicker =
+        |note: &Note| matches!(note, Note::LayerThicker { thickness, .. } if thickness == "0.05 mm");
+    assert!(thin.no_erosion_notes.iter().any(is_thicker), "{thin:?}");
+    assert!(row.thickness_mm == Some(0.9) && row.no_erosion_notes.is_empty(), "{row:?}");
+    let thicker: Vec<_> = design.notes.iter().filter(|row| row.note.id() == "layer_thicker").collect();
     assert!(thicker.len() == 1 && thicker[0].row.as_deref() == Some("loose, 0.05 mm"), "{thicker:?}");
 }
 
@@ -30,22 +32,19 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
         found(&DesignOptions { densities, filter, bracket, ..options })
     };
     let least = |of: &Design| of.least_held().map(|(_, ratio)| ratio);
-    let sentence = |of: &Design, id: &str| {
-        let finding = of.findings.iter().find(|of| of.finding.id == id);
-        finding.map(|of| of.finding.sentence.clone()).unwrap_or_default()
-    };
+    let has = |of: &Design, id: &str| of.notes.iter().any(|row| row.note.id() == id);
     let wide = of("wide", [0.8, 30.0]);
     let end = |number: usize| wide.boundaries[number].networks.iter().filter_map(|of| of.no_erosion);
     let narrow = of("narrow", [0.8, 1.01 * end(0).fold(0.0, f64::max)]);
     assert!(narrow.boundaries[1].no_erosion.is_none(), "{:?}", narrow.boundaries[1]);
     assert!(least(&wide).is_some() && least(&narrow) == least(&wide));
-    assert_eq!(sentence(&narrow, "holds_everywhere"), "");
+    assert!(!has(&narrow, "holds_everywhere"));
     // Where even the loosest holds all, or the loosest none, that is said.
     let short = of("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
-    assert!(least(&short).is_some() && !sentence(&short, "holds_everywhere").is_empty());
+    assert!(least(&short).is_some() && has(&short, "holds_everywhere"));
     let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
     assert_eq!(least(&high), None);
-    assert!(sentence(&high, "erodes_everywhere").contains("searched (loosest guess)"), "{:?}", high.findings);
+    assert!(has(&high, "erodes_everywhere"), "{:?}", high.notes);
 }
 
 #[test]
@@ -54,7 +53,7 @@ fn a_real_thickness_is_compared_in_mm_alone() {
     let of = |name: &str, more: &[&str]| {
         let all = [&["network.nz=20", "filter.thickness_mm=1"], more].concat();
         let design = found(&tiny(&folder.path().join(name), &all));
-        let has = |id: &str| design.findings.iter().any(|found| found.finding.id == id);
+        let has = |id: &str| design.notes.iter().any(|row| row.note.id() == id);
         [has("thickness_without_unit"), has("layers_thicker")]
     };
     assert_eq!(of("no-size", &[]), [true, false]);
@@ -66,7 +65,7 @@ fn a_real_thickness_is_compared_in_mm_alone() {
         let plain = options(&folder.path().join(&name), &["no layers", &format!("filter.thickness_mm={mm}")]);
         let design =
             found(&DesignOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
-        let is_thicker = |found: &DesignFinding| found.finding.id == "layers_thicker";
-        assert!(!design.findings.iter().any(is_thicker), "{:?}", design.findings);
+        let is_thicker = |row: &RowNote| row.note.id() == "layers_thicker";
+        assert!(!design.notes.iter().any(is_thicker), "{:?}", design.notes);
     }
 }

@@ -31,12 +31,12 @@ from .records import (
     ComparedPair,
     Comparison as ComparisonRecord,
     Design as DesignRecord,
-    DesignFinding,
     DesignRow,
     PercolationStudy,
+    RowNote,
 )
 from ._boxes import box
-from ._result import Result, Row, WalkResult, page_of, read_csv
+from ._result import Result, Row, WalkResult, counted_notes, page_of, read_csv, sentences_of
 from ._scene import Scene, Settings, Stated
 from ._soil import Gradation
 from ._tables import Soil, changes, gradation, told, workplace
@@ -74,7 +74,8 @@ class Comparison:
     @property
     def cases(self) -> List[ComparedCase]:
         """The cases, in the order in which they were named, each a dict: name, verdict (the model's class),
-        headline (the answer of practice), first_lines, and in runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
+        headline and practice (the answer of practice), model, notes, and in runs the eroded mass
+        (:class:`voidwalk.records.ComparedCase`)."""
         return self.outcome["cases"]
 
     @property
@@ -153,9 +154,14 @@ class Design:
         return None if specification is None else specification["d15f_max_mm"]
 
     @property
-    def findings(self) -> List[DesignFinding]:
-        """What a reader must know of the model, as :attr:`Result.findings`, each with the row that it is of."""
-        return self.outcome["findings"]
+    def notes(self) -> List[RowNote]:
+        """What else to know of the model, as :attr:`Result.notes`: of a part alone each has its name as ``row``."""
+        return self.outcome.get("notes", [])
+
+    @property
+    def note_sentences(self) -> List[str]:
+        """The sentence of each of the notes, in their order."""
+        return sentences_of(self.notes)
 
     @property
     def boundaries(self) -> List[DesignRow]:
@@ -186,8 +192,7 @@ class Design:
         return page_of(self.folder)
 
     def __repr__(self) -> str:
-        count = len(self.findings)
-        return f"Design({self.outcome['base']['name']}; {count} {'finding' if count == 1 else 'findings'})"
+        return f"Design({self.outcome['base']['name']}; {counted_notes(self.notes)})"
 
     def _repr_html_(self) -> str:
         def ratio(row: DesignRow, name: Literal["no_erosion", "continuing"]) -> str:
@@ -195,9 +200,9 @@ class Design:
             return "" if boundary is None else f"{boundary['median']:.2f}"
 
         facts: Dict[str, str] = {}
-        for finding in self.findings:
-            name = ", ".join(filter(None, [finding["label"], finding.get("row")]))
-            facts[name] = " ".join(filter(None, [facts.get(name), finding["sentence"]]))
+        for note, words in zip(self.notes, self.note_sentences):
+            name = note.get("row") or "Notes"
+            facts[name] = f"{facts[name]} {words}" if name in facts else words
         heading = ("Density", "Thickness", "No erosion up to D15F/D85B", "Continuing erosion from D15F/D85B")
         rows = [
             (row["density"], row["thickness"], ratio(row, "no_erosion"), ratio(row, "continuing"))

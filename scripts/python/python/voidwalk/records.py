@@ -31,7 +31,7 @@ __all__ = [
     "DesignRow",
     "FilterRecord",
     "FilterSizes",
-    "Finding",
+    "FindingRecord",
     "GivenNetwork",
     "IfDispersive",
     "Infiltration",
@@ -127,14 +127,14 @@ Model = TypedDict(
 )
 
 
-class _Finding(TypedDict):
+class _FindingRecord(TypedDict):
     id: str
     about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
     label: str
     sentence: str
 
 
-class Finding(_Finding, total=False):
+class FindingRecord(_FindingRecord, total=False):
     """A finding: what it is about, and its sentence.
 
     Keys
@@ -1011,7 +1011,7 @@ class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
     model: Model
-    findings: List[Finding]
+    findings: List[FindingRecord]
     constrictions: ConstrictionsRecord
     seed: int
     n_base: int
@@ -1192,7 +1192,7 @@ class WalkOutcome(TypedDict):
     """
 
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    findings: List[Finding]
+    findings: List[FindingRecord]
     seed: int
     n_base: int
     n_base_eq2: Optional[int]
