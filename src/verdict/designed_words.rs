@@ -122,8 +122,8 @@ impl DesignedSamples {
         }
     }
 
-    /// Which samples govern, what sets their limits, which are open and which were not walked: sentences without
-    /// their ends; `again` is what to do where a sample is dispersive, as
+    /// Which samples govern, what sets their limits, which are open and which were not walked: sentences
+    /// without their ends; `again` is what to do where a sample is dispersive, as
     /// [`DESIGN_EACH_AGAIN`](super::DESIGN_EACH_AGAIN).
     pub fn in_words(&self, again: &str) -> Vec<String> {
         let mut said = vec![self.for_all_in_words()];
