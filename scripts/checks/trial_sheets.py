@@ -6,7 +6,7 @@
 Writes the soils of the trial as workbooks, CSV and AGS4, asks `voidwalk soil` and `voidwalk rules` for them, and compares what they say with
 sizes and limits that this script works out by itself (linear in percent over the logarithm of size; regrading, Sherard and Dunnigan, Foster and Fell).
 With `--walk` it also judges and designs: no page is green where practice says no, the first lines of stdout say what practice says, and no
-answer of `design` is beyond practice. Exit code 1 where a row is wrong. Python 3's standard library only.
+limit of `design` is beyond practice. Exit code 1 where a row is wrong. Python 3's standard library only.
 """
 
 import argparse

@@ -163,7 +163,8 @@ fn listed(text: &str) -> Vec<String> {
     text.split(',').map(str::trim).filter(|one| !one.is_empty()).map(str::to_owned).collect()
 }
 
-/// What the page shows of a design: the lines of practice and model, and its boundaries as they stand in `design.json`, without each network.
+/// The lines of practice and model of a design, and its boundaries as they stand in `design.json`, without
+/// each network.
 ///
 /// # Errors
 /// A number that is none.

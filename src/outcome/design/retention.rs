@@ -12,9 +12,9 @@ fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
 
 /// The limit of D15F that a rule sets for a base it was made for, in the unit of the rules.
 ///
-/// `d15f` is that of the filter that the rule judges: a limit of a ratio to a size of the base (Terzaghi) is as
-/// many times it as the limit is times the value. Which size that is, of the base as it is walked or as practice
-/// regrades it, the rule alone knows.
+/// `d15f` is that of the filter that the rule judges: a limit of a ratio to a size of the base (Terzaghi) is
+/// as many times it as the limit is times the value. Which size that is, of the base as it is walked or as
+/// practice regrades it, the rule alone knows.
 fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
     match rule.quantity {

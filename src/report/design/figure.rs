@@ -6,7 +6,8 @@ use crate::report::figures::{
 };
 use crate::report::shell::Drawn;
 
-/// The figure, of the row that holds least. Where none is known to hold, of the first that has a boundary or was walked at all.
+/// The figure, of the row that holds least. Where none is known to hold, of the first that has a boundary or
+/// was walked at all.
 pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     let is_of =
         |row: &DesignRow, walk: &&WalkRow| walk.density == row.searched() && walk.thickness == row.thickness;

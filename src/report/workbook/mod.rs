@@ -40,8 +40,8 @@ pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
     bytes(&folder.join(VERDICT), "voidwalk: verdict", &verdict::sheets(&RunFolder::read(folder)?))
 }
 
-/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. With a clock before
-/// 1970 there is none.
+/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. With a clock
+/// before 1970 there is none.
 ///
 /// # Errors
 /// What cannot be written.

@@ -226,7 +226,8 @@ fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[DesignRow]) -> Vec<Ro
     all
 }
 
-/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its curve.
+/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its
+/// curve.
 fn judged(
     row: &Row,
     (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
@@ -300,24 +301,19 @@ fn pairs(soil: &Gradation) -> Vec<[f64; 2]> {
 fn base(row: &Row, name: &str) -> BaseStated {
     let walked = &row.stated.gradation;
     let given = row.stated.regraded_from.as_ref().map_or(walked, |(given, _)| given);
-    let sized = row.d85_mm;
-    let is_regraded = row.d85_mm.is_some() && row.stated.regraded_from.is_some();
+    // Of a base without a size nothing in mm is known.
+    let cut = row.stated.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
         gradation: if row.d85_mm.is_some() { pairs(given) } else { Vec::new() },
-        regraded: if is_regraded { pairs(walked) } else { Vec::new() },
+        regraded: if cut.is_some() { pairs(walked) } else { Vec::new() },
         name: name.into(),
         cu: walked.cu(),
-        d15_mm: sized.and(given.d(15.0)),
-        d85_mm: sized,
+        d15_mm: row.d85_mm.and(given.d(15.0)),
+        d85_mm: row.d85_mm,
         d95_over_d85: row.base.d(95.0),
-        regraded_at_mm: row.stated.regraded_from.as_ref().filter(|_| sized.is_some()).map(|(_, at)| *at),
+        regraded_at_mm: cut.map(|(_, at)| *at),
         tail_mass_fraction: walked.pan_fraction(),
-        d85_as_sampled_mm: row
-            .stated
-            .regraded_from
-            .as_ref()
-            .filter(|_| sized.is_some())
-            .and_then(|(given, _)| given.d(85.0)),
+        d85_as_sampled_mm: cut.and_then(|(given, _)| given.d(85.0)),
     }
 }
 
