@@ -20,6 +20,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::verdict::batch::open_in_words;
 use crate::verdict::batch_counts::{counts_in_words, governs_drainage};
+use crate::verdict::left_out::NOT_COVERED;
 use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 
@@ -97,6 +98,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
         (leaves_out(&batch.model_leaves_out, &html! {
             p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
+            p { (NOT_COVERED) }
         }))
     } };
     let made = html! { p {

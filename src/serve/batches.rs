@@ -12,7 +12,7 @@ use crate::outcome::table::{Columns, Shown};
 use crate::outcome::with_inches;
 use crate::study::batch::BatchWalks;
 use crate::study::numbered;
-use crate::verdict::left_out::left_out_line;
+use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::{BatchRow, WalkedBatch, WalkedRow};
 
 /// What the page asks for.
@@ -123,7 +123,7 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
     let mut value = so_far(&batch.rows, batch.inches);
     value["filters"] = json!(batch.filters.iter().map(of_filter).collect::<Vec<_>>());
     value["notes"] = json!(batch.notes);
-    value["leaves_out"] = json!(left_out_line(&batch.model_leaves_out));
+    value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
 }
 
