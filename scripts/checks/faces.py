@@ -5,8 +5,8 @@
 
 NAMEs are pairs and scenes of tests/words/pairs.json; without any, ten of them: pairs that meet practice, that do not, that are
 not known, a till, a clay, a dispersive clay, a sheet of a laboratory, and a scene without two sheets. Networks are small, so
-that all take a minute; a page of a large network has the same words. A word is what stands between two spaces, lettering
-of the figure and cells of tables with it. --keep leaves the folders there, and --again draws the pages of such folders
+that all take a minute; a page of a large network has the same words. The cover is filled in. A word is what stands between
+two spaces, lettering of the figure and cells of tables with it. --keep leaves the folders there, and --again draws the pages of such folders
 anew, without stdout. Exit code 1 where a budget is exceeded. Needs Chromium and pdftotext, as look_at_report.sh does.
 """
 
@@ -31,12 +31,17 @@ TEN = [
     "sheet hydrometer.csv and C33 sand",
     "scene: particles",
 ]
+COVER = {
+    "project": "Main dam, zone 2B", "number": "D-2031", "purpose": "Chimney filter", "client": "Water Board", "author": "N. N.",
+    "checker": "M. M.", "revision": "A, issued for review",
+}
 LINES, STDOUT_WORDS, SHEET_WORDS, SHEETS = 12, 120, 400, 4
 
 
 def walked(binary: Path, folder: Path, pair: dict) -> str:
     """Walks a pair or a scene into `out` of the folder; what it prints."""
-    small = [word for setting in SMALL for word in ("--set", setting)] + ["--threads", "1", "--out", "out", "--overwrite"]
+    settings = SMALL + [f"about.{key}={json.dumps(text)}" for key, text in COVER.items()]
+    small = [word for setting in settings for word in ("--set", setting)] + ["--threads", "1", "--out", "out", "--overwrite"]
     if "scene" in pair:
         (folder / "scene.toml").write_text(pair["scene"])
         words = ["run", "scene.toml", *small]

@@ -18,6 +18,7 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
+use crate::words::left_out::NOT_COVERED;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 use crate::words::batch::{
     answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,
@@ -98,6 +99,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
         (leaves_out(&batch.model_leaves_out, &html! {
             p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
+            p { (NOT_COVERED) }
         }))
     } };
     let made = html! { p {

@@ -13,7 +13,7 @@ use crate::study::batch::BatchWalks;
 use crate::study::numbered;
 use crate::verdict::{BatchFilter, BatchRow, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, of_filter, walked_columns, walks};
-use crate::words::left_out::left_out_line;
+use crate::words::left_out::left_out_in_brief;
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -123,7 +123,7 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
     let mut value = so_far(&batch.rows, batch.inches);
     value["filters"] = json!(batch.filters.iter().map(lines).collect::<Vec<_>>());
     value["notes"] = json!(batch.notes);
-    value["leaves_out"] = json!(left_out_line(&batch.model_leaves_out));
+    value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
 }
 

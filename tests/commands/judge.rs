@@ -59,7 +59,7 @@ fn the_range_in_which_tests_eroded_stands_under_practice() {
         done(&call(&at, &[&words[..], &SMALL, more].concat()));
         (json(at.join("a/outcome.json")), fs::read_to_string(at.join("a/report.html")).unwrap())
     };
-    let said = "Tests of bases with such fines began to erode at a D15F of ";
+    let said = "In tests of such bases erosion began at D15F ";
     let (outcome, page) = judge(&[]);
     let number = |value: &Value| value.as_f64().unwrap();
     let range = &outcome["practice"]["range_of_tests_mm"];
