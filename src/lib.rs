@@ -20,7 +20,7 @@
 //! ```text
 //! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
 //! Scene -> Case -> run, campaign, study                                       the application
-//! words, report, serve, cli                                                          its faces
+//! words, report, serve, cli                                                   its faces
 //! ```
 //!
 //! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
@@ -52,6 +52,8 @@ pub mod outcome;
 
 pub mod verdict;
 
+pub mod words;
+
 pub mod scene;
 
 pub mod case;
@@ -61,8 +63,6 @@ pub mod run;
 pub mod campaign;
 
 pub mod study;
-
-pub mod words;
 
 #[cfg(feature = "report")]
 pub mod report;

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data flows; a room uses only those before it.
-const ORDER: [&str; 20] = [
+const ORDER: [&str; 21] = [
     "text",
     "stream",
     "store",
@@ -23,6 +23,7 @@ const ORDER: [&str; 20] = [
     "walk",
     "outcome",
     "verdict",
+    "words",
     "scene",
     "case",
     "run",

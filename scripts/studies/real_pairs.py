@@ -136,7 +136,7 @@ def summary(rows):
         none = [row for row in here if row["model"] == "no erosion"]
         first = Counter(row["first_finding"] for row in here if row["headline"] != MEETS)
         print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in here)} green;",
-              "first finding of the others:", first.most_common(4))
+              "first note of the others:", first.most_common(4))
     print("dispersion:", Counter((row["model"], row.get("dispersion", "")) for row in holds).most_common())
     print("origins:", dict(Counter(row["origin"] for row in done)))
     undecided = Counter(row["first_finding"] for row in done if row["model"] == "undecided")

@@ -18,12 +18,12 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::words::left_out::NOT_COVERED;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 use crate::words::batch::{
     answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,
 };
 use crate::words::capital;
+use crate::words::left_out::NOT_COVERED;
 
 const RECORD: &str = "batch.json";
 

@@ -78,8 +78,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::outcome::record::ModelLimit;
     use crate::network::{ExitRule, NetworkColumns};
+    use crate::outcome::record::ModelLimit;
     use crate::run::{Callbacks, walk_networks};
 
     /// Two constrictions that are passed both ways and one that is closed from the start, each counted once.

@@ -108,7 +108,8 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
             row.sample
         ),
         Some(why) => format!(
-            "No one filter is specified for {of}{within}, with D15F from {from} to {mm}: {}",
+            "No one filter is specified for {of}{within}, with D15F from {}: {}",
+            unit.limits(least, greatest),
             no_band(&why, unit).trim_end_matches('.')
         ),
         None => {
@@ -121,7 +122,8 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
                      no wider than {WIDEST_BAND} to 1)"
                 ),
             };
-            format!("A filter for {of}{within}: D15F from {begins} to {mm}{raised}")
+            let both = unit.limits(least_of_band(least, greatest), greatest);
+            format!("A filter for {of}{within}: D15F from {both}{raised}")
         }
     }
 }

@@ -51,7 +51,7 @@ pub const NOT_COVERED: &str = "Not covered by the rules: segregation by D90F and
 /// The limits of the model that matter most to a designer, in a line; the page lists all.
 pub fn left_out_line(limits: &[ModelLimit]) -> String {
     let mut names: Vec<&str> = Vec::new();
-    if limits.contains(&ModelLimit::Hydraulics) {
+    if limits.iter().any(|limit| [ModelLimit::Hydraulics, ModelLimit::HydraulicsElsewhere].contains(limit)) {
         names.push("hydraulics");
     }
     names.push("gradient");

@@ -156,18 +156,11 @@ fn the_base_is_walked_regraded_where_the_scene_says_so() {
     assert!(!warned(&regraded, "not_regraded"), "{regraded}");
     // A broad sand that practice leaves as it is: Cu 9.8.
     let broad = format!("base.sieve={}", sieve("broad.csv", "0.03,0\n0.1,20\n0.6,60\n4,100\n"));
-    assert!(
-        warned(&check(&["--set", &broad]), "broadly_graded"),
-        "{}",
-        check(&["--set", &broad])
-    );
+    assert!(warned(&check(&["--set", &broad]), "broadly_graded"), "{}", check(&["--set", &broad]));
     // What practice leaves as it is, is left and said; what has no unit is refused.
     let sand = format!("base.sieve={}", sieve("sand.csv", "0.1,0\n0.5,85\n1,100\n"));
     let left = check(&["--set", &sand, "--set", "base.regrade=practice"]);
-    assert!(
-        !warned(&left, "regrading_not_needed") && left["inputs"]["base"]["d100_mm"] == 1.0,
-        "{left}"
-    );
+    assert!(!warned(&left, "regrading_not_needed") && left["inputs"]["base"]["d100_mm"] == 1.0, "{left}");
     let stone = format!("base.sieve={}", sieve("stone.csv", "2,0\n4,60\n5.5,100\n"));
     let left = check(&["--set", &stone, "--set", "base.regrade=practice"]);
     assert!(warned(&left, "regrading_not_needed"), "{left}");

@@ -340,8 +340,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let limit = |name: &str| rule(name)["limit"].as_f64().unwrap();
     assert!((limit("Foster and Fell: no") - 2.2).abs() < 1e-9);
     assert!((limit("Sherard") - 1.42).abs() < 1e-9);
-    let fines =
-        value["notes"].as_array().unwrap().iter().find(|finding| finding["id"] == "cohesive_fines");
+    let fines = value["notes"].as_array().unwrap().iter().find(|finding| finding["id"] == "cohesive_fines");
     assert_eq!(fines.unwrap()["numbers"]["fines_percent"], 20.0);
     let stdout = String::from_utf8(output.stdout).unwrap();
     assert!(stdout.contains("Practice: does not meet"), "{stdout}");

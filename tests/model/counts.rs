@@ -3,7 +3,9 @@
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Network};
-use voidwalk::walk::{Engine, Isa, Passive, RunPlan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
+use voidwalk::walk::{
+    Engine, Isa, Passive, RunPlan, Shortcut, SizeClasses, State, Supply, Tally, Walk, WalkControl,
+};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
     let base = if cu == 1.0 { Gradation::single(d0) } else { Gradation::linear_from_d0(d0, cu) };

@@ -102,6 +102,7 @@ def test_a_specification_without_a_band_says_why() -> None:
     found = vw.specification(([0.3, 1.0], [50.0, 100.0]))
     assert found.band is None and found.limits == [] and found.note is None
     assert found.answer == f"No band. {found.no_band}" and found.set_by is None
+    assert found.outcome["no_band"]["id"] == "limit_not_known"
 
 
 def test_compare_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:

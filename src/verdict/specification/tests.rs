@@ -135,18 +135,6 @@ fn what_is_wrong_with_the_base_itself_is_among_the_notes() {
     assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
 }
 
-/// Flat between 0.6 and 5 mm, where 6 to 10 % lie within a factor of 4; regraded on 0.6 mm it has more fines.
-#[test]
-fn a_flat_base_has_the_limit_of_its_other_reading() {
-    let of = of(&[(0.002, 0.0), (0.075, 20.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
-    let other = of.notes.iter().find_map(|of| match of.note {
-        Note::FlatBaseLimit { sieve_mm, most_d15f_mm } => Some((sieve_mm, most_d15f_mm)),
-        _ => None,
-    });
-    let (sieve_mm, most_d15f_mm) = other.unwrap();
-    assert!(near(Some(sieve_mm), 0.6) && most_d15f_mm < of.d15f_max_mm.unwrap(), "{:?}", of.notes);
-}
-
 #[test]
 fn of_several_curves_the_strictest_limit_of_each_counts() {
     let curves: Vec<NamedCurve> = vec![
