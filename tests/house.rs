@@ -160,7 +160,7 @@ fn walk_and_report_know_what_they_may() {
     for source in sources() {
         let may: &[&str] = match room(&source.module) {
             "walk" => &["stream", "store", "gradation", "network", "walk"],
-            "report" => &["outcome", "verdict", "store", "text", "report"],
+            "report" => &["outcome", "verdict", "words", "store", "text", "report"],
             _ => continue,
         };
         for name in ORDER.iter().filter(|name| !may.contains(name)) {

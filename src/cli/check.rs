@@ -119,8 +119,9 @@ fn words(check: &Check) -> String {
     for part in &check.left_out {
         line("left out", left_out(part, size_unit(check.inputs.scale_free)));
     }
+    let unit = SizeUnit::of(check.inputs.scale_free, false);
     for note in &check.notes {
-        line("note", sentence(note, SizeUnit::Mm));
+        line("note", sentence(note, unit));
     }
     let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
     line("shipped curves", names.join(", "));

@@ -11,7 +11,6 @@ use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::{ComparedCase, Comparison};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
@@ -95,7 +94,6 @@ fn words(comparison: &Comparison) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |said: String| {
-        let said = if comparison.inches { with_inches(&said) } else { said };
         let _ = writeln!(text, "{}", plain(&said));
     };
     for case in &comparison.cases {

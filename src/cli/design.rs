@@ -92,7 +92,7 @@ fn words(design: &Design) -> String {
         lines.extend(to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()))));
     }
     lines.push(format!("{}: {}", model.0, model.1));
-    lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
+    lines.extend(design.base.size().map(|base| format!("  {}", base.words_in(unit))));
     lines.extend(design.boundaries.iter().flat_map(|row| of_row(row, unit)));
     lines.extend(design.notes.iter().take(FOREMOST).map(|row| format!("- {}", row_note(row, unit))));
     if design.notes.len() > FOREMOST {

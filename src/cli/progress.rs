@@ -151,13 +151,13 @@ impl Display {
             Event::Studying(what) => {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
-            Event::Noted(notes) => {
+            Event::Noted { notes, unit } => {
                 notes
                     .iter()
-                    .for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, SizeUnit::Mm)))));
+                    .for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, *unit)))));
             }
             Event::VerdictStands(outcome) => {
-                for (name, words) in first_lines(outcome, SizeUnit::Mm) {
+                for (name, words) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
                     self.line(&format!("{name}: {}\n", plain(&words)));
                 }
             }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::{JudgedAnswer, accept};
-use super::print::{json, plain, shown, to_stdout};
+use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
 use crate::outcome::numbers::SizeUnit;
@@ -103,7 +103,7 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in first_lines(outcome, SizeUnit::Mm) {
+    for (name, said) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
         line(format!("{name}: {}", plain(&said)));
     }
     line(left_out_line(&outcome.model_leaves_out));
@@ -116,7 +116,10 @@ fn summary(run: &FinishedRun) -> String {
     }
     match labels.len() {
         0 => line(format!("report: {page}")),
-        _ => line(format!("report: {page}; {} notes: {}", outcome.notes.len(), labels.join(", "))),
+        _ => {
+            let notes = counted(outcome.notes.len() as u64, "note", "notes");
+            line(format!("report: {page}; {notes}: {}", labels.join(", ")));
+        }
     }
     text
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::SizeUnit;
+use super::numbers::{SizeUnit, significant};
 use super::record::{BaseRecord, Inputs};
 use crate::gradation::us_sieve;
 
@@ -23,7 +23,8 @@ pub struct BaseSize {
 impl BaseSize {
     /// Whether it is regraded, and on what.
     pub fn grading(&self) -> String {
-        self.regraded_at_mm.map_or_else(|| "as sampled".into(), |at| format!("regraded on {} mm", three(at)))
+        self.regraded_at_mm
+            .map_or_else(|| "as sampled".into(), |at| format!("regraded on {} mm", significant(at)))
     }
 
     /// All of it, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`.
@@ -33,13 +34,13 @@ impl BaseSize {
 
     /// The same, with inches behind each D85 and the name of a US sieve where those are shown.
     pub fn words_in(&self, unit: SizeUnit) -> String {
-        let size = |mm: f64| format!("{} mm{}", three(mm), unit.beside(mm));
+        let size = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
         let before = self.as_sampled_mm.filter(|_| self.regraded_at_mm.is_some());
         let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
         let comma = if self.regraded_at_mm.is_some() { "," } else { "" };
         let sieve = self.regraded_at_mm.filter(|_| unit == SizeUnit::MmAndInches);
         let grading = match sieve.and_then(|at| Some((us_sieve(at)?, at))) {
-            Some((name, at)) => format!("regraded on {name}, {} mm", three(at)),
+            Some((name, at)) => format!("regraded on {name}, {} mm", significant(at)),
             None => self.grading(),
         };
         format!("D85B {}{comma} {grading}{before}", size(self.d85_mm))
@@ -62,15 +63,6 @@ impl Inputs {
     pub fn base_size(&self) -> Option<BaseSize> {
         (!self.scale_free).then(|| self.base.size())
     }
-}
-
-/// Three digits that mean something.
-pub fn three(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.to_string();
-    }
-    let decimals = (2 - value.abs().log10().floor() as i32).clamp(0, 6);
-    format!("{value:.*}", decimals as usize)
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ mod schema {
         /// Its name.
         id: String,
         /// Its numbers; missing without any.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
         numbers: serde_json::Value,
     }
 }

@@ -20,8 +20,7 @@
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit; [`with_inches`] has inches
-//!   behind lengths.
+//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit.
 
 pub(crate) mod apart;
 mod applied;
@@ -35,7 +34,6 @@ pub mod design;
 pub mod digest;
 pub(crate) mod digits;
 pub(crate) mod early_stop;
-mod inches;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
@@ -65,8 +63,6 @@ pub mod verdict;
 
 pub use crate::gradation::CurvePoint;
 pub use base_size::BaseSize;
-pub(crate) use base_size::three;
-pub use inches::{page_with_inches, with_inches};
 pub use infiltration::infiltration;
 pub(crate) use least_squares::{Straight, log_log_slope};
 pub(crate) use metrics::eroded_mass_fraction;

@@ -30,7 +30,7 @@ macro_rules! notes {
                 /// Its name.
                 id: RuleNoteId,
                 /// Its number, or its numbers in order; missing without any.
-                #[serde(default)]
+                #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
                 numbers: serde_json::Value,
             }
 

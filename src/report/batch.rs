@@ -110,7 +110,6 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
         .model()
         .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
-        .inches(batch.inches)
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
@@ -122,9 +121,9 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 
 /// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
-    let walks = walks(batch, &filter.name, SizeUnit::Mm);
+    let walks = walks(batch, &filter.name, SizeUnit::of(false, batch.inches));
     let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
-    let besides = governs_drainage(&rules, &filter.name, SizeUnit::Mm).into_iter();
+    let besides = governs_drainage(&rules, &filter.name, SizeUnit::of(false, batch.inches)).into_iter();
     let besides = besides.chain(open_limits(&rules, &filter.name));
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "

@@ -140,7 +140,6 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
             &program(&comparison.version, comparison.commit.as_deref()),
             Some(comparison.seed),
         )
-        .inches(comparison.inches)
         .words(&first)
         .contents()
         .section("Cases", &table)
@@ -164,11 +163,15 @@ fn lead(comparison: &Comparison) -> String {
 
 /// The lines that every face begins with, of each case.
 fn answers(comparison: &Comparison) -> Markup {
+    let lines = |case: &ComparedCase| {
+        let unit = SizeUnit::of(case.scale_free, comparison.inches);
+        lines_of(case.headline, case.practice.as_ref(), &case.model, unit)
+    };
     html! { @for case in &comparison.cases {
         section.verdict.(colour(case.headline)) {
             p.practice { b { bdi { (name(&case.name)) } } }
             ul {
-                @for (name, words) in lines_of(case.headline, case.practice.as_ref(), &case.model, SizeUnit::of(case.scale_free, comparison.inches)) { li { b { (name) } ": " (unbroken(&words)) "." } }
+                @for (name, words) in lines(case) { li { b { (name) } ": " (unbroken(&words)) "." } }
             }
         }
     } }

@@ -47,7 +47,9 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
                 Some(value) => div class=[SIGNED.contains(name).then_some("signed")] {
                     dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
                 },
-                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" { dt { (name) } " " dd {} },
+                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" {
+                    dt { (name) } " " dd {}
+                },
             } } }
             (signatures(of))
         }

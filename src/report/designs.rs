@@ -75,7 +75,6 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         &program(&all.version, all.commit.as_deref()),
         all.walks.as_ref().map(|of| of.seed),
     )
-    .inches(all.inches)
     .words(&first)
     .contents()
     .words(&html! { h2 { "Figures" } })

@@ -28,9 +28,9 @@
 //! replaced.
 //!
 //! # Order
-//! An engineer reads the answer first, the gradations and the rules that decide, on one sheet; then notes, what
-//! the model found and leaves out, all rules. Figures and tables of research stay on the screen; paper ends with
-//! the gradations in numbers, the sources, and how to run it again.
+//! An engineer reads the answer first, the gradations and the rules that decide, on one sheet; then notes,
+//! what the model found and leaves out, all rules. Figures and tables of research stay on the screen; paper
+//! ends with the gradations in numbers, the sources, and how to run it again.
 
 mod appendix;
 mod batch;

@@ -272,8 +272,9 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                 @if let Some(packing) = packing {
                     (fact("Packing", format!(
                         "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
-                        whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
-                        significant(packing.after.coordination), packing.seed)))
+                        whole(packing.grains), significant(packing.friction),
+                        significant(packing.pressure_kpa), significant(packing.after.coordination),
+                        packing.seed)))
                 }
                 (fact("Void ratio", void_ratio(outcome)))
                 (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
@@ -293,7 +294,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
                     [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
                 @if let Some(before) = &base.as_sampled {
                     (fact("D85, D95, D100 as sampled (not walked)",
-                        [before.d85_mm, before.d95_mm, Some(before.d100_mm)].map(|d| known(d, mm)).join(", ")))
+                        [before.d85_mm, before.d95_mm, Some(before.d100_mm)]
+                            .map(|d| known(d, mm)).join(", ")))
                 }
                 @if base.tail_mass_fraction > 0.0 {
                     (fact("Pan fraction (finer than the finest sieve)",
@@ -336,14 +338,17 @@ fn provenance(folder: &RunFolder) -> Markup {
         } }
         div.screen {
             @if !outcome.left_out.is_empty() {
-                table.facts { tbody { (fact("Not needed here", left_out_words(&outcome.left_out, size_unit(outcome.inputs.scale_free)))) } }
+                table.facts { tbody {
+                    (fact("Not needed here",
+                        left_out_words(&outcome.left_out, size_unit(outcome.inputs.scale_free))))
+                } }
             }
             details {
                 summary { "Settings (scene.toml)" }
                 pre { (scene) }
                 @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-                p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
-                           in manifest.json." }
+                p.small { "The same settings give the same results, bit for bit. Machine, command and times \
+                           are in manifest.json." }
             }
         }
     }

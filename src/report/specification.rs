@@ -51,7 +51,6 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let title = "Specification of a filter";
     let page = Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
-        .inches(of.inches)
         .words(&html! { section.sheet { (answer(&of)) } })
         .figures(soils.figure(of.band.as_ref(), band(&of, SizeUnit::of(false, of.inches)).as_deref()));
     with_details(page, &of)
@@ -118,7 +117,8 @@ fn cautions(of: &Specification) -> Markup {
 
 /// What the specification lacks; nothing without a band.
 fn still_to_set(of: &Specification) -> Markup {
-    html! { @if let Some(said) = still_to_set_line(of, SizeUnit::of(false, of.inches)) { p.caution { b { (unbroken(&said)) } } } }
+    let said = still_to_set_line(of, SizeUnit::of(false, of.inches));
+    html! { @if let Some(said) = said { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
@@ -166,7 +166,8 @@ fn steps(of: &Specification) -> Markup {
 
 fn limits(of: &Specification) -> Markup {
     if of.band.is_none() {
-        return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, SizeUnit::of(false, of.inches)))) } } };
+        let unit = SizeUnit::of(false, of.inches);
+        return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, unit))) } } };
     }
     html! {
         (Table::of(&of.limits)

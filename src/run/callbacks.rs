@@ -7,6 +7,7 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{Note, Outcome};
 use crate::packing::CompressionProgress;
 use crate::store::Folder;
@@ -28,7 +29,12 @@ pub enum Event<'a> {
     /// The packing has ended, well or not.
     PackingEnded,
     /// What is to be known of a case before its walk.
-    Noted(&'a [Note]),
+    Noted {
+        /// The most important first.
+        notes: &'a [Note],
+        /// In what the case gives sizes.
+        unit: SizeUnit,
+    },
     /// Replicates are walked: so many runs, as far as is known.
     WalkBegun {
         /// How many.

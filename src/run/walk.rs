@@ -20,6 +20,7 @@ use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
@@ -196,7 +197,8 @@ fn walk_here(
     };
     let at = wanted.unwrap_or(Path::new("."));
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    (callbacks.on_event)(Event::Noted(&ordered(&[], case.notes())));
+    let unit = SizeUnit::of(case.is_scale_free(), false);
+    (callbacks.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
     if resumed {

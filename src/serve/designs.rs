@@ -14,8 +14,8 @@ use crate::study::design::{DesignOptions, ThicknessList};
 use crate::words::design::design_lines;
 use crate::words::left_out::model_limit;
 use crate::words::products::products;
-use crate::words::row_note;
 use crate::words::specification::{DESIGN_AGAIN, if_dispersive, without_margin};
+use crate::words::{row_note, sentence};
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -169,6 +169,7 @@ fn listed(text: &str) -> Vec<String> {
 /// # Errors
 /// A number that is none.
 pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
+    let unit = SizeUnit::of(false, design.inches);
     let mut boundaries = serde_json::to_value(&design.boundaries)?;
     let rows = boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut);
     for (row, of) in rows.zip(&design.boundaries) {
@@ -176,15 +177,18 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         for (name, shown) in ["no_erosion", "continuing"].into_iter().zip(of.shown()) {
             row.insert(name.into(), serde_json::to_value(shown)?);
         }
+        for (name, notes) in [("no_erosion", &of.no_erosion_notes), ("continuing", &of.continuing_notes)] {
+            let words: Vec<String> = notes.iter().map(|note| sentence(note, unit)).collect();
+            row.insert(format!("{name}_notes"), words.into());
+        }
     }
     let practice = design.specification.as_ref();
-    let unit = SizeUnit::of(false, design.inches);
     let words = |notes: &[RowNote]| notes.iter().map(|row| row_note(row, unit)).collect::<Vec<_>>();
     Ok(json!({
         "lines": design_lines(design, unit),
         "beside": practice.map(|of| [without_margin(of, unit), if_dispersive(of, DESIGN_AGAIN, unit)]),
         "base": design.base.name,
-        "d85b": design.base.size().map(|base| base.words()),
+        "d85b": design.base.size().map(|base| base.words_in(unit)),
         "filter": design.filter,
         "boundaries": boundaries,
         "share_of_networks": share_of_networks(design.replicates),
@@ -192,7 +196,8 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "cautions": practice.map(|of| words(&of.notes)),
         "warnings": words(&design.notes),
         "products": practice.map(products),
-        "model_leaves_out": design.model_leaves_out.iter().map(|limit| model_limit(*limit)).collect::<Vec<_>>(),
+        "model_leaves_out":
+            design.model_leaves_out.iter().map(|limit| model_limit(*limit)).collect::<Vec<_>>(),
     }))
 }
 

@@ -74,7 +74,7 @@ impl Live {
                 self.lines.push(line.to_owned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
-            Event::Noted(notes) => notes.iter().for_each(|note| self.warn(&sentence(note, SizeUnit::Mm))),
+            Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, *unit))),
             Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
         }
     }

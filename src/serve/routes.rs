@@ -210,8 +210,8 @@ impl Routes {
                 let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
                 let refusal =
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
-                let notes: Vec<String> =
-                    check.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect();
+                let unit = SizeUnit::of(check.inputs.scale_free, false);
+                let notes: Vec<String> = check.notes.iter().map(|note| sentence(note, unit)).collect();
                 let mut value = serde_json::to_value(&check).map_err(wrong)?;
                 value["notes"] = json!(notes);
                 value["refusal"] = json!(refusal);

@@ -7,7 +7,7 @@ use crate::verdict::PairRules;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::result_of;
 use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
-use crate::words::rule_note::regrade_reason;
+use crate::words::rule_note::{regrade_reason, rule_notes};
 use crate::words::{practice_line, sentence};
 
 /// Every rule with its words: the page shows value and limit as every sheet does, and works nothing out.
@@ -30,10 +30,13 @@ pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
     let begins: Vec<_> = rules.iter().map(limit_begins).collect();
     let ends: Vec<_> = rules.iter().map(limit_ends).collect();
     let values: Vec<_> = rules.iter().map(value_begins).collect();
+    let words: Vec<_> =
+        rules.iter().map(|rule| rule_notes(&[&rule.notes[..], &rule.needs].concat(), SizeUnit::Mm)).collect();
     let mut value = serde_json::to_value(&pair)?;
     value["listed"] = json!(names);
     value["value_begins"] = json!(values);
     value["shown"] = json!(shown);
+    value["rule_words"] = json!(words);
     value["results"] = json!(results);
     value["limit_begins"] = json!(begins);
     value["limit_ends"] = json!(ends);

@@ -1,9 +1,9 @@
 //! Tables that can hardly be a base and its filter: exchanged, or in another unit.
 
 use crate::gradation::Gradation;
+use crate::outcome::numbers::significant;
 use crate::outcome::record::Note;
 use crate::outcome::rules::{BaseSoil, NamedCurve};
-use crate::outcome::three;
 
 /// Two tables that can hardly be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,7 +93,8 @@ impl Mistake {
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
-            let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", three(at)));
+            let how =
+                regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", significant(at)));
             let sentence = format!(
                 "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
                  the two files exchanged? Or its sizes micrometres under a header in mm?",

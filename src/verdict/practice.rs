@@ -18,8 +18,8 @@ pub fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
     }
 }
 
-/// Notes on rules of stability, drainage and placing that are not kept. Rules of retention stand in the line of
-/// practice.
+/// Notes on rules of stability, drainage and placing that are not kept. Rules of retention stand in the line
+/// of practice.
 pub fn notes(rules: &[AppliedRule]) -> Vec<Note> {
     let [unstable, undrained, placing] =
         [RuleRole::Stability, RuleRole::Drainage, RuleRole::Placing].map(|role| broken(rules, role));

@@ -129,7 +129,8 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
 }
 
 /// Samples that govern, whose limits they have, those that are open and those that were not walked: sentences
-/// without their ends; `again` is what to do where a sample is dispersive, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
+/// without their ends; `again` is what to do where a sample is dispersive, as
+/// [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut said = vec![for_all(all, unit)];
     for (at, row) in all.governing().into_iter().enumerate() {

@@ -2,7 +2,8 @@
 //!
 //! - [`first_lines()`] are the lines of practice and model that every face begins with.
 //! - [`sentence()`] fills a note's sentence with its numbers, [`setting()`] says which setting changes it.
-//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: what an answer leaves out.
+//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: what an answer
+//!   leaves out.
 
 mod answer;
 pub mod batch;

@@ -42,8 +42,8 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", unit.limits(least, most)))
 }
 
-/// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains it,
-/// in a sentence without its end; `None` where it does neither.
+/// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains
+/// it, in a sentence without its end; `None` where it does neither.
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
@@ -62,8 +62,8 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     ))
 }
 
-/// What a specification lacks that no text with its numbers could be read for: the maximum D90F, which keeps a
-/// filter from segregating. `None` without a band.
+/// What a specification lacks that no text with its numbers could be read for: the maximum D90F, which keeps
+/// a filter from segregating. `None` without a band.
 pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let least = specification.band.as_ref().map(SizeBand::least_d10_mm)?;
     Some(format!(
@@ -75,12 +75,13 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
     ))
 }
 
-/// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band or have
-/// a gap. `None` without a band.
+/// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band or
+/// have a gap. `None` without a band.
 pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     Some(format!(
-        "The limits alone are not enough: D15F of each delivery must lie within {}, its Cu between {LEAST_CU} \
+        "The limits alone are not enough: D15F of each delivery must lie within {}, its Cu between \
+         {LEAST_CU} \
          and {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
         unit.limits(least, most)
     ))
@@ -107,7 +108,8 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
                 _ => "lies in",
             };
             format!(
-                "it {place} the range in which tests put the boundary of no erosion ({}; Fell et al., Table 9.2)",
+                "it {place} the range in which tests put the boundary of no erosion ({}; Fell et al., Table \
+                 9.2)",
                 unit.range_of_tests(low, high)
             )
         }
@@ -115,8 +117,8 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
     Some(format!("This limit has no margin: {why}"))
 }
 
-/// The maximum D15F if the base is dispersive, and what to do, as [`DESIGN_AGAIN`]: sentences, the last without
-/// its end; `None` where all holds for such a base too, or somebody has said whether it is one.
+/// The maximum D15F if the base is dispersive, and what to do, as [`DESIGN_AGAIN`]: sentences, the last
+/// without its end; `None` where all holds for such a base too, or somebody has said whether it is one.
 pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
     let most = specification.d15f_max_mm.unwrap_or(f64::INFINITY);
     let limit =
@@ -145,7 +147,8 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
             unit.limit(*most_mm, "mm", false)
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
-            "No filter both drains and retains this base: D15F must be at least {} to drain it and at most {} \
+            "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
+             {} \
              to retain it. {}",
             unit.limit(*least_mm, "mm", true),
             unit.limit(*most_mm, "mm", false),
@@ -210,7 +213,8 @@ pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
              that is straight on the form and has a Cu of {MOST_CU}."
         ),
         StepName::LimitEnds => format!(
-            "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the minimum D5F. These fines \
+            "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the minimum D5F. These \
+             fines \
              must not be plastic."
         ),
         StepName::KeepFromSegregating => "Still to be set: no text with its numbers could be read. The \
@@ -276,7 +280,8 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
     };
     let found = if within < GAP_PERCENT { "A gap" } else { "No gap" };
     format!(
-        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {} to \
+        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {} \
+         to \
          {} mm{}, and below {GAP_PERCENT} % counts as a gap. {EYE}",
         significant(within),
         significant(from_mm),

@@ -1,5 +1,6 @@
 //! Erosion against D15F in the model: what every network eroded, and the three zones.
 
+use super::words::size_unit;
 use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, drawn_of_networks};
 use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Line, ORANGE, PURPLE, Rule, VERMILLION,
@@ -39,7 +40,8 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     zones(&mut figure, row, d85, ends);
     figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
-    let of_base = design.base.size().map_or(String::new(), |base| format!(" {}.", base.words()));
+    let of_base =
+        design.base.size().map_or(String::new(), |base| format!(" {}.", base.words_in(size_unit(design))));
     let blend = match design.replicates {
         1 => String::new(),
         networks => format!(" The colours blend over the {} of the networks.", drawn_of_networks(networks)),

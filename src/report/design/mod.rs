@@ -65,7 +65,6 @@ pub fn write_design(folder: &Path) -> Result<Written, ReportError> {
     let page = Sections::new(title, title, &names)
         .model()
         .cover(&design.cover, &program(&design.version, design.commit.as_deref()), Some(design.seed))
-        .inches(design.inches)
         .words(&sheet)
         .figures(drawn)
         .contents();
@@ -113,10 +112,11 @@ fn others(rest: &[String]) -> Markup {
 
 /// The line of the model, and the notes that matter most.
 fn model(design: &Design, foremost: &[String], more: usize) -> Markup {
+    let said = unbroken(&design_model(design, size_unit(design)));
     html! {
         section.verdict {
-            p.practice { b { "Model (research)" } ": " (unbroken(&design_model(design, size_unit(design)))) "." }
-            @if let Some(base) = design.base.size() { p { (base.words()) "." } }
+            p.practice { b { "Model (research)" } ": " (said) "." }
+            @if let Some(base) = design.base.size() { p { (base.words_in(size_unit(design))) "." } }
             @if !foremost.is_empty() { ul { @for said in foremost { li { (unbroken(said)) } } } }
             @if more > 0 { p.small { "and " (more) " more below, under “Other notes”" } }
         }

@@ -14,7 +14,8 @@ use crate::words::sentence;
 
 /// The boundaries of the model, a row a density and thickness.
 pub(super) fn boundaries(design: &Design) -> Markup {
-    let of_base = design.base.size().map_or(String::new(), |base| format!(" ({})", base.words()));
+    let of_base =
+        design.base.size().map_or(String::new(), |base| format!(" ({})", base.words_in(size_unit(design))));
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(design);
     let limit = |mm: f64| unit.limit(mm, "mm", false);
@@ -109,7 +110,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
-            @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
+            @if let Some(base) = design.base.size() { (fact("D85B", base.words_in(size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))

@@ -4,7 +4,6 @@ use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradat
 use crate::outcome::design::RowNote;
 use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
-use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::{AppliedRule, IfDispersive, Note, RuleNote};
 use crate::outcome::rules::{
     BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInputs, apply, sieved_limit,
@@ -85,30 +84,19 @@ impl ReadCurve {
         let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
         let unstable = unstable.map(|of| Note::UnstableBase { index: of.value, finer_percent: of.percent });
         let broad = self.of.regraded_at_mm.and_then(|_| broad_base(&self.base));
-        unstable.into_iter().chain(broad).chain(self.flat().into_iter().flatten()).collect()
+        unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
 
-    /// A gap of the base, or a flat part that may be one, with the limit of the other reading; not of what practice
-    /// cuts off.
-    fn flat(&self) -> Option<Vec<Note>> {
+    /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
+    fn flat(&self) -> Option<Note> {
         let cut = self.of.regraded_at_mm.unwrap_or(f64::INFINITY);
         let flat = self.flattest.filter(|flat| flat.within < FLAT_PERCENT && flat.from_mm <= cut)?;
         let (from_mm, to_mm, within_percent) = (flat.from_mm, 4.0 * flat.from_mm, flat.within);
-        if within_percent < GAP_PERCENT {
-            return Some(vec![Note::GapOfBase { within_percent, from_mm, to_mm }]);
-        }
-        let is_other =
-            |limit: &f64| self.of.d15f_max_mm.is_none_or(|most| rounded_down(most) != rounded_down(*limit));
-        let limit = self.greatest_regraded_on(from_mm).filter(is_other);
-        let limit = limit.map(|most_d15f_mm| Note::FlatBaseLimit { sieve_mm: from_mm, most_d15f_mm });
-        Some([Note::FlatBase { from_mm, to_mm, within_percent }].into_iter().chain(limit).collect())
-    }
-
-    /// The maximum D15F (mm) by practice of the part that passes an opening (mm); `None` where nothing of
-    /// known size does, or its limit is not known.
-    fn greatest_regraded_on(&self, opening_mm: f64) -> Option<f64> {
-        let part = (self.of.curve.clone(), self.base.passing(opening_mm)?);
-        Self::of(&part, self.dispersive).of.d15f_max_mm
+        Some(if within_percent < GAP_PERCENT {
+            Note::GapOfBase { within_percent, from_mm, to_mm }
+        } else {
+            Note::FlatBase { from_mm, to_mm, within_percent }
+        })
     }
 
     pub fn greatest(&self) -> f64 {

@@ -284,6 +284,11 @@ class Result(_Walked):
         ``"undecided"``."""
         return self.outcome["model"]
 
+    @property
+    def note_sentences(self) -> List[str]:
+        """The sentence of each of the notes, in their order."""
+        return sentences_of(self.notes, self.outcome["inputs"]["scale_free"])
+
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
         if self.folder is None:
             return super().report(path)
@@ -354,9 +359,9 @@ class WalkResult(_Walked):
         return _voidwalk.walk_brief(json.dumps(self.outcome))
 
 
-def sentences_of(notes: Sequence[Union[Note, RowNote]]) -> List[str]:
-    """The sentence of each note."""
-    return _voidwalk.note_sentences(json.dumps(notes))
+def sentences_of(notes: Sequence[Union[Note, RowNote]], scale_free: bool = False) -> List[str]:
+    """The sentence of each note; sizes are in mm, or multiples of D0F."""
+    return _voidwalk.note_sentences(json.dumps(notes), scale_free)
 
 
 def counted_notes(notes: Sequence[object]) -> str:

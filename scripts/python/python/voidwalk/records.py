@@ -27,17 +27,16 @@ __all__ = [
     "CurveEnd",
     "CurveRange",
     "Design",
-    "DesignFinding",
     "DesignRow",
     "FilterRecord",
     "FilterSizes",
-    "FindingRecord",
     "GivenNetwork",
     "IfDispersive",
     "Infiltration",
     "InfiltrationSize",
     "InputFile",
     "Inputs",
+    "LeftOut",
     "Manifest",
     "ManyStarts",
     "Measure",
@@ -45,6 +44,9 @@ __all__ = [
     "NetworkBoundaries",
     "NetworkRecord",
     "NetworkSummary",
+    "NoBand",
+    "Note",
+    "NoteId",
     "OfThickness",
     "OneLength",
     "Outcome",
@@ -56,7 +58,12 @@ __all__ = [
     "ProductMargin",
     "Range",
     "Ratios",
+    "RegradeCause",
+    "RegradeReason",
     "Replicate",
+    "RowNote",
+    "RuleNote",
+    "RuleNoteId",
     "Run",
     "RunSummary",
     "SameShape",
@@ -72,6 +79,7 @@ __all__ = [
     "SpecificationStep",
     "SpecifiedCurve",
     "Statistic",
+    "StepNote",
     "StepValue",
     "Stopping",
     "WalkOutcome",
@@ -127,34 +135,119 @@ Model = TypedDict(
 )
 
 
-class _FindingRecord(TypedDict):
-    id: str
-    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
-    label: str
-    sentence: str
+#: The name of a note.
+NoteId = Literal[
+    "replicates_leave_open",
+    "second_run_missing",
+    "level_missed",
+    "loses_fines",
+    "too_fine_to_drain",
+    "fines_of_filter",
+    "may_segregate",
+    "dispersion_not_known",
+    "dispersive_limit_not_known",
+    "layer_thicker",
+    "unsteady",
+    "nothing_walked",
+    "erodes_everywhere",
+    "holds_everywhere",
+    "median_beyond",
+    "erodes_to_end",
+    "erodes_to",
+    "holds_to_end",
+    "not_walked",
+    "spared_end",
+    "pan_erodes",
+    "decided_below95",
+    "clogged_before",
+    "clogged",
+    "trapped_could_turn",
+    "second_run_erodes",
+    "coarse_base",
+    "cohesive_fines",
+    "fines_not_sieved",
+    "not_regraded",
+    "broadly_graded",
+    "dispersive_base",
+    "open_joint",
+    "thickness_without_unit",
+    "thickness_of_file",
+    "layers_thicker",
+    "copies_thicker",
+    "capped_base",
+    "few_particles",
+    "more_particles",
+    "low_mass_ratio",
+    "amount_unknown",
+    "amount_held",
+    "given_network",
+    "no_filter",
+    "narrow_lattice",
+    "all_on_its_way",
+    "cu_unchecked",
+    "cu_at_least",
+    "cu_unknown",
+    "gap_graded",
+    "other_curve",
+    "library_of_any_density",
+    "library_of_density",
+    "like_none_of_the_library",
+    "guessed_constrictions",
+    "guessed_grains",
+    "part_packed",
+    "floating_part_packed",
+    "loose_part_packed",
+    "skeleton",
+    "one_replicate",
+    "few_replicates",
+    "few_networks",
+    "pan_passive",
+    "pan_counts_as_passing",
+    "arches",
+    "openings",
+    "curve_range",
+    "unit_doubtful",
+    "files_exchanged",
+    "filter_of_boulders",
+    "unstable_base",
+    "unstable_side",
+    "broad_base",
+    "broad_base_at_least",
+    "gap_of_base",
+    "flat_base",
+    "flat_base_limit",
+    "target_missed",
+    "regraded",
+    "regrading_not_needed",
+    "read_as",
+    "envelope",
+    "pan_of_filter",
+    "loose_grains",
+    "narrow_cell",
+    "one_network",
+    "one_packing",
+    "long_way_out",
+    "not_monotone",
+    "trapped",
+    "permeability",
+    "overfull",
+    "no_room",
+]
 
 
-class FindingRecord(_FindingRecord, total=False):
-    """A finding: what it is about, and its sentence.
+class Note(TypedDict):
+    """A note with its numbers, in the order of every face.
 
     Keys
     ----
     id
-        Its name for programs, as `cohesive_fines`.
-    about
-        What it is about.
-    label
-        Its name in a word or two.
+        Its name.
     numbers
         Its numbers by name, with the unit in the name.
-    sentence
-        What it says.
-    to_do
-        Which setting changes it; may be empty.
     """
 
+    id: NoteId
     numbers: Dict[str, object]
-    to_do: str
 
 
 class _IfDispersive(TypedDict):
@@ -430,6 +523,21 @@ class Stopping(_Stopping, total=False):
     short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
 
 
+class LeftOut(TypedDict):
+    """A part of the program that a scene does not need, or a study of which nothing is walked.
+
+    Keys
+    ----
+    id
+        Its name.
+    numbers
+        Its numbers; missing without any.
+    """
+
+    id: str
+    numbers: object
+
+
 class FilterRecord(TypedDict):
     """The filter: its gradation by mass and its constrictions by number.
 
@@ -677,6 +785,84 @@ class Ratios(TypedDict):
     d15f_over_d95b: float
 
 
+#: The name of what a rule says.
+RuleNoteId = Literal[
+    "needs_fines_of_base",
+    "needs_d85_b",
+    "needs_d95_b",
+    "needs_d15_b",
+    "needs_d15_f",
+    "needs_d15_f_sieved",
+    "needs_d10_f",
+    "needs_fines_of_filter",
+    "needs_sieves_of_filter",
+    "needs_finest_part_of_filter",
+    "needs_curve_of_filter",
+    "needs_curve_of_filter_in_mm",
+    "needs_test_of_dispersive",
+    "needs_erosion",
+    "d15_f_between",
+    "d15_b_between",
+    "d85_b_between",
+    "d95_b_between",
+    "filter_between",
+    "base_between",
+    "flat_base",
+    "dispersive",
+    "category",
+    "regraded_on",
+    "before_regrading",
+    "taken_as_sand",
+    "result_of_model",
+    "beyond_any_limit",
+    "no_clear_boundary",
+    "beyond_unclear_boundary",
+    "excessive_not_judged",
+    "by_fines",
+    "floor_governs",
+    "least_governs",
+    "d15_f_at_most",
+    "limit_at_most",
+    "limit_at_least",
+    "cu_at_least",
+    "finest_sieve_of_filter",
+    "at_percent_finer",
+    "band_from",
+    "joint",
+    "less_than_source",
+    "checks_walk",
+    "far_finer_than_tests",
+    "kezdi_at",
+    "kezdi_splits",
+    "kezdi_hidden",
+    "shape_at",
+    "shape_above_pan",
+    "burenkova_range",
+    "wan_fell_sand",
+    "wan_fell_silt",
+    "wan_fell_contours",
+    "limits_by_fines",
+    "burenkova_soils",
+    "burenkova_third_zone",
+    "uniform_filter",
+]
+
+
+class RuleNote(TypedDict):
+    """What a rule says beside its result.
+
+    Keys
+    ----
+    id
+        Its name.
+    numbers
+        Its number, or its numbers in order; missing without any.
+    """
+
+    id: RuleNoteId
+    numbers: object
+
+
 class WithoutFiner(TypedDict):
     """What is left of a filter without its finer part.
 
@@ -703,12 +889,11 @@ class _AppliedRule(TypedDict):
     unit: str
     at_least: bool
     met: Optional[bool]
-    needs: str
-    note: str
+    needs: List[RuleNote]
+    notes: List[RuleNote]
     applies_to: str
     formula: str
     source: str
-    speaks_against: str
 
 
 class AppliedRule(_AppliedRule, total=False):
@@ -749,7 +934,7 @@ class AppliedRule(_AppliedRule, total=False):
         `true` says only that this is not reached: some or excessive erosion is not excluded.
     needs
         What is missing for a result; may be empty.
-    note
+    notes
         Where the value is, why the rule was not made for these soils; may be empty.
     applies_to
         What the rule was made for.
@@ -760,8 +945,6 @@ class AppliedRule(_AppliedRule, total=False):
     without_finer
         What is left of the filter without the greatest part that it may lose by a rule of internal stability;
         `None` of other rules.
-    speaks_against
-        Which verdicts it speaks against where it is not kept.
     filter_curve
         Which curve of the filter it read, where that is an envelope of several.
     base_curve
@@ -1011,7 +1194,7 @@ class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
     model: Model
-    findings: List[FindingRecord]
+    notes: List[Note]
     constrictions: ConstrictionsRecord
     seed: int
     n_base: int
@@ -1022,8 +1205,8 @@ class _Outcome(TypedDict):
     replicates: List[Replicate]
     summary: List[RunSummary]
     threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
+    left_out: List[LeftOut]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     inputs: Inputs
     ratios: Ratios
     rules: List[AppliedRule]
@@ -1047,8 +1230,8 @@ class Outcome(_Outcome, total=False):
         What filter practice says of the pair, without the walk; `None` likewise.
     model
         What the walk says, without practice.
-    findings
-        What a reader must know besides, in the order of every face.
+    notes
+        What else to know, in the order of every face.
     if_dispersive
         What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
         it has few fines.
@@ -1155,8 +1338,8 @@ class WalkOutcome(TypedDict):
     ----
     verdict
         The class that the replicates together support.
-    findings
-        What a reader must know besides, in the order of every face.
+    notes
+        What else to know, in the order of every face.
     seed
         The user's seed.
     n_base
@@ -1192,7 +1375,7 @@ class WalkOutcome(TypedDict):
     """
 
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    findings: List[FindingRecord]
+    notes: List[Note]
     seed: int
     n_base: int
     n_base_eq2: Optional[int]
@@ -1203,8 +1386,8 @@ class WalkOutcome(TypedDict):
     replicates: List[Replicate]
     summary: List[RunSummary]
     threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
+    left_out: List[LeftOut]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     base: BaseRecord
     d15f_mm: Optional[float]
     network: GivenNetwork
@@ -1308,37 +1491,25 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
     without_margin: bool
 
 
-class _DesignFinding(TypedDict):
-    id: str
-    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
-    label: str
-    sentence: str
+class _RowNote(TypedDict):
+    id: NoteId
+    numbers: Dict[str, object]
 
 
-class DesignFinding(_DesignFinding, total=False):
-    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
+class RowNote(_RowNote, total=False):
+    """A note on a row of a design, or on a curve of the base for which a filter is specified.
 
     Keys
     ----
     row
         The row or the curve that it is of, in words; `None` where it is of all.
     id
-        Its name for programs, as `cohesive_fines`.
-    about
-        What it is about.
-    label
-        Its name in a word or two.
+        Its name.
     numbers
         Its numbers by name, with the unit in the name.
-    sentence
-        What it says.
-    to_do
-        Which setting changes it; may be empty.
     """
 
     row: Optional[str]
-    numbers: Dict[str, object]
-    to_do: str
 
 
 class StepValue(TypedDict):
@@ -1359,7 +1530,91 @@ class StepValue(TypedDict):
     unit: str
 
 
-class SpecificationStep(TypedDict):
+class _RegradeCause(TypedDict):
+    id: Literal["gap", "gap_among_gravel", "gravel_and_fines", "broad_gravel", "gravel_of_unknown_cu", "narrow_gravel", "no_gravel", "no_unit"]
+
+
+class RegradeCause(_RegradeCause, total=False):
+    """What of a soil has it regraded, or not.
+
+    Keys
+    ----
+    id
+    from_mm
+    """
+
+    from_mm: float
+
+
+class RegradeReason(TypedDict):
+    """Why practice regrades a base, or leaves it as it is.
+
+    Keys
+    ----
+    cause
+        What practice asks of the soil.
+    nothing_passes
+        Whether it was to be regraded and is left as it is, as none of its known sizes passes the sieve.
+    """
+
+    cause: RegradeCause
+    nothing_passes: bool
+
+
+class _StepNote(TypedDict):
+    id: Literal["curves", "gravel", "not_regraded", "set_by", "limit_not_known", "drainage_at_most", "of_rule", "raised", "lowered", "stability"]
+
+
+class StepNote(_StepNote, total=False):
+    """What else to know of a step.
+
+    Keys
+    ----
+    id
+    curves
+        How many.
+    curve
+        Its name, where there are several.
+    why
+        Why it is regraded, or not.
+    flattest
+        Size (mm) from which the least mass lies within a factor of 4, and that mass (%); `None` where its
+        sieves do not tell.
+    rule
+        The rule; `None` where the step has one alone.
+    needs
+        What is missing.
+    notes
+        Its notes.
+    side
+        `fine` or `coarse`.
+    is_known
+        Whether both indices are known.
+    not_kept
+        Whose rules it does not keep.
+    """
+
+    curves: int
+    curve: Optional[str]
+    why: RegradeReason
+    flattest: Optional[List[float]]
+    rule: Optional[str]
+    needs: List[RuleNote]
+    notes: List[RuleNote]
+    side: str
+    is_known: bool
+    not_kept: List[str]
+
+
+class _SpecificationStep(TypedDict):
+    step: int
+    does: Literal["plot", "find_gravel", "regrade", "place", "retain", "drain", "narrow", "keep_uniform", "limit_ends", "keep_from_segregating", "draw", "check_stability"]
+    formula: str
+    values: List[StepValue]
+    source: str
+
+
+class SpecificationStep(_SpecificationStep, total=False):
     """A step of the procedure.
 
     Keys
@@ -1369,21 +1624,16 @@ class SpecificationStep(TypedDict):
     does
         What is done.
     formula
-        The formula, in words; empty where nothing is worked out.
+        The formula; empty where nothing is worked out.
     values
         Its numbers.
-    note
-        What else a reader must know; may be empty.
+    notes
+        What else to know.
     source
         Where formula and numbers were read; empty where nothing is worked out.
     """
 
-    step: int
-    does: str
-    formula: str
-    values: List[StepValue]
-    note: str
-    source: str
+    notes: List[StepNote]
 
 
 class BandSize(TypedDict):
@@ -1420,6 +1670,38 @@ class SizeBand(TypedDict):
     sizes: List[BandSize]
     fine_side: List[List[float]]
     coarse_side: List[List[float]]
+
+
+class _NoBand(TypedDict):
+    id: Literal["drainage_not_known", "none_drains_and_retains", "too_many_fines", "too_coarse", "limit_not_known", "no_rule"]
+
+
+class NoBand(_NoBand, total=False):
+    """Why there is no band.
+
+    Keys
+    ----
+    id
+    most_drains_mm
+        The most that the minimum can be (mm).
+    most_mm
+        The maximum (mm).
+    least_mm
+        The minimum (mm).
+    most_d60f_mm
+        The maximum D60F (mm).
+    curve
+        The curve of the base.
+    needs
+        What is missing.
+    """
+
+    most_drains_mm: float
+    most_mm: float
+    least_mm: float
+    most_d60f_mm: float
+    curve: str
+    needs: List[RuleNote]
 
 
 class SieveLimit(TypedDict):
@@ -1513,7 +1795,7 @@ class Specification(_Specification, total=False):
         Every file that was read; empty as a part of a design, which has them itself.
     curves
         The curves of the base, in the order of the file.
-    findings
+    notes
         What a reader must know of the base itself, each of its curve where there are several, and of a side of
         the band that is not stable.
     steps
@@ -1543,11 +1825,11 @@ class Specification(_Specification, total=False):
     cover: SheetCover
     inches: bool
     inputs: List[InputFile]
-    findings: List[DesignFinding]
+    notes: List[RowNote]
     d15f_min_at_most: bool
     finer: bool
     if_dispersive: Optional[IfDispersive]
-    no_band: Optional[str]
+    no_band: Optional[NoBand]
 
 
 class Range(TypedDict):
@@ -1643,17 +1925,17 @@ class DesignRow(_DesignRow, total=False):
         Filter grains per void, Eq. (2).
     no_erosion
         Where no erosion turns into some; `None` where that lies beyond what can be walked.
-    no_erosion_note
+    no_erosion_notes
         Why there is none, or what else is to be said of it.
     holds_to
         D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched, so
         that there is no boundary.
     continuing
         Where some erosion turns into continuing.
-    continuing_note
+    continuing_notes
         Why there is none, or what else is to be said of it.
     unsteady
-        Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
+        The note on a boundary that few particles decide.
     not_monotone
         Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
         that erodes counts.
@@ -1666,10 +1948,10 @@ class DesignRow(_DesignRow, total=False):
         The density of which this is an end of the range in which its constriction curve is known.
     """
 
-    no_erosion_note: Optional[str]
+    no_erosion_notes: List[Note]
     holds_to: Optional[float]
-    continuing_note: Optional[str]
-    unsteady: Optional[str]
+    continuing_notes: List[Note]
+    unsteady: Optional[Note]
     as_end: Optional[str]
     end_of: Optional[str]
 
@@ -1731,7 +2013,7 @@ class _Design(TypedDict):
     engine: str
     bracket: List[float]
     step: float
-    model_leaves_out: List[str]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     settings: List[str]
     seconds: float
 
@@ -1780,7 +2062,7 @@ class Design(_Design, total=False):
         D15F/D85B between which boundaries were searched.
     step
         Steps of the search, as a part of D15F/D85B.
-    findings
+    notes
         What a reader must know of the model's boundaries, the weightiest first.
     model_leaves_out
         What the model does not contain.
@@ -1798,7 +2080,7 @@ class Design(_Design, total=False):
     specification: Optional[Specification]
     filter_gradation: List[List[float]]
     inputs: List[InputFile]
-    findings: List[DesignFinding]
+    notes: List[RowNote]
     cover: SheetCover
     inches: bool
 
@@ -1829,6 +2111,7 @@ class _ComparedCase(TypedDict):
     folder: str
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
     rules_not_kept: List[str]
+    model: Model
     replicates: int
     thickness_mm: Optional[float]
     scale_free: bool
@@ -1855,10 +2138,12 @@ class ComparedCase(_ComparedCase, total=False):
         The class as which practice counts.
     headline
         The answer of practice; `None` without two sieve curves in mm.
-    first_lines
-        The lines of practice and model, each with its name.
-    found
-        What a reader must know besides, the weightiest first.
+    practice
+        What filter practice says of the pair; `None` likewise.
+    model
+        What the walk says.
+    notes
+        What else to know, in the order of every face.
     replicates
         Replicates.
     thickness_mm
@@ -1882,8 +2167,8 @@ class ComparedCase(_ComparedCase, total=False):
 
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
     headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
-    first_lines: List[List[object]]
-    found: List[str]
+    practice: Optional[Practice]
+    notes: List[Note]
     base: Optional[BaseSize]
     curve_range: List[List[float]]
 
@@ -1929,7 +2214,7 @@ class _Comparison(TypedDict):
     cases: List[ComparedCase]
     pairs: List[ComparedPair]
     threshold: float
-    model_leaves_out: List[str]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
 
 
 class Comparison(_Comparison, total=False):
@@ -2149,7 +2434,7 @@ class _BaseSizes(TypedDict):
     fines_percent: Optional[float]
     regraded: bool
     regraded_at_mm: Optional[float]
-    why: str
+    why: RegradeReason
     d15_mm: Optional[float]
     d85_mm: Optional[float]
     d85_as_sampled_mm: Optional[float]
@@ -2203,9 +2488,9 @@ class _PairRules(TypedDict):
     filter: FilterSizes
     base: BaseSizes
     rules: List[AppliedRule]
-    practice: str
-    practice_class: Literal["meets", "does not meet", "not known"]
-    warnings: List[str]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    practice: Optional[Practice]
+    notes: List[Note]
 
 
 class PairRules(_PairRules, total=False):
@@ -2223,13 +2508,13 @@ class PairRules(_PairRules, total=False):
         The base after regrading.
     rules
         Every rule.
+    headline
+        The answer of practice; `None` where the limit of design was not applied.
     practice
-        What they say together, in a line, as it stands on every page: whether practice is met, and why.
-    practice_class
-        The same for programs.
+        What practice says of the pair; `None` likewise.
     if_dispersive
         The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
-    warnings
+    notes
         What may be wrong with the two tables, and what was taken for what.
     """
 
