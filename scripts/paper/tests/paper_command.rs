@@ -54,7 +54,7 @@ const KENNEY: &str = "[[factor]]\nname = \"filter\"\nsetting = \"filter.curve\"\
     [[leave_out]]\nfilter = \"cu1.2-dense\"\nd50b_over_d0f = \"0.4\"\n";
 
 /// Of a packing with 5.5 constrictions a void.
-const PACKED: &str = r#"{ "grains": 8, "voids": 4, "grains_per_void": 2.0, "tetrahedra": 20,
+const PACKED: &str = r#"{ "format": "voidwalk-constrictions/1", "voidwalk": "0.1.0", "grains": 8, "voids": 4, "grains_per_void": 2.0, "tetrahedra": 20,
     "constrictions": 11, "void_ratio": 0.6, "cu_csd": 1.5, "d0_mm": 1.0, "dc_mm": {},
     "mean_connectivity": 5.5, "connectivity": [], "merge_overlap": 0.1, "counted_facets": "all",
     "cut_constrictions": 0, "closed_facets": 0, "hidden_grains": [], "duplicate_grains": [] }"#;
