@@ -152,9 +152,7 @@ impl Display {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
             Event::Noted { notes, unit } => {
-                notes
-                    .iter()
-                    .for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, *unit)))));
+                notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, unit)))));
             }
             Event::VerdictStands(outcome) => {
                 for (name, words) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {

@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use super::batches::so_far;
 use crate::campaign::CaseEvent;
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;
@@ -74,7 +73,7 @@ impl Live {
                 self.lines.push(line.to_owned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
-            Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, *unit))),
+            Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, unit))),
             Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
         }
     }

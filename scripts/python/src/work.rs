@@ -102,7 +102,7 @@ impl<T> Desk<T> {
             Event::RunDone => self.change(true, |p| p.done += 1),
             Event::MoreRuns { runs } => self.change(false, |p| p.total += runs),
             Event::Noted { notes, unit } => {
-                notes.iter().for_each(|note| self.warn(&with_setting(note, *unit)))
+                notes.iter().for_each(|note| self.warn(&with_setting(note, unit)))
             }
             Event::PackingElsewhere { .. }
             | Event::PackingEnded

@@ -80,10 +80,11 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
     // The end that cannot set the answer is no row, and the row of the range says so.
     let [unknown] = &design.boundaries[..] else { panic!("{:?}", design.boundaries) };
     assert_eq!(unknown.networks.len(), 2);
-    let is_spared = |note: &Note| matches!(note, Note::SparedEnd { density, .. } if density.contains("dense, constrictions"));
+    let end = "dense, constrictions";
+    let is_spared = |note: &Note| matches!(note, Note::SparedEnd { density, .. } if density.contains(end));
     assert!(unknown.no_erosion_notes.iter().any(is_spared), "{unknown:?}");
     let table = std::fs::read_to_string(folder.path().join("out/design.csv")).unwrap();
-    let dense: Vec<&str> = table.lines().filter(|line| line.contains("dense, constrictions")).collect();
+    let dense: Vec<&str> = table.lines().filter(|line| line.contains(end)).collect();
     assert!(!dense.is_empty() && dense.iter().all(|line| line.contains(",6 layers,1,")), "{dense:?}");
 }
 

@@ -215,7 +215,6 @@ NoteId = Literal[
     "broad_base_at_least",
     "gap_of_base",
     "flat_base",
-    "flat_base_limit",
     "target_missed",
     "regraded",
     "regrading_not_needed",
@@ -523,7 +522,11 @@ class Stopping(_Stopping, total=False):
     short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
 
 
-class LeftOut(TypedDict):
+class _LeftOut(TypedDict):
+    id: str
+
+
+class LeftOut(_LeftOut, total=False):
     """A part of the program that a scene does not need, or a study of which nothing is walked.
 
     Keys
@@ -534,7 +537,6 @@ class LeftOut(TypedDict):
         Its numbers; missing without any.
     """
 
-    id: str
     numbers: object
 
 
@@ -848,7 +850,11 @@ RuleNoteId = Literal[
 ]
 
 
-class RuleNote(TypedDict):
+class _RuleNote(TypedDict):
+    id: RuleNoteId
+
+
+class RuleNote(_RuleNote, total=False):
     """What a rule says beside its result.
 
     Keys
@@ -859,7 +865,6 @@ class RuleNote(TypedDict):
         Its number, or its numbers in order; missing without any.
     """
 
-    id: RuleNoteId
     numbers: object
 
 
