@@ -2,14 +2,14 @@
 //! decides here, and nothing here is a sentence.
 //!
 //! - `practice` is where a filter stands by all rules, `tested` its class by the boundaries that Foster and
-//! Fell saw in   tests, `rule_result` what a single rule found, and `listed` the rules in the rows of a
-//! table.
+//!   Fell saw in tests, `rule_result` what a single rule found, and `listed` the rules in the rows of a
+//!   table.
 //! - `washout` is what is left of a filter that is not internally stable, `dispersion` what a dispersive
 //!   base asks for.
 //! - [`PlannedWalk`] has the notes on soils and network before their walk, `walks` those of walks themselves;
 //!   [`ordered()`] brings notes into the order of their table.
 //! - [`PairRules`] are two soils as practice sees them, `batch` many samples, a row each; [`BatchTable`]
-//! reads them, and   [`WalkedBatch`] is them with their walks.
+//!   reads them, and [`WalkedBatch`] is them with their walks.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made here.
 
 mod answer;

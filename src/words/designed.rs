@@ -9,8 +9,11 @@ use crate::outcome::rules::WIDEST_BAND;
 use crate::outcome::table::{Columns, TableCell};
 use crate::verdict::{DesignedSample, DesignedSamples, least_of_band, no_band_between};
 
+/// Whether a note is of a kind.
+type IsKind = fn(&Note) -> bool;
+
 /// What a specification warns of a base, and how it begins where it is said of several.
-const CAUTIONS: [(fn(&Note) -> bool, &str); 5] = [
+const CAUTIONS: [(IsKind, &str); 5] = [
     (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
     (
         |note| matches!(note, Note::UnstableSide { .. }),

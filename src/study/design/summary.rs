@@ -141,7 +141,7 @@ impl FoundRow {
     /// Why no ratio is known that holds.
     fn unheld(&self) -> Option<Note> {
         let networks = self.of.networks.len() as u64;
-        self.of.held().is_none().then(|| match self.eroding {
+        self.of.held().is_none().then_some(match self.eroding {
             0 => Note::NothingWalked {},
             networks_eroding => Note::ErodesEverywhere { networks_eroding, networks },
         })
