@@ -14,6 +14,7 @@ use crate::outcome::numbers::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
+use crate::words::comparison::{difference, not_in_intervals};
 use crate::words::left_out::left_out_line;
 use crate::words::{FOREMOST, lines_of, sentence};
 
@@ -123,8 +124,8 @@ fn words(comparison: &Comparison) -> String {
             line(format!("  {run} run over the range of the constriction curve: {low} to {high}"));
         }
     }
-    comparison.pairs.iter().for_each(|pair| line(pair.sentence()));
-    if let Some(what) = comparison.not_in_intervals() {
+    comparison.pairs.iter().for_each(|pair| line(difference(pair)));
+    if let Some(what) = not_in_intervals(comparison) {
         line(format!("Not in these intervals: {what}"));
     }
     line(left_out_line(&comparison.model_leaves_out));

@@ -6,8 +6,7 @@ use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
-use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, Range, over_networks};
+use crate::outcome::design::{Boundary, Design, DesignRow, Range};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::rounded_down;
 use crate::outcome::record::Note;
@@ -15,9 +14,9 @@ use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
-use crate::words::design::design_lines;
+use crate::words::design::{design_lines, over_networks};
 use crate::words::left_out::left_out_line;
-use crate::words::products::products;
+use crate::words::products::{products, to_be_checked};
 use crate::words::specification::{DESIGN_AGAIN, if_dispersive, raised, still_to_set, without_margin};
 use crate::words::{FOREMOST, row_note, sentence};
 
@@ -89,7 +88,7 @@ fn words(design: &Design) -> String {
         lines.extend(of.notes.iter().map(|row| format!("warning: {}", row_note(row, unit))));
         lines.extend(still_to_set(of, unit));
         lines.push(products(of));
-        lines.extend(to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()))));
+        lines.extend(to_be_checked(&of.products));
     }
     lines.push(format!("{}: {}", model.0, model.1));
     lines.extend(design.base.size().map(|base| format!("  {}", base.words_in(unit))));

@@ -16,7 +16,7 @@ use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
-use crate::words::{first_lines, sentence};
+use crate::words::{first_lines, sentence, so_far};
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -117,7 +117,7 @@ impl Walk {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
         let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
-        let mut words = look.words(replicates).filter(|_| is_new)?;
+        let mut words = so_far(&look, replicates).filter(|_| is_new)?;
         self.looked_at = look.replicates;
         if self.readings {
             words += "; by one of several readings of the inputs";

@@ -6,7 +6,6 @@ use std::path::Path;
 use super::args::DesignArgs;
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
-use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::{ProductMargin, Specification};
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::{significant, trimmed};
@@ -14,7 +13,7 @@ use crate::run::RunError;
 use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
-use crate::words::products::{product as product_result, products};
+use crate::words::products::{product as product_result, products, to_be_checked};
 use crate::words::row_note;
 use crate::words::specification::{
     DESIGN_AGAIN, beside_limits, if_dispersive, no_band, step_name, step_notes, step_value, still_to_set,
@@ -120,8 +119,7 @@ fn words(of: &Specification) -> String {
         ));
         line(&format!("    {}", margins(product)));
     }
-    let sources = of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()));
-    if let Some(said) = to_be_checked(sources) {
+    if let Some(said) = to_be_checked(&of.products) {
         line(&said);
     }
     if of.nearest_product().is_some() {

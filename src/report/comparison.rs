@@ -20,6 +20,7 @@ use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Verdict;
 use crate::words::capital;
+use crate::words::comparison::{difference, not_in_intervals};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::{FOREMOST, lines_of, sentence};
 
@@ -190,7 +191,7 @@ fn pairs(comparison: &Comparison) -> Markup {
     let uncertain = comparison.pairs.iter().any(|pair| pair.differ.is_none());
     html! {
         @if comparison.pairs.is_empty() { p { "No two cases share a replicate." } }
-        ul { @for pair in &comparison.pairs { li { (clean(&capital(&pair.sentence()))) "." } } }
+        ul { @for pair in &comparison.pairs { li { (clean(&capital(&difference(pair)))) "." } } }
         p.small {
             "Mass eroded as a part of the base’s, replicate by replicate: replicates of the same number \
              share their random numbers, so scatter common to both cases drops out of the \
@@ -199,7 +200,7 @@ fn pairs(comparison: &Comparison) -> Markup {
             (comparison.pairs.len()) " differences at once excludes 0."
             @if uncertain { " One replicate does not show the scatter." }
         }
-        @if let Some(what) = comparison.not_in_intervals() {
+        @if let Some(what) = not_in_intervals(comparison) {
             p {
                 span.amber { "Not in these intervals" } ": " (what)
                 ". Its range stands in the table, as “curve”."

@@ -17,11 +17,12 @@ use super::section::Sections;
 use super::shell::{clean, unbroken};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{Specification, SpecificationStep};
 use crate::words::design::limit;
-use crate::words::products::{FITS, product as product_result, products as products_line};
+use crate::words::products::{
+    FITS, not_kept, product as product_result, products as products_line, to_be_checked,
+};
 use crate::words::row_note;
 use crate::words::specification::{
     DESIGN_AGAIN, band, beside_limits, if_dispersive, no_band, raised, step_name, step_notes, step_value,
@@ -202,13 +203,13 @@ fn products(of: &Specification) -> Markup {
         })
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
-        .text("What else its sides do not keep", |of| clean(&of.not_kept))
+        .text("What else its sides do not keep", |of| clean(&not_kept(&of.not_kept)))
         .text("", |product| match (&*product_result(of, product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
             (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
             (said, _) => html! { (said) },
         });
-    let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));
+    let to_check = to_be_checked(&of.products);
     html! {
         @if !of.products.is_empty() {
             (table.render())

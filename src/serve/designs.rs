@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::constrictions;
-use crate::outcome::design::{Design, RowNote, share_of_networks};
+use crate::outcome::design::{Design, RowNote};
 use crate::outcome::numbers::SizeUnit;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
-use crate::words::design::design_lines;
+use crate::words::design::{design_lines, share_of_networks};
 use crate::words::left_out::model_limit;
 use crate::words::products::products;
 use crate::words::specification::{DESIGN_AGAIN, if_dispersive, without_margin};

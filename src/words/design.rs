@@ -1,8 +1,26 @@
 //! The lines that every face of a design begins with: those of practice, and that of the model.
 
 use super::specification::{band, no_band};
-use crate::outcome::design::{Design, Specification};
+use crate::outcome::design::{Design, Specification, are_few};
 use crate::outcome::numbers::{SizeUnit, rounded_down};
+
+/// Which share of so many networks is shown: of few the least and the most of them.
+pub fn share_of_networks(networks: u64) -> &'static str {
+    if are_few(networks) { "least and most" } else { "5 to 95 % range" }
+}
+
+/// The ends of a boundary over so many networks, as `4.77 to 4.97`, and what they are the ends of.
+pub fn over_networks(ends: &str, networks: u64) -> String {
+    match are_few(networks) {
+        true => format!("{ends} over {networks} networks"),
+        false => format!("{ends}, {} of {networks} networks", share_of_networks(networks)),
+    }
+}
+
+/// The share of so many networks that figures draw, which is read between two networks where they are few.
+pub fn drawn_of_networks(networks: u64) -> &'static str {
+    if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
+}
 
 /// The lines, each under its name: of a base without a size the model's alone.
 pub fn design_lines(design: &Design, unit: SizeUnit) -> Vec<(&'static str, String)> {

@@ -8,6 +8,7 @@
 mod answer;
 pub mod batch;
 mod class;
+pub mod comparison;
 pub mod design;
 pub mod designed;
 mod dispersion;
@@ -18,6 +19,7 @@ mod practice;
 pub mod products;
 pub mod rule;
 pub mod rule_note;
+mod so_far;
 pub mod specification;
 
 pub use answer::{FOREMOST, first_lines, foremost, lines_of, model};
@@ -26,3 +28,4 @@ pub use dispersion::{beside_dispersive, beyond_dispersive, dispersive_limit, tes
 pub use next::next;
 pub use note::{row_note, sentence, setting};
 pub use practice::{judged_alone, practice, practice_line, tested_class};
+pub use so_far::so_far;

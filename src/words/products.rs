@@ -1,6 +1,11 @@
 //! Which standard products fit, in the same words on every face.
 
+use crate::gradation::FINES_MM;
+use crate::outcome::design::products::{LEAST_CU, NotKept, is_to_be_checked};
 use crate::outcome::design::specification::{ProductMargin, Specification};
+use crate::outcome::numbers::significant;
+use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
+use crate::outcome::table::Columns;
 
 /// Said of a product both whose sides keep every requirement.
 pub const FITS: &str = "fits";
@@ -11,9 +16,46 @@ const MAY_DRAIN: &str = "may drain: D15B must be tested";
 /// Said where no product fits.
 const NONE_FITS: &str = "None of the standard products fits";
 
+/// What the sides of a product do not keep beside D15F.
+pub fn not_kept(all: &[NotKept]) -> String {
+    let one = |found: &NotKept| match found {
+        NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
+        NotKept::CuOfCoarseSide { cu } => cu_of("coarse", *cu),
+        NotKept::Width { ratio } => {
+            format!("its sides are {} to 1 apart, and at most {WIDEST_BAND} is allowed", significant(*ratio))
+        }
+        NotKept::Fines { percent } => format!("up to {percent} % may be finer than {FINES_MM} mm"),
+        NotKept::GreatestSize => format!("grains may be coarser than {GREATEST_SIZE_MM} mm"),
+    };
+    all.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
+fn cu_of(side: &str, cu: f64) -> String {
+    format!("Cu of its {side} side is {}, and {LEAST_CU} to {MOST_CU} is asked for", significant(cu))
+}
+
 /// Said of a product that does not fit, with what its sides do not keep beside D15F.
-fn does_not_fit(not_kept: &str) -> String {
-    if not_kept.is_empty() { "does not fit".into() } else { format!("does not fit: {not_kept}") }
+fn does_not_fit(found: &[NotKept]) -> String {
+    if found.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(found)) }
+}
+
+/// That the limits of some products are to be checked; `None` where none are.
+pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
+    let checked = products.iter().filter(|of| is_to_be_checked(&of.source));
+    let named: Vec<&str> = checked.map(|of| of.product.as_str()).collect();
+    (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
+}
+
+/// The columns of `specification_products.csv`.
+pub fn columns<'a>() -> Columns<'a, ProductMargin> {
+    Columns::default()
+        .column("product", |of: &ProductMargin| of.product.clone())
+        .column("d15_fine_mm", |of| of.d15_fine_mm)
+        .column("d15_coarse_mm", |of| of.d15_coarse_mm)
+        .column("drains_by", |of| of.drains_by)
+        .column("holds_by", |of| of.holds_by)
+        .column("not_kept", |of| not_kept(&of.not_kept))
+        .column("source", |of| of.source.clone())
 }
 
 /// The result of a standard product beside a specification.
@@ -61,6 +103,7 @@ mod tests {
         assert_eq!(product(&core, fits[0]), FITS);
         // No. 8 stone may be delivered with a Cu of 1.6.
         let stone = core.products.iter().find(|of| of.product.contains("No. 8 ")).unwrap();
-        assert!(stone.not_kept.starts_with("Cu of its coarse side is 1.59"), "{stone:?}");
+        let [NotKept::CuOfCoarseSide { cu }, ..] = stone.not_kept[..] else { panic!("{stone:?}") };
+        assert!((cu - 1.59).abs() < 0.005, "{cu}");
     }
 }

@@ -17,4 +17,4 @@ pub use record::{BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, Network
 pub use row_note::RowNote;
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};
-pub use spread::{Beyond, drawn_of_networks, over_networks, share_of_networks, spread};
+pub use spread::{Beyond, are_few, spread};

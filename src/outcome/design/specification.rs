@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::products::{PRODUCTS, Product};
+use super::products::{NotKept, PRODUCTS, Product};
 use super::row_note::RowNote;
 use super::sieves::SieveSeries;
 pub use super::size_band::{BandSize, SieveLimit, SizeBand};
@@ -290,7 +290,7 @@ pub struct ProductMargin {
     pub holds_by: Option<f64>,
     /// What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
     /// empty where they keep all.
-    pub not_kept: String,
+    pub not_kept: Vec<NotKept>,
     /// Where its limits were read.
     pub source: String,
 }
@@ -348,7 +348,7 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
             // The true margin may be any greater.
             drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || fine < certain),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
-            not_kept: product.not_kept().join("; "),
+            not_kept: product.not_kept(),
             source: product.source.into(),
         }
     };

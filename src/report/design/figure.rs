@@ -1,11 +1,12 @@
 //! Erosion against D15F in the model: what every network eroded, and the three zones.
 
 use super::words::size_unit;
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, drawn_of_networks};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Line, ORANGE, PURPLE, Rule, VERMILLION,
 };
 use crate::report::shell::Drawn;
+use crate::words::design::drawn_of_networks;
 
 /// The figure, of the row that holds least. Where none is known to hold, of the first that has a boundary or
 /// was walked at all.

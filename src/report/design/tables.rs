@@ -3,13 +3,14 @@
 use maud::{Markup, Render, html};
 
 use super::words::{in_band, ratio, size_unit};
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, share_of_networks};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::Note;
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, significant, threshold, trimmed, whole};
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
+use crate::words::design::share_of_networks;
 use crate::words::sentence;
 
 /// The boundaries of the model, a row a density and thickness.

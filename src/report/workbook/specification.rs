@@ -3,7 +3,7 @@
 use super::sheet::{Entry, Sheet};
 use crate::outcome::design::Specification;
 use crate::outcome::numbers::SizeUnit;
-use crate::words::products::product as product_result;
+use crate::words::products::{not_kept, product as product_result};
 use crate::words::specification::{beside_limits, no_band, step_rows, still_to_set, without_margin};
 use crate::words::{dispersive_limit, row_note};
 
@@ -89,7 +89,7 @@ fn products(of: &Specification) -> Sheet {
             product.holds_by.into(),
             product.fits().into(),
             product_result(of, product).into(),
-            (&product.not_kept).into(),
+            not_kept(&product.not_kept).into(),
             (&product.source).into(),
         ]);
     }

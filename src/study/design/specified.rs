@@ -15,6 +15,7 @@ use crate::study::days::today;
 use crate::study::inputs::input_files;
 use crate::study::kept;
 use crate::verdict::SpecificationOptions;
+use crate::words::products::columns;
 use crate::words::specification::step_rows;
 
 /// A base coarser than this (D85, mm) is none: its sizes are in another unit.
@@ -109,5 +110,5 @@ pub(super) fn write_tables(folder: &Folder, specification: &Specification) -> Re
     let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
     folder.write("specification.csv", &csv_of(&specification.limits))?;
     folder.write("specification_steps.csv", &csv_of(&steps))?;
-    folder.write("specification_products.csv", &csv_of(&specification.products))
+    folder.write("specification_products.csv", &columns().csv(&specification.products))
 }
