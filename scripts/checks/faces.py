@@ -3,7 +3,7 @@
 
     scripts/checks/faces.py [--binary target/release/voidwalk] [--keep FOLDER] [--again] [NAME ...]
 
-NAMEs are pairs and scenes of tests/words/pairs.json; without any, ten of them: pairs that meet practice, that do not, that are
+Its names are pairs and scenes of tests/words/pairs.json; without any, ten of them: pairs that meet practice, that do not, that are
 not known, a till, a clay, a dispersive clay, a sheet of a laboratory, and a scene without two sheets. Networks are small, so
 that all take a minute; a page of a large network has the same words. The cover is filled in. A word is what stands between
 two spaces, lettering of the figure and cells of tables with it. --keep leaves the folders there, and --again draws the pages of such folders

@@ -17,6 +17,7 @@ use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
+use crate::words::ledger::thickness as thickness_words;
 use crate::words::left_out::left_out_line;
 
 /// A summary names no more cases than this.
@@ -107,7 +108,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
 }
 
 fn thickness(line: &LedgerLine) -> String {
-    format!("modelled filter thickness: {}", line.thickness.words())
+    format!("modelled filter thickness: {}", thickness_words(&line.thickness))
 }
 
 /// Writes the job scripts for the cases that are not done.

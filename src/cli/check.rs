@@ -13,6 +13,7 @@ use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 use crate::store::format;
+use crate::words::grading;
 use crate::words::left_out::left_out;
 use crate::words::sentence;
 
@@ -76,7 +77,7 @@ fn words(check: &Check) -> String {
     }
     line("base", base.name.clone());
     let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
-    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
+    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     line("  sizes", format!("D0 {d0:.4}, D85 {d85:.4}, D95 {d95:.4}, D100 {d100:.4} {unit}{grading}"));
     if let Some(before) = &base.as_sampled {
         let size = |size: Option<f64>| size.map_or("unknown".into(), |mm| format!("{mm:.4}"));

@@ -14,6 +14,7 @@ use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
+use crate::words::base_size;
 use crate::words::design::{design_lines, over_networks};
 use crate::words::left_out::left_out_line;
 use crate::words::products::{products, to_be_checked};
@@ -91,7 +92,7 @@ fn words(design: &Design) -> String {
         lines.extend(to_be_checked(&of.products));
     }
     lines.push(format!("{}: {}", model.0, model.1));
-    lines.extend(design.base.size().map(|base| format!("  {}", base.words_in(unit))));
+    lines.extend(design.base.size().map(|base| format!("  {}", base_size(&base, unit))));
     lines.extend(design.boundaries.iter().flat_map(|row| of_row(row, unit)));
     lines.extend(design.notes.iter().take(FOREMOST).map(|row| format!("- {}", row_note(row, unit))));
     if design.notes.len() > FOREMOST {

@@ -7,11 +7,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::SizeUnit;
 use super::record::{
     Headline, Model, ModelLimit, Outcome, Practice, Ratios, SheetCover, Statistic, Verdict, commit,
 };
-use super::table::Columns;
 use super::{BaseSize, leaves_out_of_all};
 use crate::outcome::record::Note;
 
@@ -167,30 +165,6 @@ fn differences(one: &Outcome, other: &Outcome) -> Vec<Vec<f64>> {
 }
 
 impl ComparedCase {
-    /// The columns of `compare.csv` and of the page's table, whose sizes are shown in this unit.
-    pub fn columns(unit: SizeUnit) -> Columns<'static, Self> {
-        Columns::default()
-            .column("case", |case: &Self| case.name.clone())
-            .headed("Case")
-            .column("verdict", |case| case.verdict)
-            .headed("Class")
-            .broken_rules("rules_not_kept", "Rules not kept", |case| Some(case.rules_not_kept.len()))
-            .column("replicates", |case| case.replicates)
-            .headed("Replicates")
-            .place(3)
-            .column("n_base", |case| case.n_base)
-            .headed("Base particles")
-            .place(3)
-            .ratios(6, unit, |case| (case.ratios, case.base))
-            .eroded(|case, run| (case.runs.get(run).copied(), case.curve_range.get(run).copied()))
-            .digits("grains_per_void", 5, |case| case.grains_per_void)
-            .headed("Grains per void")
-            .place(2)
-            .thickness(5, unit, |case| (case.thickness_mm, case.scale_free, None))
-            .place(2)
-            .column("folder", |case| case.folder.clone())
-    }
-
     fn new(name: &str, folder: &str, outcome: &Outcome) -> Self {
         let broken = outcome.rules.iter().filter(|rule| rule.is_broken());
         Self {
@@ -220,19 +194,6 @@ impl ComparedCase {
 }
 
 impl ComparedPair {
-    /// The columns of `compare_pairs.csv`.
-    pub fn columns() -> Columns<'static, Self> {
-        Columns::default()
-            .column("first", |pair: &Self| pair.first.clone())
-            .column("second", |pair| pair.second.clone())
-            .column("run", |pair| pair.run)
-            .column("replicates", |pair| pair.replicates)
-            .statistic(["difference_percentage_points", "low", "high"], |pair| Some(pair.difference))
-            .percent("joint_low", |pair| pair.joint.map(|joint| joint[0]))
-            .percent("joint_high", |pair| pair.joint.map(|joint| joint[1]))
-            .column("differ", |pair| pair.differ)
-    }
-
     /// The differences `values` of one run, one of `count` that are looked at together.
     fn new(first: &str, second: &str, run: u64, values: &[f64], count: usize) -> Self {
         let joint = Statistic::with_error(values, ERROR / count as f64);

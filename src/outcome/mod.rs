@@ -27,7 +27,6 @@ mod applied;
 mod base_size;
 pub mod by_connectivity;
 pub(crate) mod by_void;
-mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;

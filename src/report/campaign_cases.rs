@@ -15,6 +15,7 @@ use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
+use crate::words::ledger::columns;
 use crate::words::{sentence, undecided_by};
 
 /// Cases listed in the page; all are in `cases.csv`.
@@ -57,7 +58,7 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
 fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     Table::of(ledger.iter().take(LISTED))
         .class("cases")
-        .columns(LedgerLine::columns(&about.factors), |line| line)
+        .columns(columns(&about.factors), |line| line)
         .named_by("verdict", |line| class(line, folder))
         .render()
 }

@@ -20,7 +20,7 @@ use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Verdict;
 use crate::words::capital;
-use crate::words::comparison::{difference, not_in_intervals};
+use crate::words::comparison::{case_columns, difference, not_in_intervals};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::{FOREMOST, lines_of, sentence};
 
@@ -181,7 +181,7 @@ fn answers(comparison: &Comparison) -> Markup {
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
     Table::of(&comparison.cases)
         .class("cases")
-        .columns(ComparedCase::columns(SizeUnit::of(false, comparison.inches)), |case| case)
+        .columns(case_columns(SizeUnit::of(false, comparison.inches)), |case| case)
         .named_by("case", |case| html! { bdi { (name(&case.name)) } })
         .showing("verdict", |case| cases::class(case.verdict, folder, &case.folder))
         .render()

@@ -28,6 +28,7 @@ use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
 use crate::words::capital;
+use crate::words::grading;
 use crate::words::left_out::left_out_words;
 use crate::words::{first_lines, foremost, sentence, undecided_by};
 
@@ -235,7 +236,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
 
 fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let inputs = &outcome.inputs;
-    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
+    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     let mm = |value: f64| size(value, inputs.scale_free);
     let kind = match (network.kind, network.nx, network.ny, network.nz) {

@@ -13,9 +13,11 @@ use super::names::{is_named, soil_name};
 use super::numbers::{interval, interval_in_percent, percent, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 use crate::words::capital;
+use crate::words::{base_size, grading};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;
@@ -96,7 +98,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
-        Some(of) => of.words(),
+        Some(of) => base_size(&of, SizeUnit::Mm),
         None => format!("D85B is {}", size(base.d85_mm, true)),
     };
     let what = format!(
@@ -118,7 +120,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     boundaries::draw(&mut figure, &limits);
     // Of two curves of the base each says which it is; of one, it is as sampled.
     let walked = match (inputs.base_size(), sampled) {
-        (Some(of), Some(_)) => format!("base, {}", of.grading()),
+        (Some(of), Some(_)) => format!("base, {}", grading(&of)),
         _ => name("base", &base.name),
     };
     if let Some(before) = sampled {

@@ -11,6 +11,7 @@ use crate::outcome::design::{Design, RowNote};
 use crate::outcome::numbers::SizeUnit;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
+use crate::words::base_size;
 use crate::words::design::{design_lines, share_of_networks};
 use crate::words::left_out::model_limit;
 use crate::words::products::products;
@@ -188,7 +189,7 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         "lines": design_lines(design, unit),
         "beside": practice.map(|of| [without_margin(of, unit), if_dispersive(of, DESIGN_AGAIN, unit)]),
         "base": design.base.name,
-        "d85b": design.base.size().map(|base| base.words_in(unit)),
+        "d85b": design.base.size().map(|base| base_size(&base, unit)),
         "filter": design.filter,
         "boundaries": boundaries,
         "share_of_networks": share_of_networks(design.replicates),

@@ -6,12 +6,15 @@
 //!   leaves out.
 
 mod answer;
+mod base_size;
 pub mod batch;
+mod case_columns;
 mod class;
 pub mod comparison;
 pub mod design;
 pub mod designed;
 mod dispersion;
+pub mod ledger;
 pub mod left_out;
 mod next;
 mod note;
@@ -23,6 +26,7 @@ mod so_far;
 pub mod specification;
 
 pub use answer::{FOREMOST, first_lines, foremost, lines_of, model};
+pub use base_size::{base_size, grading};
 pub use class::{capital, meaning, undecided_by};
 pub use dispersion::{beside_dispersive, beyond_dispersive, dispersive_limit, test};
 pub use next::next;

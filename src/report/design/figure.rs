@@ -6,6 +6,7 @@ use crate::report::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Line, ORANGE, PURPLE, Rule, VERMILLION,
 };
 use crate::report::shell::Drawn;
+use crate::words::base_size;
 use crate::words::design::drawn_of_networks;
 
 /// The figure, of the row that holds least. Where none is known to hold, of the first that has a boundary or
@@ -42,7 +43,7 @@ pub(super) fn erosion(design: &Design, walks: &[WalkRow]) -> Option<Drawn> {
     figure.add(Rule::new(Across::Y, 100.0 * design.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
     let of_base =
-        design.base.size().map_or(String::new(), |base| format!(" {}.", base.words_in(size_unit(design))));
+        design.base.size().map_or(String::new(), |base| format!(" {}.", base_size(&base, size_unit(design))));
     let blend = match design.replicates {
         1 => String::new(),
         networks => format!(" The colours blend over the {} of the networks.", drawn_of_networks(networks)),

@@ -22,6 +22,7 @@ use super::shell::{citation, clean, unbroken};
 use super::specification::{answer, with_details};
 use super::written::Written;
 use crate::outcome::design::{Design, WalkRow};
+use crate::words::base_size;
 use crate::words::design::design_model;
 use crate::words::left_out::left_out_in_brief;
 use crate::words::specification::band as band_words;
@@ -116,7 +117,7 @@ fn model(design: &Design, foremost: &[String], more: usize) -> Markup {
     html! {
         section.verdict {
             p.practice { b { "Model (research)" } ": " (said) "." }
-            @if let Some(base) = design.base.size() { p { (base.words_in(size_unit(design))) "." } }
+            @if let Some(base) = design.base.size() { p { (base_size(&base, size_unit(design))) "." } }
             @if !foremost.is_empty() { ul { @for said in foremost { li { (unbroken(said)) } } } }
             @if more > 0 { p.small { "and " (more) " more below, under “Other notes”" } }
         }

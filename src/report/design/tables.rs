@@ -10,13 +10,16 @@ use crate::report::names::{file_name, option_words};
 use crate::report::numbers::{rounded_down, significant, threshold, trimmed, whole};
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
+use crate::words::base_size;
 use crate::words::design::share_of_networks;
 use crate::words::sentence;
 
 /// The boundaries of the model, a row a density and thickness.
 pub(super) fn boundaries(design: &Design) -> Markup {
-    let of_base =
-        design.base.size().map_or(String::new(), |base| format!(" ({})", base.words_in(size_unit(design))));
+    let of_base = design
+        .base
+        .size()
+        .map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(design))));
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(design);
     let limit = |mm: f64| unit.limit(mm, "mm", false);
@@ -111,7 +114,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
-            @if let Some(base) = design.base.size() { (fact("D85B", base.words_in(size_unit(design)))) }
+            @if let Some(base) = design.base.size() { (fact("D85B", base_size(&base, size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))

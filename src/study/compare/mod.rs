@@ -15,12 +15,13 @@ use std::path::{Path, PathBuf};
 
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
-use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::comparison::Comparison;
 use crate::outcome::numbers::SizeUnit;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
 use crate::verdict::practice::counts_as;
+use crate::words::comparison::{case_columns, pair_columns};
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -48,8 +49,8 @@ pub fn run(
     campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, _, walked| {
         let comparison = plan.compared(folder, walked)?;
-        folder.write(CASES, &ComparedCase::columns(SizeUnit::Mm).csv(&comparison.cases))?;
-        folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
+        folder.write(CASES, &case_columns(SizeUnit::Mm).csv(&comparison.cases))?;
+        folder.write(PAIRS, &pair_columns().csv(&comparison.pairs))?;
         Ok(comparison)
     })
 }

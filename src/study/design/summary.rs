@@ -20,6 +20,7 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
 use crate::study::days::today;
 use crate::verdict::SpecificationOptions;
+use crate::words::grading;
 
 /// Ratio at which a row is judged where no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
@@ -256,7 +257,7 @@ fn judged(
 pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
     let of_network = |done: &Done| {
         let (wanted, network) = (&rows[done.row].wanted, done.network);
-        let d85b_of = base(&rows[done.row], "").size().map_or(String::new(), |size| size.grading());
+        let d85b_of = base(&rows[done.row], "").size().map_or(String::new(), |size| grading(&size));
         let row = |&(d15f_over_d85b, eroded_first, eroded_second): &(f64, f64, Option<f64>)| WalkRow {
             density: wanted.density.clone(),
             thickness: wanted.thickness.to_string(),

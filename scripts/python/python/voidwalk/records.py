@@ -45,6 +45,7 @@ __all__ = [
     "NetworkRecord",
     "NetworkSummary",
     "NoBand",
+    "NotKept",
     "Note",
     "NoteId",
     "OfThickness",
@@ -1731,6 +1732,29 @@ class SieveLimit(TypedDict):
     max_percent_finer: Optional[float]
 
 
+class _NotKept(TypedDict):
+    id: Literal["cu_of_fine_side", "cu_of_coarse_side", "width", "fines", "greatest_size"]
+
+
+class NotKept(_NotKept, total=False):
+    """What a product does not keep of what a band is asked for beside D15F.
+
+    Keys
+    ----
+    id
+    cu
+        That Cu.
+    ratio
+        Coarse over fine side at the same percent finer, at most.
+    percent
+        Percent finer than 0.075 mm, at most.
+    """
+
+    cu: float
+    ratio: float
+    percent: float
+
+
 class ProductMargin(TypedDict):
     """A standard product beside a specification. A row of `specification_products.csv`.
 
@@ -1759,7 +1783,7 @@ class ProductMargin(TypedDict):
     d15_coarse_mm: float
     drains_by: Optional[float]
     holds_by: Optional[float]
-    not_kept: str
+    not_kept: List[NotKept]
     source: str
 
 
