@@ -1,11 +1,8 @@
-//! What the model does not contain.
-
-use serde::{Deserialize, Serialize};
+//! What the model does not contain, as values. Their words are in `verdict`.
 
 /// Something that the model does not contain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
 pub enum ModelLimit {
     /// Flow, gradient and time.
     Hydraulics,

@@ -7,7 +7,7 @@ use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic, Verdict};
-use crate::words::capital;
+use crate::verdict::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -31,7 +31,7 @@ pub(super) fn fraction(statistic: &Statistic) -> Markup {
 }
 
 /// Means over the replicates.
-pub(super) fn results(walks: &Walks) -> Markup {
+pub(super) fn results(walks: &Walks, sentences: &[Option<String>]) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
     let scale_free = walks.scale_free;
     let nothing = || html! { "nothing eroded" };
@@ -78,6 +78,9 @@ pub(super) fn results(walks: &Walks) -> Markup {
     html! {
         h2 { "Results" }
         (table)
+        @for said in sentences.iter().flatten() {
+            p { (capital(said)) "." }
+        }
     }
 }
 

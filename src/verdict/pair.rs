@@ -2,11 +2,14 @@
 
 use serde::Serialize;
 
+use super::entry::Finding;
+use super::finding;
 use super::mistake::Mistake;
-use super::practice::{headline, record};
-use crate::gradation::{Gradation, RegradeReason};
-use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Note, Practice};
-use crate::outcome::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, tested_range};
+use super::practice::standing;
+use super::practice_words::practice_line;
+use crate::gradation::Gradation;
+use crate::outcome::record::{AppliedRule, IfDispersive, PracticeClass};
+use crate::outcome::rules::{BaseSoil, NamedCurve, apply_and_decide};
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,15 +21,15 @@ pub struct PairRules {
     pub base: BaseSizes,
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// The answer of practice; `None` where the limit of design was not applied.
-    pub headline: Option<Headline>,
-    /// What practice says of the pair; `None` likewise.
-    pub practice: Option<Practice>,
+    /// What they say together, in a line, as it stands on every page: whether practice is met, and why.
+    pub practice: String,
+    /// The same for programs.
+    pub practice_class: PracticeClass,
     /// The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
     /// What may be wrong with the two tables, and what was taken for what.
-    pub notes: Vec<Note>,
+    pub warnings: Vec<String>,
 }
 
 /// What else the rules are told of two soils.
@@ -83,7 +86,7 @@ pub struct BaseSizes {
     /// The size on which it was regraded.
     pub regraded_at_mm: Option<f64>,
     /// Why it was regraded, or not.
-    pub why: RegradeReason,
+    pub why: String,
     /// 15 % finer, before regrading.
     pub d15_mm: Option<f64>,
     /// 85 % finer, after regrading.
@@ -148,21 +151,16 @@ impl PairRules {
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
         };
         let mistake = Mistake::of_envelopes(bases, filters);
-        let mut notes: Vec<Note> = mistake.map(|mistake| mistake.note).into_iter().collect();
+        let mut found: Vec<Finding> = mistake.iter().map(Mistake::finding).collect();
         for (whose, curves) in [("filter", filters), ("base", bases)] {
             if curves.len() > 1 {
-                notes.push(Note::Envelope { soil: whose.into(), curves: names(curves) });
+                found.push(finding::envelope(whose, curves.len() as u64, &names(curves).join(", ")));
             }
         }
         let if_dispersive = match options.dispersive {
             true => None,
             false => IfDispersive::of_bases(bases, filter),
         };
-        let is_beyond = if_dispersive.is_some_and(|limit| limit.broken_by(&rules, filter.d(15.0)).is_some());
-        let range = tested_range(&RuleInputs {
-            dispersive: options.dispersive,
-            ..RuleInputs::of_soils(base, filter)
-        });
         Self {
             filter: FilterSizes {
                 curves: names(filters),
@@ -181,7 +179,7 @@ impl PairRules {
                 fines_percent,
                 regraded,
                 regraded_at_mm,
-                why,
+                why: why.words(),
                 d15_mm: base.d(15.0),
                 d85_mm: gradation.d(85.0),
                 d85_as_sampled_mm: base.d(85.0),
@@ -189,11 +187,11 @@ impl PairRules {
                 cu: base.cu(),
                 cc: base.cc(),
             },
-            headline: headline(&rules, is_beyond),
-            practice: record(&rules, range),
+            practice: practice_line(&rules, if_dispersive, filter.d(15.0)),
+            practice_class: standing(&rules).class(),
             if_dispersive,
             rules,
-            notes,
+            warnings: found.iter().map(Finding::with_to_do).collect(),
         }
     }
 }
@@ -203,7 +201,7 @@ mod tests {
     use super::*;
     use crate::outcome::record::{Headline, RuleRole};
     use crate::outcome::rules::DESIGN;
-    use crate::verdict::practice::{Standing, standing};
+    use crate::verdict::practice::Standing;
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
     #[test]
@@ -218,7 +216,7 @@ mod tests {
         assert_eq!(met("foster-fell-no-erosion"), Some(false));
         assert_eq!(met("foster-fell-continuing"), None);
         assert_eq!(met("permeability"), Some(true));
-        assert!(pair.notes.is_empty());
+        assert!(pair.warnings.is_empty());
     }
 
     /// 45 % fines, and nobody has said whether they are dispersive: what is met without a condition is said
@@ -232,11 +230,12 @@ mod tests {
             PairRules::of_envelopes(&base, &filter, PairOptions { dispersive, ..PairOptions::default() })
         };
         let pair = said(0.61, false);
-        assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
+        assert!(pair.practice.starts_with(Headline::MeetsUnlessDispersive.words()), "{}", pair.practice);
+        assert!(pair.practice.contains("the limit is 0.500 mm"), "{}", pair.practice);
         assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
-        assert_eq!(said(0.45, false).headline, Some(Headline::Meets));
+        assert!(said(0.45, false).practice.starts_with("meets practice: "));
         let stated = said(0.61, true);
-        assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
+        assert!(stated.practice.starts_with("does not meet practice: ") && stated.if_dispersive.is_none());
     }
 
     /// Bases of every category, with gravel, gaps and tails, and filters from too fine to too coarse.

@@ -26,9 +26,16 @@ fn statistic(mean: f64, sd: f64, replicates: u64) -> Statistic {
     Statistic { mean, sd: Some(sd), low: Some(mean - half), high: Some(mean + half) }
 }
 
-/// A note that holds a text.
-pub fn note(text: &str) -> Note {
-    Note::ReadAs { file: text.to_owned(), reading: "a table".to_owned() }
+/// A finding that changes nothing.
+pub fn finding(sentence: &str) -> FindingRecord {
+    FindingRecord {
+        id: String::new(),
+        about: Topic::Walk,
+        label: String::new(),
+        numbers: serde_json::Map::new(),
+        sentence: sentence.to_owned(),
+        to_do: String::new(),
+    }
 }
 
 /// The outcome of `replicates` replicates of two runs.
@@ -144,7 +151,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             replicates,
             network: NetworkKind::Cubic,
         },
-        notes: vec![Note::CohesiveFines { fines_percent: 18.0 }],
+        findings: vec![finding("18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.")],
         practice: None,
         constrictions: ConstrictionsRecord { origin: CurveOrigin::Given },
         seed: 2016,
@@ -166,7 +173,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             short_of: None,
         }),
         threshold: 0.075,
-        left_out: vec![LeftOut::PackingByCurve, LeftOut::SecondRun],
+        left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],
         model_leaves_out: ModelLimit::ALL.to_vec(),
         inputs: Inputs {
             filter: FilterRecord {
@@ -255,11 +262,12 @@ pub fn outcome(replicates: u64) -> Outcome {
                 at_least: false,
                 limit_at_most: false,
                 met: Some(value <= limit),
-                needs: Vec::new(),
-                notes: Vec::new(),
+                needs: RuleText::default(),
+                note: RuleText::default(),
                 applies_to: "bases in general".into(),
                 formula: String::new(),
                 source,
+                speaks_against: String::new(),
                 filter_curve: String::new(),
                 base_curve: String::new(),
             }

@@ -1,14 +1,10 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
-use crate::verdict::rule_result::result_of;
-use crate::words::rule::result;
-use crate::words::rule_note::rule_notes;
-use crate::words::{first_lines, sentence};
+use crate::verdict::rule_words::result_of;
 
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
@@ -30,7 +26,7 @@ fn unit(outcome: &Outcome) -> &'static str {
 
 fn verdict(outcome: &Outcome) -> Sheet {
     let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
-    for (name, said) in first_lines(outcome, SizeUnit::Mm) {
+    for (name, said) in outcome.first_lines() {
         sheet.item(name, said, "");
     }
     let practice = outcome.practice.as_ref();
@@ -47,8 +43,8 @@ fn verdict(outcome: &Outcome) -> Sheet {
         let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
     }
-    for (index, note) in outcome.notes.iter().enumerate() {
-        sheet.item(&format!("Note {}", index + 1), sentence(note, SizeUnit::Mm), "");
+    for (index, finding) in outcome.findings.iter().enumerate() {
+        sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");
     }
     sheet
 }
@@ -132,7 +128,7 @@ fn rules(outcome: &Outcome) -> Sheet {
 }
 
 fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
-    let notes: Vec<String> = [&rule.notes, &rule.needs].map(|notes| rule_notes(notes, SizeUnit::Mm)).into();
+    let notes: Vec<String> = [&rule.note, &rule.needs].iter().map(ToString::to_string).collect();
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
     let value_is = match rule.value_bound {
         Some(ValueBound::AtMost) => "the most that it can be",
@@ -157,7 +153,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
         (&rule.unit).into(),
         limit_is.into(),
         rule.applies.into(),
-        result(result_of(rule)).into(),
+        result_of(rule).words().into(),
         // A boundary of continuing erosion that is not reached is no limit that is met.
         rule.met.filter(|met| rule.role != RuleRole::Continuation || !met).into(),
         (&rule.formula).into(),
