@@ -20,7 +20,7 @@
 //! ```text
 //! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
 //! Scene -> Case -> run, campaign, study                                       the application
-//! report, serve, cli                                                          its faces
+//! words, report, serve, cli                                                   its faces
 //! ```
 //!
 //! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
@@ -51,6 +51,8 @@ pub mod walk;
 pub mod outcome;
 
 pub mod verdict;
+
+pub mod words;
 
 pub mod scene;
 

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms in the order in which data flows; a room uses only those before it.
-const ORDER: [&str; 20] = [
+const ORDER: [&str; 21] = [
     "text",
     "stream",
     "store",
@@ -23,6 +23,7 @@ const ORDER: [&str; 20] = [
     "walk",
     "outcome",
     "verdict",
+    "words",
     "scene",
     "case",
     "run",
@@ -159,7 +160,7 @@ fn walk_and_report_know_what_they_may() {
     for source in sources() {
         let may: &[&str] = match room(&source.module) {
             "walk" => &["stream", "store", "gradation", "network", "walk"],
-            "report" => &["outcome", "verdict", "store", "text", "report"],
+            "report" => &["outcome", "verdict", "words", "store", "text", "report"],
             _ => continue,
         };
         for name in ORDER.iter().filter(|name| !may.contains(name)) {

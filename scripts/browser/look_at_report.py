@@ -69,7 +69,7 @@ PRINTED_CURVES = """[...document.querySelectorAll('[class^=curve-]')].filter(par
   .concat([...document.querySelectorAll('.looks')].filter(part => part.getClientRects().length > 0)).length"""
 
 # What must stand on the first printed page, so that it can be handed in by itself.
-FIRST_PAGE = """[...document.querySelectorAll('.names, .model, .about, .practice, .counted, .verdict li, .band, .pair .sizes, .caution, .short, .pair figcaption')]
+FIRST_PAGE = """[...document.querySelectorAll('.names, header .model, .about div:not(.signed), .practice, .counted, .verdict li, .band, .pair .sizes, .caution, .short, .sheet > figure figcaption')]
   .map(part => part.innerText).concat(document.querySelector('.sign') ? ['Name Date Signature Prepared Checked Approved'] : [])"""
 
 # The least lettering of Figure 1 in print (points), where it stands on the first page.

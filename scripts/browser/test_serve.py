@@ -352,7 +352,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     other.picture("17-how-coarse-on-a-telephone")
     page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
     report.browser.show(report.tab, page, 1280, 900)
-    if not report.run("document.body.innerText.includes('The band')"):
+    if not report.run("document.body.innerText.includes('Boundaries of the model')"):
         raise SystemExit("the page of the design is not there")
 
     quiet(browser)

@@ -16,8 +16,8 @@ Compared are
 - the numbers of precision's tables.
 Left out are
 - times and what is worked out from them (figures of merit): no two calls take the same;
-- names, sentences, warnings and all other text, that of rules too, and pages and figures: their wording may change, and their numbers
-  are those that are compared;
+- names, notes and all other text, that of rules too, and pages and figures: their wording may change, and their numbers are those
+  that are compared;
 - rules of practice and what they say of a pair: they read the sieve curves alone, grow in number, and have tests of their own;
 - the settings that packing.json repeats: their names may change, and the grains show their values;
 - manifests, fingerprints and ledgers, which say who worked when.
@@ -208,8 +208,8 @@ set = { filter = { density = "dense", cu = 1.5 }, packing = { grains = 300, stif
 """
 
 WORDS = {"verdict", "engine", "kind", "counted_facets"}  # their text is a result
-DROPPED = {"seconds", "settings", "rules", "notes", "warnings", "findings", "short_of", "sentence", "practice", "if_dispersive"}
-LABELS = {"rules_not_met", "warnings", "d85b_of"}  # columns of a campaign's table that are no result of a walk
+DROPPED = {"seconds", "settings", "rules", "notes", "left_out", "short_of", "practice", "if_dispersive"}
+LABELS = {"rules_not_met", "notes", "d85b_of"}  # columns of a campaign's table that are no result of a walk
 ROWS = 12
 
 

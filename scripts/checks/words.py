@@ -11,6 +11,7 @@ two minutes; numbers of the walk are not those of a design. Exit code 1 where a 
 """
 
 import argparse
+import html
 import json
 import os
 import re
@@ -27,6 +28,9 @@ SMALL = ["network.nx=10", "network.ny=10", "network.nz=30", "replicates=3", "see
 WITH_SOURCES = ("C33 on", "No. ", "gap", "filter")
 # Times, and the folder of this machine.
 VARYING = re.compile(r"^\s*(\d[\d.]* ?(s|ms|min)\b.*|to go on from:.*|report: .*)$")
+# The number of notes and their names stand behind that folder; their sentences are on the page.
+LABELS = re.compile(r"^report: .*; (\d+ notes: .*)$")
+NOTES = re.compile(r"<h2[^>]*>Notes</h2>\s*<ul[^>]*>(.*?)</ul>", re.DOTALL)
 
 
 def table(path: Path, rows: list[list[float]]) -> str:
@@ -37,17 +41,22 @@ def table(path: Path, rows: list[list[float]]) -> str:
 def said(binary: Path, folder: Path, *words: str) -> str:
     run = subprocess.run([binary, *words], cwd=folder, capture_output=True, text=True)
     text = run.stdout if run.returncode in (0, 1) or run.stdout else run.stderr
-    lines = [line.rstrip() for line in text.splitlines() if not VARYING.match(line)]
+    text = "\n".join(LABELS.sub(r"\1", line.rstrip()) for line in text.splitlines())
+    lines = [line for line in text.splitlines() if not VARYING.match(line)]
     return f"$ {' '.join(words[:1])}: exit code {run.returncode}\n" + "\n".join(lines) + "\n"
 
 
 def notes(folder: Path) -> str:
+    """The headline, and the sentences of the notes from the page beside their names from the record."""
     outcome = folder / "out" / "outcome.json"
     if not outcome.is_file():
         return ""
-    record = json.loads(outcome.read_text())
-    found = [f"- {finding['id']}: {finding['sentence']}" for finding in record.get("findings", [])]
-    return "\n".join(["notes", f"headline: {record.get('headline')}", *found]) + "\n"
+    record, page = json.loads(outcome.read_text()), (folder / "out" / "report.html").read_text()
+    listed = NOTES.search(page)
+    items = re.findall(r"<li[^>]*>(.*?)</li>", listed[1], re.DOTALL) if listed else []
+    sentences = [" ".join(html.unescape(re.sub(r"<[^>]*>", "", item)).split()) for item in items]
+    lines = [f"- {note['id']}: {words}" for note, words in zip(record["notes"], sentences, strict=True)]
+    return "\n".join(["notes", f"headline: {record.get('headline')}", *lines]) + "\n"
 
 
 def words_of(binary: Path, pair: dict) -> str:

@@ -4,6 +4,8 @@
 //! `filter.estimate` packs its grains.
 
 use std::error::Error;
+use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::words::sentence;
 use voidwalk::{Callbacks, Case, Scene, walk_case};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -27,6 +29,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     for run in &outcome.summary {
         println!("run {}: {:.2} % of the mass eroded", run.run, 100.0 * run.eroded_mass_fraction.mean);
     }
-    outcome.findings.iter().for_each(|finding| println!("- {}", finding.sentence));
+    outcome.notes.iter().for_each(|note| println!("- {}", sentence(note, SizeUnit::Mm)));
     Ok(())
 }

@@ -32,8 +32,8 @@ ROOTS = {
     "manifest": "Manifest",
 }
 
-#: Names that are said without what they are to the program.
-SHORT = {"FindingRecord": "Finding"}
+#: The longest list of words that is written where it is used; a longer one has a name.
+LONGEST = 500
 
 HEAD = '''"""The types of what voidwalk hands out as dicts: the records of its JSON files.
 
@@ -55,11 +55,11 @@ class Types:
 
     def of(self, schema: Any, defs: Dict[str, Any]) -> str:
         """The annotation of a schema."""
-        if schema is True or schema == {}:
+        if schema is True:
             return "object"
         if "$ref" in schema:
             name = schema["$ref"].rsplit("/", 1)[1]
-            return self.named(SHORT.get(name, name), defs[name], defs)
+            return self.named(name, defs[name], defs)
         for several in ("anyOf", "oneOf"):
             if several in schema:
                 return self.union([self.of(one, defs) for one in schema[several]])
@@ -67,6 +67,9 @@ class Types:
             return f"Literal[{json.dumps(schema['const'])}]"
         if "enum" in schema:
             return f"Literal[{', '.join(json.dumps(word) for word in schema['enum'])}]"
+        # A value of any kind, which a description alone makes no other.
+        if "type" not in schema:
+            return "object"
         kinds = schema["type"] if isinstance(schema["type"], list) else [schema["type"]]
         return self.union([self.kind(kind, schema, defs) for kind in kinds])
 
@@ -96,8 +99,17 @@ class Types:
 
     def named(self, name: str, schema: Any, defs: Dict[str, Any]) -> str:
         """A type that has a name: a dict with its fields, or what stands for it."""
+        if all("properties" in one for one in schema.get("oneOf", [{}])):
+            schema = merged(schema)
         if "properties" not in schema or schema.get("type") != "object":
-            return self.of(schema, defs)
+            kind = self.of(schema, defs)
+            if not kind.startswith("Literal[") or len(kind) <= LONGEST:
+                return kind
+            about = comment(schema.get("description", "")).replace("    #:", "#:")
+            listed = json.loads(f"[{kind[len('Literal[') : -1]}]")
+            words = "".join(f"    {json.dumps(word)},\n" for word in listed)
+            self.texts.setdefault(name, f"{about}{name} = Literal[\n{words}]\n")
+            return name
         required = set(schema.get("required", []))
         groups: Tuple[List[str], List[str]] = ([], [])
         # A class cannot have a field that is called as a word of the language is: a call can.
@@ -131,6 +143,25 @@ class Types:
         kinds = {field: self.of(of, defs) for field, of in schema["properties"].items() if field in required}
         fields = "".join(f'        "{field}": {kind},\n' for field, kind in kinds.items())
         return f'{name} = TypedDict(\n    "{name}",\n    {{\n{fields}    }},\n)\n'
+
+
+def merged(schema: Any) -> Any:
+    """One dict in place of several, which are told apart by a word: with the fields of all."""
+    fields: Dict[str, List[Any]] = {}
+    for one in schema["oneOf"]:
+        for field, of in one["properties"].items():
+            if of not in fields.setdefault(field, []):
+                fields[field].append(of)
+    always = [set(one.get("required", [])) for one in schema["oneOf"]]
+    return {
+        "type": "object",
+        "description": schema.get("description", ""),
+        "properties": {
+            field: of[0] if len(of) == 1 else {"description": of[0].get("description", ""), "anyOf": of}
+            for field, of in fields.items()
+        },
+        "required": [field for field in fields if all(field in one for one in always)],
+    }
 
 
 def sentence(said: str) -> str:

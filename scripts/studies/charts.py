@@ -182,7 +182,7 @@ def collect(args):
                     "constrictions": SHIPPED.get((cu_f, density), "packed"),
                     "settings": " ".join(said.removeprefix("--set ") for said in design["settings"] if said.startswith("--set ")),
                     "processor_s": round(seconds.get(folder.name, 0.0), 1),
-                    "note": found.get(f"{name}_note") or "",
+                    "note": "; ".join(note["id"] for note in found.get(f"{name}_notes", [])),
                 }
             )
     return lines

@@ -69,8 +69,8 @@ def judge(binary, soil, name, extra):
     out = json.loads(done.stdout)
     rules = {rule["id"]: rule for rule in out["rules"]}
     tests, design = rules.get("foster-fell-no-erosion", {}), rules.get("sherard-dunnigan", {})
-    findings = out["findings"]
-    of_dispersion = [finding["id"] for finding in findings if finding["id"].startswith("dispers")]
+    notes = [note["id"] for note in out["notes"]]
+    of_dispersion = [note for note in notes if note.startswith("dispers")]
     return row | {
         "model": out["model"]["class"],
         "headline": out.get("headline", ""),
@@ -80,7 +80,7 @@ def judge(binary, soil, name, extra):
         "no_erosion_limit_mm": tests.get("limit"),
         "no_erosion_met": tests.get("met"),
         "d15f_mm": tests.get("value"),
-        "first_finding": findings[0]["id"] if findings else "",
+        "first_finding": notes[0] if notes else "",
         "continuing_limit_mm": rules.get("foster-fell-continuing", {}).get("limit"),
         "dispersion": of_dispersion[0] if of_dispersion else "",
     }
@@ -136,7 +136,7 @@ def summary(rows):
         none = [row for row in here if row["model"] == "no erosion"]
         first = Counter(row["first_finding"] for row in here if row["headline"] != MEETS)
         print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in here)} green;",
-              "first finding of the others:", first.most_common(4))
+              "first note of the others:", first.most_common(4))
     print("dispersion:", Counter((row["model"], row.get("dispersion", "")) for row in holds).most_common())
     print("origins:", dict(Counter(row["origin"] for row in done)))
     undecided = Counter(row["first_finding"] for row in done if row["model"] == "undecided")

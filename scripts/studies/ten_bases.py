@@ -62,9 +62,9 @@ def walk(args, name, told):
     }
 
 
-def words(found, note):
+def words(found, notes):
     if not found:
-        return note or "none"
+        return ", ".join(note["id"].replace("_", " ") for note in notes) or "none"
     band = "no band" if found["low"] is None or found["high"] is None else f"{found['low']:.3f} to {found['high']:.3f}"
     mm = found.get("d15f_mm")
     return f"{found['median']:.3f} ({band})" + (f"; D15F {mm['median']:.3f} mm" if mm else "")
@@ -75,8 +75,8 @@ def table(done):
     print("|---|---|---|---|---|---|---|---|---|")
     for one in done:
         row, cu = one["design"]["boundaries"][0], one["design"]["base"]["cu"]
-        print(f"| {one['base']} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_note'))} "
-              f"| {words(row['continuing'], row.get('continuing_note'))} | {row['not_monotone']} of {len(row['networks'])} "
+        print(f"| {one['base']} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_notes', []))} "
+              f"| {words(row['continuing'], row.get('continuing_notes', []))} | {row['not_monotone']} of {len(row['networks'])} "
               f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |")
 
 

@@ -11,6 +11,7 @@ use crate::run::error::RunError;
 use crate::run::results::json;
 use crate::store::format::{self, visible_json};
 use crate::store::{read_whole, write_whole};
+use crate::words::ledger::columns;
 
 /// Cases of the ledger in a campaign's folder that this plan does not have: they are about to leave it.
 pub(super) fn of_other_plans(plan: &CampaignPlan, out: &Path) -> Vec<String> {
@@ -49,6 +50,6 @@ pub(super) fn collect(
     }
     write_whole(&out.join("ledger.jsonl"), ledger.as_bytes())?;
     write_whole(&out.join("campaign.json"), &json(format::CAMPAIGN, &about)?)?;
-    write_whole(&out.join("cases.csv"), &LedgerLine::columns(&about.factors).csv(&lines))?;
+    write_whole(&out.join("cases.csv"), &columns(&about.factors).csv(&lines))?;
     Ok(lines)
 }

@@ -6,8 +6,8 @@ use libm::cbrt;
 
 use super::{Case, CaseError};
 use crate::outcome::Modelled;
+use crate::outcome::record::Note;
 use crate::outcome::record::{ArchingByVoidRecord, ArchingRecord};
-use crate::verdict::{Finding, finding};
 use crate::walk::{Arching, ByVoid, Concentration, DENSEST};
 
 impl Case {
@@ -78,9 +78,9 @@ impl Case {
     }
 
     /// What arches and openings, which no test has checked, say against a verdict.
-    pub fn unchecked_clogging(&self) -> impl Iterator<Item = Finding> {
-        let arches = self.scene.law().map(|law| finding::arches(law.name));
-        arches.into_iter().chain(self.scene.leaves_openings().then(finding::openings))
+    pub fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
+        let arches = self.scene.law().map(|law| Note::Arches { law: law.name.into() });
+        arches.into_iter().chain(self.scene.leaves_openings().then_some(Note::Openings {}))
     }
 
     /// Refuses a law that asks how densely the base arrives where nothing says so, and openings beside

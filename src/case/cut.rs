@@ -54,6 +54,7 @@ pub(super) fn that_can_be_packed(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::Note;
     use crate::verdict::beside::packed_part;
 
     /// ASTM C33 fine aggregate, the middle of its band.
@@ -71,7 +72,10 @@ mod tests {
         assert!((packed.surface_left_out - 0.015855).abs() < 1e-6, "{packed:?}");
         assert!((packed.finer_by - 0.6 * packed.surface_left_out).abs() < 1e-15);
         assert!(!packed.sizes_missing_above);
-        assert!(packed_part(&packed).sentence().contains("90 % of its mass, up to 2.36 mm"));
+        let Note::PartPacked { part_percent, largest_mm, .. } = packed_part(&packed) else {
+            panic!("{packed:?}")
+        };
+        assert!((part_percent - 90.0).abs() < 0.05 && (largest_mm - 2.36).abs() < 0.005, "{packed:?}");
         // All of it leaves nothing out.
         let (all, packed) = finer_part(&c33(), 100.0).unwrap();
         assert_eq!((all, packed.surface_left_out), (c33(), 0.0));
@@ -92,7 +96,7 @@ mod tests {
         let (part, packed) = that_can_be_packed(&gap, width).unwrap();
         assert!(part.largest_mm() <= 0.5 && packed.percent > 39.8, "{packed:?}");
         assert!(packed.sizes_missing_above);
-        assert!(packed_part(&packed).sentence().contains("taken to float"));
+        assert!(matches!(packed_part(&packed), Note::FloatingPartPacked { .. }));
         // Too few grains for a part that says anything of the whole, and fines that coarse grains do not
         // float in.
         assert_eq!(that_can_be_packed(&c33(), |part| 1.0 / part.largest_mm()), None);

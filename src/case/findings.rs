@@ -1,14 +1,15 @@
-//! What a case finds about its verdict before it is walked: where it leaves the range in which the model was
-//! checked, and what else a reader must know.
+//! Notes on a case before it is walked: where it leaves the range in which the model was checked, and what
+//! else a reader must know.
 
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use super::supply::PAPER_MASS_RATIO;
 use super::{Case, Input, PackingPlan, needs_grains_per_void, replicate_seed};
 use crate::gradation::GRAVEL_MM;
 use crate::network::ExitRule;
+use crate::outcome::record::Note;
 use crate::scene::{LibraryDensity, NetworkSource, Regrade};
+use crate::verdict::PlannedWalk;
 use crate::verdict::beside::packed_part;
-use crate::verdict::{Finding, PlannedWalk, finding, rank};
 
 /// More moves than these of a particle that nothing stops are worth a word.
 const MANY_MOVES: f64 = 1e5;
@@ -23,19 +24,11 @@ const SKELETON: f64 = 0.9;
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
-    /// What is known of its verdict before the walk, in sentences: what `check` says.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut all = self.findings();
-        // Whether these are the right tables at all comes first.
-        all.sort_by_key(|finding| (finding.id() != "doubtful_tables", rank(finding)));
-        all.iter().map(Finding::with_to_do).collect()
-    }
-
-    /// What is known of its verdict before the walk, but for what the walk itself will say.
-    pub fn findings(&self) -> Vec<Finding> {
-        let mut all = self.planned_walk().findings();
-        all.extend((self.scene.base.dispersive == Some(true)).then(finding::dispersive_base));
-        all.extend(self.scene.filter.joint_mm.map(finding::open_joint));
+    /// Notes before the walk, but for what the walk itself will find.
+    pub fn notes(&self) -> Vec<Note> {
+        let mut all = self.planned_walk().notes();
+        all.extend((self.scene.base.dispersive == Some(true)).then_some(Note::DispersiveBase {}));
+        all.extend(self.scene.filter.joint_mm.map(|width_mm| Note::OpenJoint { width_mm }));
         all.extend(self.too_thick());
         all.extend(self.too_little_base());
         all.extend(self.other_filter());
@@ -44,22 +37,25 @@ impl Case {
         all.extend(self.packed.as_ref().and_then(|packed| packed.part.as_ref()).map(packed_part));
         let loose = self.packed.as_ref().and_then(|packed| packed.rattlers);
         match loose.filter(|loose| *loose >= MANY_LOOSE).map(|loose| 100.0 * loose) {
-            Some(loose) if loose > 100.0 * SKELETON => all.push(finding::skeleton(loose)),
-            loose => all.extend(loose.map(finding::loose_grains)),
+            Some(loose_percent) if loose_percent > 100.0 * SKELETON => {
+                all.push(Note::Skeleton { loose_percent });
+            }
+            loose => all.extend(loose.map(|loose_percent| Note::LooseGrains { loose_percent })),
         }
         all.extend(self.regrading());
-        let of_file = |input: &Input| -> Vec<Finding> {
-            input.notes.iter().map(|note| finding::read_as(&input.name, note)).collect()
+        let of_file = |input: &Input| -> Vec<Note> {
+            let read_as =
+                |reading: &String| Note::ReadAs { file: input.name.clone(), reading: reading.clone() };
+            input.notes.iter().map(read_as).collect()
         };
         all.extend(self.inputs.iter().flat_map(of_file));
         if self.filter.pan_fraction() > 0.0 {
-            all.push(finding::pan_of_filter(100.0 * self.filter.pan_fraction()));
+            all.push(Note::PanOfFilter { finest_percent: 100.0 * self.filter.pan_fraction() });
         }
         all.extend(self.narrow_cell());
-        all.extend(self.copies.map(|(copies, _)| finding::one_packing(copies.into())));
+        all.extend(self.copies.map(|(copies, _)| Note::OnePacking { copies: copies.into() }));
         if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
-            let about = if moves < 1e15 { format!("about {moves:.1e}") } else { "more than 1e15".into() };
-            all.push(finding::long_way_out(&about));
+            all.push(Note::LongWayOut { moves: moves.min(1e300) });
         }
         all
     }
@@ -88,78 +84,82 @@ impl Case {
     }
 
     /// A shipped constriction curve of another filter.
-    fn other_filter(&self) -> Option<Finding> {
+    fn other_filter(&self) -> Option<Note> {
         let shipped = self.shipped.filter(|_| self.fixed_network.is_none())?;
         let cu = self.filter.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
-        Some(finding::other_curve(cu, &shipped.name, shipped.cu))
+        Some(Note::OtherCurve { cu, curve: shipped.name.clone(), curve_cu: shipped.cu })
     }
 
     /// What is not measured where nobody packed the filter.
-    fn guesses(&self) -> Vec<Finding> {
+    fn guesses(&self) -> Vec<Note> {
         if let Some(library) = &self.library {
             let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
-            let found = match density {
-                LibraryDensity::Unknown => finding::library_of_any_density(100.0 * library.found.off_by),
-                _ => finding::library_of_density(density.name(), 100.0 * library.found.off_by),
+            let error_percent = 100.0 * library.found.off_by;
+            let note = match density {
+                LibraryDensity::Unknown => Note::LibraryOfAnyDensity { error_percent },
+                _ => Note::LibraryOfDensity { density: density.name().into(), error_percent },
             };
-            return std::iter::once(found).chain(library.part.as_ref().map(packed_part)).collect();
+            return std::iter::once(note).chain(library.part.as_ref().map(packed_part)).collect();
         }
         if self.guessed_density.is_none() {
             return Vec::new();
         }
-        let like_none = self.scene.filter.library.map(|_| finding::like_none_of_the_library());
+        let like_none = self.scene.filter.library.map(|_| Note::LikeNoneOfTheLibrary {});
         let grains = needs_grains_per_void(&self.scene, self.guessed_density);
-        let grains = grains.then(|| finding::guessed_grains(GUESSED_GRAINS_PER_VOID));
-        like_none.into_iter().chain([finding::guessed_constrictions()]).chain(grains).collect()
+        let grains = grains.then_some(Note::GuessedGrains { grains: GUESSED_GRAINS_PER_VOID });
+        like_none.into_iter().chain([Note::GuessedConstrictions {}]).chain(grains).collect()
     }
 
     /// That less base is offered than the paper's Eq. (2) and mass ratio ask for.
-    pub fn too_little_base(&self) -> Option<Finding> {
+    pub fn too_little_base(&self) -> Option<Note> {
         let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
+        let particles = self.n_base;
         match self.n_base_eq2 {
-            Some(eq2) if self.capped => Some(finding::capped_base(self.n_base, eq2)),
-            Some(eq2) if self.n_base < eq2 => Some(finding::few_particles(self.n_base, eq2)),
+            Some(needed) if self.capped => Some(Note::CappedBase { particles, needed }),
+            Some(needed) if particles < needed => Some(Note::FewParticles { particles, needed }),
             Some(_) if self.scene.base.n_base.is_none() && ratio < PAPER_MASS_RATIO => {
-                Some(finding::low_mass_ratio(100.0 * ratio))
+                Some(Note::LowMassRatio { ratio_percent: 100.0 * ratio })
             }
-            None => self.scene.base.n_base.map(finding::amount_unknown),
+            None => self.scene.base.n_base.map(|particles| Note::AmountUnknown { particles }),
             _ => None,
         }
     }
 
     /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
     /// a thickness is rounded.
-    fn too_thick(&self) -> Option<Finding> {
-        let real = self.scene.filter.thickness_mm?;
+    fn too_thick(&self) -> Option<Note> {
+        let real_mm = self.scene.filter.thickness_mm?;
         if self.is_scale_free() {
-            return Some(finding::thickness_without_unit(real, "D0F"));
+            return Some(Note::ThicknessWithoutUnit { real_mm, unit: "D0F".into() });
         }
-        let Some(modelled) = self.thickness() else { return Some(finding::thickness_of_file(real)) };
+        let Some(modelled_mm) = self.thickness() else { return Some(Note::ThicknessOfFile { real_mm }) };
         let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
-        let shown = format!("{modelled:.1} mm");
-        (modelled > real + half * (1.0 + 1e-9)).then(|| match self.copies {
-            Some((copies, _)) => finding::copies_thicker(copies.into(), &shown, real),
-            None => finding::layers_thicker(self.counts[3], &shown, real),
+        (modelled_mm > real_mm + half * (1.0 + 1e-9)).then(|| match self.copies {
+            Some((copies, _)) => Note::CopiesThicker { copies: copies.into(), modelled_mm, real_mm },
+            None => Note::LayersThicker { layers: self.counts[3], modelled_mm, real_mm },
         })
     }
 
     /// A base that is walked regraded, or that was to be.
-    fn regrading(&self) -> Option<Finding> {
+    fn regrading(&self) -> Option<Note> {
         match (&self.regraded_from, self.scene.base.regrade) {
-            (Some((given, at)), _) => Some(finding::regraded(given.percent_finer_by_mass(*at), *at)),
+            (Some((given, at)), _) => {
+                Some(Note::Regraded { part_percent: given.percent_finer_by_mass(*at), sieve_mm: *at })
+            }
             // Of a base without gravel nobody expects it.
             (None, Some(Regrade::Practice)) if self.base.largest_mm() > GRAVEL_MM => {
-                Some(finding::regrading_not_needed(&self.base.regraded().why))
+                Some(Note::RegradingNotNeeded {})
             }
             _ => None,
         }
     }
 
     /// A tall cell whose number of grains leaves it narrow.
-    fn narrow_cell(&self) -> Option<Finding> {
+    fn narrow_cell(&self) -> Option<Note> {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
-        Some(finding::narrow_cell(plan.compression.grains as u64, plan.aspect, width, usual))
+        let grains = plan.compression.grains as u64;
+        Some(Note::NarrowCell { grains, aspect: plan.aspect, width, usual })
     }
 
     /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
@@ -182,7 +182,6 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::record::Topic;
     use crate::scene::Scene;
 
     fn case(changes: &[&str]) -> Result<Case, String> {
@@ -190,23 +189,21 @@ mod tests {
         Case::new(Scene::built_in(&changes).unwrap()).map_err(|error| error.to_string())
     }
 
-    fn said(changes: &[&str]) -> String {
-        let found = case(changes).unwrap().findings();
-        let of_thickness = found.iter().filter(|finding| finding.entry.about == Topic::Thickness);
-        of_thickness.map(Finding::with_to_do).collect()
+    fn of_thickness(changes: &[&str]) -> Option<Note> {
+        case(changes).unwrap().notes().into_iter().find(|note| note.entry().label == "thickness")
     }
 
     #[test]
     fn a_real_thickness_is_compared_in_mm_and_to_half_a_layer() {
-        let said_of = said(&["filter.thickness_mm=50"]);
-        assert!(said_of.contains("is 50 mm, but sizes are multiples of D0F"), "{said_of}");
-        let sized = |real: &str| said(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
+        let without_unit = Note::ThicknessWithoutUnit { real_mm: 50.0, unit: "D0F".into() };
+        assert_eq!(of_thickness(&["filter.thickness_mm=50"]), Some(without_unit));
+        let sized = |real: &str| of_thickness(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
         let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
         let (layer, modelled) = (case.filter.d_by_number(50.0).unwrap(), case.thickness().unwrap());
-        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_empty());
-        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_empty());
+        assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_none());
+        assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_none());
         let thinner = sized(&format!("filter.thickness_mm={}", modelled - 0.51 * layer));
-        assert!(thinner.contains("layers of voids are") && thinner.contains("network.nz"), "{thinner}");
+        assert!(matches!(thinner, Some(Note::LayersThicker { .. })), "{thinner:?}");
     }
 
     #[test]
@@ -217,45 +214,42 @@ mod tests {
         }
         assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
     }
-    fn doubts(set: &[&str]) -> Vec<String> {
+
+    fn doubts(set: &[&str]) -> Vec<Note> {
         let small =
             ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
         let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
-        let found = Case::new(Scene::built_in(&all).unwrap()).unwrap().findings();
-        found.iter().map(Finding::sentence).collect()
+        Case::new(Scene::built_in(&all).unwrap()).unwrap().notes()
     }
 
     #[track_caller]
-    fn says(set: &[&str], word: &str) {
-        let found = doubts(set);
-        assert!(found.iter().any(|said| said.starts_with(word)), "{set:?}: {found:?}");
+    fn has(set: &[&str], id: &str) {
+        let notes = doubts(set);
+        assert!(notes.iter().any(|note| note.id() == id), "{set:?}: {notes:?}");
     }
 
     #[test]
     fn less_base_than_eq_2_gives_is_a_doubt() {
-        assert_eq!(doubts(&[]), Vec::<String>::new());
-        says(&["base.cap=500"], "The base is capped at 500 of the");
-        says(&["base.n_base=500"], "The base has 500 of the");
-        says(&["base.mass_ratio=0.01"], "The mass of the base is 1 % of the filter's");
+        assert_eq!(doubts(&[]), []);
+        has(&["base.cap=500"], "capped_base");
+        has(&["base.n_base=500"], "few_particles");
+        has(&["base.mass_ratio=0.01"], "low_mass_ratio");
         for enough in ["base.n_base=1e9", "base.cap=1e12", "base.mass_ratio=0.1"] {
-            assert_eq!(doubts(&[enough]), Vec::<String>::new(), "{enough}");
+            assert_eq!(doubts(&[enough]), [], "{enough}");
         }
     }
 
     #[test]
     fn a_narrow_lattice_is_a_doubt() {
-        says(&["network.nx=9"], "The lattice is only 9 x 10 voids across");
-        says(
-            &["network.ny=1", "network.connectivity={4=50,8=50}"],
-            "The lattice is only 10 x 1 voids across",
-        );
+        has(&["network.nx=9"], "narrow_lattice");
+        has(&["network.ny=1", "network.connectivity={4=50,8=50}"], "narrow_lattice");
     }
 
     #[test]
     fn a_base_that_is_all_on_its_way_is_a_doubt_where_water_flows() {
-        says(&["walk.exit=flux", "inject_share=0.1"], "The whole base is inserted before");
+        has(&["walk.exit=flux", "inject_share=0.1"], "all_on_its_way");
         for converged in [["walk.exit=flux", "inject_share=0.05"], ["walk.exit=area", "inject_share=0.1"]] {
-            assert_eq!(doubts(&converged), Vec::<String>::new(), "{converged:?}");
+            assert_eq!(doubts(&converged), [], "{converged:?}");
         }
     }
 

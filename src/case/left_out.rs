@@ -1,7 +1,7 @@
 //! What a case does not need.
 
 use super::Case;
-use crate::verdict::left_out::LeftOut;
+use crate::outcome::left_out::LeftOut;
 
 impl Case {
     /// Parts of the program that this scene does not need.

@@ -3,8 +3,8 @@
 use super::{Case, Input};
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::ExitRule;
+use crate::outcome::numbers::significant;
 use crate::outcome::record::{self, InputFile};
-use crate::outcome::three;
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
 impl Case {
@@ -129,7 +129,7 @@ impl Case {
             BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
         };
         let regraded = self.regraded_from.as_ref();
-        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {} mm", three(*at)))
+        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {} mm", significant(*at)))
     }
 
     /// The network that was walked, where its constrictions have no direction of their own.

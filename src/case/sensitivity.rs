@@ -1,8 +1,8 @@
 //! Which other numbers of base particles a case is walked with.
 
 use super::Case;
+use crate::outcome::left_out::LeftOut;
 use crate::scene::Amount;
-use crate::verdict::left_out::LeftOut;
 
 impl Case {
     /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
@@ -49,13 +49,17 @@ impl Case {
 mod tests {
     use super::*;
     use crate::scene::Scene;
+    use crate::words::left_out::left_out;
 
     #[test]
     fn what_is_not_walked_is_said_with_its_reason() {
         let of = |set: &[&str]| {
             let all: Vec<String> = set.iter().map(ToString::to_string).collect();
             let case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
-            (case.sensitivity_factors(), case.left_out().iter().map(LeftOut::words).collect::<Vec<_>>())
+            (
+                case.sensitivity_factors(),
+                case.left_out().iter().map(|part| left_out(part, "mm")).collect::<Vec<_>>(),
+            )
         };
         let (factors, left_out) = of(&["base.cap=1000"]);
         assert_eq!(factors, [0.25, 0.5]);

@@ -1,8 +1,8 @@
 //! The same case with a filter of another thickness.
 
 use super::{Case, CaseError};
+use crate::outcome::left_out::{LayerKind, LeftOut};
 use crate::scene::NetworkSource;
-use crate::verdict::left_out::{LayerKind, LeftOut};
 
 /// Multiples of the thickness that are walked by default.
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
@@ -99,8 +99,8 @@ mod tests {
         assert_eq!(thick.network(5).unwrap().fingerprint(), asked.network(5).unwrap().fingerprint());
         assert!(case(&["network.nz=20", "record.thickness=[1.01]"]).thickness_factors().is_empty());
         let unsaid = case(&["network.nz=20", "record.thickness=[1.01, 2]"]);
-        let reason = "a filter 1.01 times as thick: to the nearest whole number it has the same 20 layers";
-        assert_eq!(unsaid.left_out().iter().filter(|item| item.words() == reason).count(), 1);
+        let same = LeftOut::ThicknessTheSame(1.01, 20, LayerKind::Layer);
+        assert_eq!(unsaid.left_out().iter().filter(|part| **part == same).count(), 1);
         assert_eq!(unsaid.thickness_factors(), [2.0]);
         let given = case(&["base.n_base=1000"]).of_thickness(0.5).unwrap();
         assert_eq!((given.n_base, given.counts[3]), (1000, 30));

@@ -12,13 +12,13 @@ use crate::campaign::CampaignOptions;
 use crate::outcome::comparison::Comparison;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
-use crate::outcome::with_inches;
 use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;
 use crate::study::compare::{self, ComparePlan, Compared};
 use crate::study::refuse_twice;
-use crate::verdict::batch::{NAMED, columns, governing};
+use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
+use crate::words::batch::{columns, of_filter as filter_lines};
 
 /// Why several filters are refused.
 pub(super) const SEVERAL_FILTERS: &str =
@@ -138,8 +138,8 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
 
 /// How many samples a filter retains, and which govern.
 pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
-    let line = |said: String| plain(&if inches { with_inches(&said) } else { said });
-    filter.in_words(rows).into_iter().map(line).collect::<Vec<_>>().join("\n  ") + "\n"
+    let lines = filter_lines(filter, rows, SizeUnit::of(false, inches));
+    lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
 }
 
 /// The command that walks the samples that govern, or that nothing was walked.

@@ -17,7 +17,8 @@ use crate::outcome::record::Verdict;
 use crate::run::RunError;
 use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::ledger::thickness as thickness_words;
+use crate::words::left_out::left_out_line;
 
 /// A summary names no more cases than this.
 const SHOWN: usize = 20;
@@ -98,7 +99,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
             if same { thickness(&lines[0]) } else { "modelled filter thickness: see cases.csv".into() };
         let _ = writeln!(text, "{said}");
     }
-    let _ = writeln!(text, "{}", left_out_in_brief(&ledger::leaves_out(lines)));
+    let _ = writeln!(text, "{}", left_out_line(&ledger::leaves_out(lines)));
     let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();
     let page = shown(&out.join("report.html"));
     let time = format!("{seconds:.1} s from start to end of each, beside other cases");
@@ -107,7 +108,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
 }
 
 fn thickness(line: &LedgerLine) -> String {
-    format!("modelled filter thickness: {}", line.thickness.words())
+    format!("modelled filter thickness: {}", thickness_words(&line.thickness))
 }
 
 /// Writes the job scripts for the cases that are not done.

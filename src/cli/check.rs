@@ -8,10 +8,14 @@ use super::print::{count, json, plain, to_stdout};
 use super::values::with_options;
 use crate::campaign::CampaignPlan;
 use crate::constrictions::shipped;
+use crate::outcome::numbers::{SizeUnit, size_unit};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 use crate::store::format;
+use crate::words::grading;
+use crate::words::left_out::left_out;
+use crate::words::sentence;
 
 impl SettingArgs {
     /// All settings that the arguments give.
@@ -73,7 +77,7 @@ fn words(check: &Check) -> String {
     }
     line("base", base.name.clone());
     let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
-    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
+    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     line("  sizes", format!("D0 {d0:.4}, D85 {d85:.4}, D95 {d95:.4}, D100 {d100:.4} {unit}{grading}"));
     if let Some(before) = &base.as_sampled {
         let size = |size: Option<f64>| size.map_or("unknown".into(), |mm| format!("{mm:.4}"));
@@ -114,10 +118,11 @@ fn words(check: &Check) -> String {
     }
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
     for part in &check.left_out {
-        line("left out", part.clone());
+        line("left out", left_out(part, size_unit(check.inputs.scale_free)));
     }
-    for warning in &check.warnings {
-        line("warning", warning.clone());
+    let unit = SizeUnit::of(check.inputs.scale_free, false);
+    for note in &check.notes {
+        line("note", sentence(note, unit));
     }
     let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
     line("shipped curves", names.join(", "));

@@ -10,12 +10,13 @@ use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_std
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::{ComparedCase, Comparison};
-use crate::outcome::with_inches;
+use crate::outcome::numbers::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::comparison::{difference, not_in_intervals};
+use crate::words::left_out::left_out_line;
+use crate::words::{FOREMOST, lines_of, sentence};
 
 impl CompareArgs {
     fn compared(&self) -> Compared {
@@ -94,12 +95,16 @@ fn words(comparison: &Comparison) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |said: String| {
-        let said = if comparison.inches { with_inches(&said) } else { said };
         let _ = writeln!(text, "{}", plain(&said));
     };
     for case in &comparison.cases {
         line(format!("{}:", case.name));
-        for (name, words) in &case.first_lines {
+        for (name, words) in lines_of(
+            case.headline,
+            case.practice.as_ref(),
+            &case.model,
+            SizeUnit::of(case.scale_free, comparison.inches),
+        ) {
             line(format!("  {name}: {words}"));
         }
         line(format!(
@@ -108,19 +113,21 @@ fn words(comparison: &Comparison) -> String {
             of_base(case.base),
             grains_per_void(case.grains_per_void)
         ));
-        case.found.iter().take(FOREMOST).for_each(|sentence| line(format!("  - {sentence}")));
-        if case.found.len() > FOREMOST {
-            line(format!("  - and {} more on the page", case.found.len() - FOREMOST));
+        case.notes.iter().take(FOREMOST).for_each(|note| {
+            line(format!("  - {}", sentence(note, SizeUnit::of(case.scale_free, comparison.inches))))
+        });
+        if case.notes.len() > FOREMOST {
+            line(format!("  - and {} more on the page", case.notes.len() - FOREMOST));
         }
         for ([low, high], run) in case.curve_range.iter().zip(["first", "second"]) {
             let (low, high) = (percent(*low), percent(*high));
             line(format!("  {run} run over the range of the constriction curve: {low} to {high}"));
         }
     }
-    comparison.pairs.iter().for_each(|pair| line(pair.sentence()));
-    if let Some(what) = comparison.not_in_intervals() {
+    comparison.pairs.iter().for_each(|pair| line(difference(pair)));
+    if let Some(what) = not_in_intervals(comparison) {
         line(format!("Not in these intervals: {what}"));
     }
-    line(left_out_in_brief(&comparison.model_leaves_out));
+    line(left_out_line(&comparison.model_leaves_out));
     text
 }

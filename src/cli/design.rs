@@ -1,4 +1,4 @@
-//! `voidwalk design`: how coarse a filter may be.
+//! `voidwalk design`: the specification of a filter, and the boundaries of the model beside it.
 
 use super::args::DesignArgs;
 use super::design_each::design_each;
@@ -6,18 +6,20 @@ use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
-use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, Range, over_networks};
-use crate::outcome::numbers::{rounded_down, rounded_up};
-use crate::outcome::with_inches;
+use crate::outcome::design::{Boundary, Design, DesignRow, Range};
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::numbers::rounded_down;
+use crate::outcome::record::Note;
 use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
 use crate::store::format;
 use crate::study::design::{self, DesignOptions};
-use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::capital;
+use crate::words::base_size;
+use crate::words::design::{design_lines, over_networks};
+use crate::words::left_out::left_out_line;
+use crate::words::products::{products, to_be_checked};
+use crate::words::specification::{DESIGN_AGAIN, if_dispersive, raised, still_to_set, without_margin};
+use crate::words::{FOREMOST, row_note, sentence};
 
 /// The setting of the sheet besides its cover that a specification takes.
 const UNITS: &str = "about.units";
@@ -48,7 +50,6 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         settings,
         as_sampled: args.as_sampled,
         as_given: args.as_given,
-        inverse: args.inverse,
         bracket: [args.bracket.0, args.bracket.1],
         sieves: args.sieves,
         out: out.clone(),
@@ -72,77 +73,53 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     Ok(())
 }
 
-/// The answer in some lines.
+/// The lines of practice, then those of the model.
 fn words(design: &Design) -> String {
-    let mut lines = vec![match design.inverse {
-        false => format!("How coarse may the filter be? Base {}, filter {}", design.base.name, design.filter),
-        true => format!(
-            "How fine may the base be? Filter {}, base {} in any size",
-            design.filter, design.base.name
-        ),
-    }];
-    let answer = design.answer();
-    let of_base = design.specification.as_ref();
-    let dispersive = of_base.and_then(|of| of.if_dispersive_in_words(&by_option(DESIGN_AGAIN)));
-    lines.push(answer.limit);
-    lines.extend(design.base.size().map(|base| format!("  {}", base.words())));
-    let beside = [answer.washout, answer.margin, answer.walk, dispersive].into_iter().flatten();
-    lines.extend(beside.map(|said| format!("  {said}.")));
-    for row in &design.boundaries {
-        lines.extend(of_row(row, design));
-    }
+    let asked = "How coarse may the filter be?";
+    let mut lines = vec![format!("{asked} Base {}, filter {}", design.base.name, design.filter)];
+    let unit = SizeUnit::of(false, design.inches);
+    let of_model = design_lines(design, unit);
+    let (model, practice) = of_model.split_last().expect("a line of the model");
+    lines.extend(practice.iter().map(|(name, words)| format!("{name}: {words}")));
     if let Some(of) = &design.specification {
-        lines.extend(of.band_in_words().map(|band| format!("band to specify: {band}")));
-        lines.extend(of.raised_in_words().map(|raised| format!("  {raised}")));
-        lines.extend(of.findings.iter().map(|found| format!("warning: {}", found.words())));
-        lines.extend(of.still_to_set());
+        lines.extend(raised(of, unit).map(|raised| format!("  {raised}")));
+        let dispersive = if_dispersive(of, &by_option(DESIGN_AGAIN), unit);
+        let beside = without_margin(of, unit).into_iter().chain(dispersive);
+        lines.extend(beside.map(|said| format!("  {said}.")));
+        lines.extend(of.notes.iter().map(|row| format!("warning: {}", row_note(row, unit))));
+        lines.extend(still_to_set(of, unit));
+        lines.push(products(of));
+        lines.extend(to_be_checked(&of.products));
     }
-    lines.extend(design.findings.iter().take(FOREMOST).map(|found| format!("- {}", found.words())));
-    if design.findings.len() > FOREMOST {
-        lines.push(format!("- and {} more on the page", design.findings.len() - FOREMOST));
+    lines.push(format!("{}: {}", model.0, model.1));
+    lines.extend(design.base.size().map(|base| format!("  {}", base_size(&base, unit))));
+    lines.extend(design.boundaries.iter().flat_map(|row| of_row(row, unit)));
+    lines.extend(design.notes.iter().take(FOREMOST).map(|row| format!("- {}", row_note(row, unit))));
+    if design.notes.len() > FOREMOST {
+        lines.push(format!("- and {} more on the page", design.notes.len() - FOREMOST));
     }
-    lines.extend(design.products_in_words());
-    let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
-    lines.extend(to_be_checked(sources));
-    lines.push(left_out_in_brief(&design.model_leaves_out));
+    lines.push(left_out_line(&design.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", design.seconds, design.replicates, design.seed));
-    let said = |line: String| if design.inches { with_inches(&line) } else { line };
-    lines.into_iter().map(|line| plain(&said(line)) + "\n").collect()
+    lines.iter().map(|line| plain(line) + "\n").collect()
 }
 
-fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
-    let what = match design.inverse {
-        false => ["no erosion up to", "continuing erosion from"],
-        true => ["no erosion down to", "continuing erosion below"],
-    };
-    let boundaries = row.shown().into_iter().zip([&row.no_erosion_note, &row.continuing_note]);
+fn of_row(row: &DesignRow, unit: SizeUnit) -> Vec<String> {
+    let words = |notes: &[Note]| notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>().join(" ");
+    let what = ["no erosion up to", "continuing erosion from"];
+    let boundaries =
+        row.shown().into_iter().zip([words(&row.no_erosion_notes), words(&row.continuing_notes)]);
     let networks = row.networks.len() as u64;
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     // The boundary of no erosion is stated as a limit.
-    let limit: fn(f64) -> String = if design.inverse { rounded_up } else { rounded_down };
-    let sizes = [limit, |mm| format!("{mm:.3}")];
+    let sizes: [fn(f64) -> String; 2] = [rounded_down, |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
-        let said = boundary.map(|boundary| ratio(&boundary, networks, design.inverse, size));
-        lines.push(match (said, note) {
-            (Some(said), Some(note)) => format!("  {what} {said}. {}", capital(note)),
-            (Some(said), None) => format!("  {what} {said}"),
-            (None, note) => {
-                let note = note.as_deref().unwrap_or("It lies beyond the search.");
-                format!("  {what}: no number. {}", capital(note))
-            }
+        let said = boundary.map(|boundary| ratio(&boundary, networks, size));
+        lines.push(match (said, &*note) {
+            (Some(said), "") => format!("  {what} {said}"),
+            (Some(said), note) => format!("  {what} {said}. {note}"),
+            (None, "") => format!("  {what}: no number. It lies beyond the search."),
+            (None, note) => format!("  {what}: no number. {note}"),
         });
-    }
-    if let Some(band) = &row.band {
-        let over_range = design.boundaries.iter().any(|end| end.end_of.as_ref() == Some(&row.density));
-        let what = match over_range {
-            true => "between drainage and retention, over the whole range of this curve",
-            false => "between drainage and retention",
-        };
-        let practice = band.practice_in_words().map(|said| format!("; {said}"));
-        lines.push(format!("  {what}: {}{}", band.said, practice.unwrap_or_default()));
-    }
-    if let Some(note) = &row.band_note {
-        lines.push(format!("  no band. {}", capital(note)));
     }
     if row.not_monotone > 0 {
         lines.push(format!(
@@ -153,7 +130,7 @@ fn of_row(row: &DesignRow, design: &Design) -> Vec<String> {
     lines
 }
 
-fn ratio(boundary: &Boundary, networks: u64, inverse: bool, mm: fn(f64) -> String) -> String {
+fn ratio(boundary: &Boundary, networks: u64, mm: fn(f64) -> String) -> String {
     let between = |low: Option<f64>, high: Option<f64>, words: fn(f64) -> String| {
         let end = |value: Option<f64>| value.map_or("unknown".into(), words);
         over_networks(&format!("{} to {}", end(low), end(high)), networks)
@@ -163,13 +140,8 @@ fn ratio(boundary: &Boundary, networks: u64, inverse: bool, mm: fn(f64) -> Strin
         Some(_) => format!(" ({})", between(low, high, words)),
         None => String::new(),
     };
-    let size = |name: &str, range: &Range| {
-        format!("{name} {} mm{}; ", mm(range.median), of_networks(range.low, range.high, mm))
-    };
-    let size = match (&boundary.d15f_mm, &boundary.d85b_mm) {
-        (Some(range), _) => size("D15F", range),
-        (None, Some(range)) if inverse => size("D85B", range),
-        _ => String::new(),
-    };
+    let size =
+        |range: &Range| format!("D15F {} mm{}; ", mm(range.median), of_networks(range.low, range.high, mm));
+    let size = boundary.d15f_mm.as_ref().map_or_else(String::new, size);
     format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high, |ratio| format!("{ratio:.3}")))
 }

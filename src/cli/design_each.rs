@@ -9,13 +9,14 @@ use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::by_option;
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::DesignOptions;
 use crate::study::designs::{SampleDesignOptions, each};
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples};
+use crate::verdict::DesignedSamples;
+use crate::words::designed::{columns, lines};
+use crate::words::left_out::left_out_line;
+use crate::words::specification::DESIGN_EACH_AGAIN;
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-designs";
@@ -38,16 +39,14 @@ pub(super) fn design_each(args: &DesignArgs, samples: &Path, design: DesignOptio
 }
 
 fn words(all: &DesignedSamples, out: &Path) -> String {
-    let mut text = aligned(DesignedSample::columns(SizeUnit::of(false, all.inches)), &all.rows)
-        + &in_notes(&all.notes)
-        + "\n";
-    for said in all.in_words(&by_option(DESIGN_EACH_AGAIN)) {
-        let said = if all.inches { with_inches(&said) } else { said };
+    let unit = SizeUnit::of(false, all.inches);
+    let mut text = aligned(columns(unit), &all.rows) + &in_notes(&all.notes) + "\n";
+    for line in lines(all, &by_option(DESIGN_EACH_AGAIN), unit) {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}", plain(&said));
+        let _ = writeln!(text, "{}", plain(&line));
     }
     if !all.model_leaves_out.is_empty() {
-        let _ = writeln!(text, "{}", left_out_in_brief(&all.model_leaves_out));
+        let _ = writeln!(text, "{}", left_out_line(&all.model_leaves_out));
     }
     if let Some(walks) = &all.walks {
         let networks = counted(walks.networks, "network", "networks");

@@ -3,7 +3,7 @@
 use super::args::{JudgeArgs, TableArgs};
 use super::batch::SEVERAL_FILTERS;
 use super::judge_each::judge_each;
-use super::print::{plain, shown, to_copy, to_stdout};
+use super::print::{shown, to_stdout};
 use super::progress::followed;
 use super::run::show;
 use super::values::{of_soils, with_options};
@@ -40,19 +40,12 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     };
     let (tables, quiet) = (&args.tables, args.results.walk.quiet);
     let scene = Scene::of_tables(&args.base, filter, &tables.options()?)?;
-    let words = scene.constrictions_in_words();
     let options = args.results.options(&tables.set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
-    let in_words = !tables.set.json && !quiet;
-    if in_words {
+    if !tables.set.json && !quiet {
         to_stdout(&format!("base {}, filter {}\n", shown(&args.base), shown(filter)));
-        to_stdout(&format!("{}\n", plain(&words)));
     }
     show(&run, tables.set.json, quiet)?;
-    if in_words {
-        let scene = to_copy(run.folder.join("scene.toml"));
-        to_stdout(&format!("to go on from: voidwalk run {scene} --set replicates=30\n"));
-    }
     args.results.workbook(&run)?;
     args.results.accept.judged(&run)
 }

@@ -10,12 +10,12 @@ use super::compare::{campaign_options, of_earlier_cover};
 use super::exit::{JudgedAnswer, accept_walked};
 use super::print::{json, plain, shown, to_stdout};
 use crate::outcome::numbers::SizeUnit;
-use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
-use crate::verdict::left_out::left_out_in_brief;
 use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
+use crate::words::batch::{answer, walked_columns, walks};
+use crate::words::left_out::left_out_line;
 
 /// Folder of a batch for which no other is named.
 const OUT: &str = "voidwalk-batch";
@@ -67,25 +67,24 @@ fn name(row: &WalkedRow) -> String {
 
 fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     let unit = SizeUnit::of(false, batch.inches);
-    let mut text = aligned(WalkedRow::columns(unit), &batch.rows) + &in_notes(&batch.notes);
-    let sized = |said: String| plain(&if batch.inches { with_inches(&said) } else { said });
+    let mut text = aligned(walked_columns(unit), &batch.rows) + &in_notes(&batch.notes);
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
-        for said in batch.walks_in_words(&filter.name) {
-            let _ = writeln!(text, "  {}", sized(said));
+        for said in walks(batch, &filter.name, unit) {
+            let _ = writeln!(text, "  {}", plain(&said));
         }
         for row in batch.governing(&filter.name) {
-            let said = format!("{}: {}", row.rules.sample, row.answer_in_words());
-            let _ = writeln!(text, "  {}", sized(said));
+            let said = format!("{}: {}", row.rules.sample, answer(row));
+            let _ = writeln!(text, "  {}", plain(&said));
         }
     }
     if batch.rows.iter().any(|row| row.rules.is_refused) {
         let _ = writeln!(text, "\n--as-given walks pairs that look exchanged");
     }
     let _ = writeln!(text, "\n{}", plain(constrictions));
-    let _ = writeln!(text, "{}", left_out_in_brief(&batch.model_leaves_out));
+    let _ = writeln!(text, "{}", left_out_line(&batch.model_leaves_out));
     let _ = writeln!(text, "table: {}", shown(&out.join("batch.csv")));
     let _ = writeln!(text, "report: {}", shown(&out.join("batch.html")));
     text

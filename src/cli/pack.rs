@@ -4,9 +4,11 @@ use super::args::PackArgs;
 use super::print::{count, plain, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
+use crate::outcome::numbers::SizeUnit;
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
 use crate::verdict::beside::packed_part;
+use crate::words::sentence;
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {
@@ -57,6 +59,6 @@ fn summary(packing: &FinishedPacking) -> String {
         format!("{:.1} s; report: {}", record.seconds, out.join("report.html").display()),
         format!("for a scene: filter.curve = \"{}\"", out.join("constrictions.csv").display()),
     ];
-    let part = filter.part.iter().map(|part| format!("  {}", packed_part(part).sentence()));
+    let part = filter.part.iter().map(|part| format!("  {}", sentence(&packed_part(part), SizeUnit::Mm)));
     lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
 }

@@ -8,10 +8,12 @@ use serde::Serialize;
 
 use crate::outcome::BaseSize;
 pub use crate::outcome::digits::{count, percent};
+use crate::outcome::numbers::SizeUnit;
 use crate::run::RunError;
 use crate::store::format::Format;
 pub use crate::text::plain;
 use crate::text::shell_word;
+use crate::words::base_size;
 
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
@@ -55,7 +57,7 @@ pub fn shown(path: &Path) -> String {
 
 /// Which base a D15F/D85B is of, in brackets; nothing where sizes have no unit.
 pub fn of_base(base: Option<BaseSize>) -> String {
-    base.map_or(String::new(), |base| format!(" ({})", base.words()))
+    base.map_or(String::new(), |base| format!(" ({})", base_size(&base, SizeUnit::Mm)))
 }
 
 /// A record in its form, as its file says it.

@@ -11,10 +11,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::print::{count, plain, shown, to_stderr};
 use super::report::page;
 use crate::case::PackingPlan;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
+use crate::words::{first_lines, sentence, so_far};
 
 /// Plain lines come at most this often.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
@@ -115,7 +117,7 @@ impl Walk {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
         let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
-        let mut words = look.words(replicates).filter(|_| is_new)?;
+        let mut words = so_far(&look, replicates).filter(|_| is_new)?;
         self.looked_at = look.replicates;
         if self.readings {
             words += "; by one of several readings of the inputs";
@@ -149,8 +151,11 @@ impl Display {
             Event::Studying(what) => {
                 to_stderr(&format!("{:6.1} s  {}\n", self.begun.elapsed().as_secs_f64(), plain(what)));
             }
+            Event::Noted { notes, unit } => {
+                notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, unit)))));
+            }
             Event::VerdictStands(outcome) => {
-                for (name, words) in outcome.first_lines() {
+                for (name, words) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
                     self.line(&format!("{name}: {}\n", plain(&words)));
                 }
             }

@@ -4,16 +4,17 @@ use super::args::RulesArgs;
 use super::batch::{SEVERAL_FILTERS, each};
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
-use crate::outcome::apart::{digits_within, value_and_limit};
-use crate::outcome::record::{AppliedRule, RuleRole};
+use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::run::RunError;
 use crate::store::format;
-use crate::verdict::left_out::NOT_COVERED;
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{
-    LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
-};
+use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::verdict::{PairOptions, PairRules};
+use crate::words::left_out::NOT_COVERED;
+use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
+use crate::words::rule_note::{regrade_reason, rule_notes};
+use crate::words::{practice_line, sentence};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -79,8 +80,10 @@ fn words(
     let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
     let fines = base.fines_percent.map_or("fines not known".into(), |of| format!("{of:.1} % fines"));
     let regraded = match base.regraded_at_mm {
-        Some(at) => format!("D85, D95 and fines after regrading on {at:.3} mm ({})", base.why),
-        None => format!("not regraded ({})", base.why),
+        Some(at) => {
+            format!("D85, D95 and fines after regrading on {at:.3} mm ({})", regrade_reason(base.why))
+        }
+        None => format!("not regraded ({})", regrade_reason(base.why)),
     };
     let dispersive = if base.dispersive { ", dispersive" } else { "" };
     line(format!("        {category}{dispersive}, {fines}; {regraded}"));
@@ -91,13 +94,15 @@ fn words(
         sizes(&[("D15", filter.d15_mm), ("D85", filter.d85_mm)]),
         number(filter.cu)
     ));
-    line(format!("practice {}", pair.practice));
-    for warning in &pair.warnings {
-        line(format!("warning {warning}"));
+    let practice = practice_line(&pair.rules, pair.if_dispersive, pair.filter.d15_mm, SizeUnit::Mm);
+    line(format!("practice {practice}"));
+    for note in &pair.notes {
+        line(format!("note    {}", sentence(note, SizeUnit::Mm)));
     }
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
+    let notes = |notes: &[RuleNote]| rule_notes(notes, SizeUnit::Mm);
     let listed = listed(&pair.rules);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
@@ -107,7 +112,7 @@ fn words(
         (RuleRole::Stability, "Internal stability of the filter"),
     ] {
         line(String::new());
-        line(format!("{heading} (a rule that is not met argues against {})", role.speaks_against()));
+        line(heading.to_owned());
         for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
@@ -117,8 +122,7 @@ fn words(
             // Its name says whose it is where no manual states it besides.
             let is_stated = !rule.stated_by.is_empty();
             let authorities = is_stated.then(|| format!("authority: {}", rule.authorities().join(", ")));
-            let more =
-                [curves, rule.note.to_string(), rule.needs.to_string(), authorities.unwrap_or_default()];
+            let more = [curves, notes(&rule.notes), notes(&rule.needs), authorities.unwrap_or_default()];
             for text in more.iter().filter(|text| !text.is_empty()) {
                 wrapped(text, INDENT).into_iter().for_each(&mut line);
             }
@@ -133,23 +137,18 @@ fn words(
 /// Result, name, value and limit of a rule.
 fn row(rule: &AppliedRule) -> String {
     // Short words, as in a column: what is not judged stands in the note below.
-    let result = match result_of(rule) {
+    let word = match result_of(rule) {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",
-        RuleResult::ExcessiveNotJudged => RuleResult::NotReached.words(),
-        of => of.words(),
+        RuleResult::ExcessiveNotJudged => result(RuleResult::NotReached),
+        found => result(found),
     };
     let begins = limit_begins(rule).replace('≥', ">=").replace('≤', "<=");
     let ends = limit_ends(rule);
-    let unit = if rule.unit.is_empty() { String::new() } else { format!(" {}", rule.unit) };
-    let (value, limit) = match (rule.value, rule.limit) {
-        (Some(value), Some(limit)) => value_and_limit(value, limit, rule.at_least, 3).map(Some).into(),
-        (value, limit) => (Some(number(value)), limit.map(|limit| digits_within(limit, 3, rule.at_least))),
-    };
-    let of_value = if rule.value.is_some() { unit.as_str() } else { "" };
-    let value = format!("{}{of_value}", value.unwrap_or_default());
-    let limit = limit.map_or(String::new(), |limit| format!(", {begins} {limit}{unit}{ends}"));
-    format!("  {result:<12}{}: {} {} {value}{limit}", rule.name, rule.quantity, value_begins(rule))
+    let [value, limit] = value_and_limit(rule, SizeUnit::Mm);
+    let value = value.unwrap_or_else(|| "not known".into());
+    let limit = limit.map_or(String::new(), |limit| format!(", {begins} {limit}{ends}"));
+    format!("  {word:<12}{}: {} {} {value}{limit}", rule.name, rule.quantity, value_begins(rule))
 }
 
 /// Sizes by their names, the unit once where all of them are known.
@@ -163,11 +162,9 @@ fn sizes(of: &[(&str, Option<f64>)]) -> String {
     format!("{}{}", said.join(", "), if all_known { " mm" } else { "" })
 }
 
-/// Four digits that mean something.
+/// Three digits that mean something.
 fn number(value: Option<f64>) -> String {
-    let Some(value) = value else { return "not known".into() };
-    let decimals = if value == 0.0 { 0 } else { (2 - value.abs().log10().floor() as i32).clamp(0, 6) };
-    format!("{value:.*}", decimals as usize)
+    value.map_or_else(|| "not known".into(), significant)
 }
 
 #[cfg(test)]

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::{JudgedAnswer, accept};
-use super::print::{json, plain, shown, to_stdout};
+use super::print::{counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
+use crate::outcome::numbers::SizeUnit;
 #[cfg(feature = "xlsx")]
 use crate::report::write_verdict_workbook;
 #[cfg(feature = "xlsx")]
@@ -17,7 +18,8 @@ use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
-use crate::verdict::left_out::left_out_in_brief;
+use crate::words::first_lines;
+use crate::words::left_out::left_out_line;
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -101,20 +103,23 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in outcome.first_lines() {
+    for (name, said) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
         line(format!("{name}: {}", plain(&said)));
     }
-    if !outcome.findings.is_empty() {
-        let mut labels: Vec<&str> = Vec::new();
-        for finding in &outcome.findings {
-            if !labels.contains(&finding.label.as_str()) {
-                labels.push(&finding.label);
-            }
-        }
-        line(format!("{} notes on the page: {}", outcome.findings.len(), labels.join(", ")));
-    }
-    line(left_out_in_brief(&outcome.model_leaves_out));
+    line(left_out_line(&outcome.model_leaves_out));
     let page = shown(&run.folder.join("report.html"));
-    line(format!("{:.1} s, seed {}; report: {page}", outcome.seconds, outcome.seed));
+    let mut labels: Vec<&str> = Vec::new();
+    for note in &outcome.notes {
+        if !labels.contains(&note.entry().label) {
+            labels.push(note.entry().label);
+        }
+    }
+    match labels.len() {
+        0 => line(format!("report: {page}")),
+        _ => {
+            let notes = counted(outcome.notes.len() as u64, "note", "notes");
+            line(format!("report: {page}; {notes}: {}", labels.join(", ")));
+        }
+    }
     text
 }

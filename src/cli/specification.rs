@@ -6,15 +6,19 @@ use std::path::Path;
 use super::args::DesignArgs;
 use super::print::{json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
-use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::{ProductMargin, Specification};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::{significant, trimmed};
-use crate::outcome::with_inches;
 use crate::run::RunError;
 use crate::scene::Scene;
 use crate::store::format;
 use crate::study::design::{SpecifyOptions, specify};
-use crate::verdict::DESIGN_AGAIN;
+use crate::words::products::{product as product_result, products, to_be_checked};
+use crate::words::row_note;
+use crate::words::specification::{
+    DESIGN_AGAIN, beside_limits, if_dispersive, no_band, step_name, step_notes, step_value, still_to_set,
+    without_margin,
+};
 
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
@@ -50,8 +54,7 @@ pub(super) fn by_option(again: &str) -> String {
 /// Steps, limits and products.
 fn words(of: &Specification) -> String {
     let mut text = String::new();
-    // Formulas and titles of sources stay as they are written.
-    let sized = |said: &str| if of.inches { with_inches(said) } else { said.to_owned() };
+    let unit = SizeUnit::of(false, of.inches);
     // Writing to a string cannot fail.
     let mut line = |said: &str| {
         let _ = writeln!(text, "{}", plain(said).trim_end());
@@ -59,15 +62,15 @@ fn words(of: &Specification) -> String {
     line(&format!("Specification of a filter for {}, by the rules of practice alone", of.base));
     let mut source = "";
     for step in &of.steps {
-        line(&format!("{:>2}  {}", step.step, step.does));
+        line(&format!("{:>2}  {}", step.step, step_name(step.does)));
         for value in &step.values {
-            let number = value.words().unwrap_or_else(|| "not known".into());
-            line(&sized(&format!("      {}: {number}", value.name)));
+            let number = step_value(value, unit).unwrap_or_else(|| "not known".into());
+            line(&format!("      {}: {number}", value.name));
         }
         // What several steps in a row rest on is said once.
         let again = std::mem::replace(&mut source, step.source.as_str()) == step.source;
         let source = if again { "" } else { step.source.as_str() };
-        let note = sized(&step.note);
+        let note = step_notes(step, unit);
         let more = [step.formula.as_str(), note.as_str(), source];
         more.into_iter()
             .filter(|text| !text.is_empty())
@@ -76,18 +79,18 @@ fn words(of: &Specification) -> String {
     }
     line("");
     if let Some(why) = &of.no_band {
-        line(&sized(&format!("No band. {why}")));
+        line(&format!("No band. {}", no_band(why, unit)));
     }
-    if let Some(said) = of.still_to_set() {
-        wrapped(&sized(&said), 0).iter().for_each(|said| line(said));
+    if let Some(said) = still_to_set(of, unit) {
+        wrapped(&said, 0).iter().for_each(|said| line(said));
     }
-    let margin = of.without_margin_in_words();
-    let dispersive = of.if_dispersive_in_words(&by_option(DESIGN_AGAIN));
+    let margin = without_margin(of, unit);
+    let dispersive = if_dispersive(of, &by_option(DESIGN_AGAIN), unit);
     for said in margin.into_iter().chain(dispersive) {
-        line(&sized(&format!("{said}.")));
+        line(&format!("{said}."));
     }
-    let findings = of.findings.iter().map(|found| sized(&found.words()));
-    findings.flat_map(|found| wrapped(&found, 0)).for_each(|text| line(&text));
+    let notes = of.notes.iter().map(|row| row_note(row, unit));
+    notes.flat_map(|note| wrapped(&note, 0)).for_each(|text| line(&text));
     if !of.limits.is_empty() {
         line("sieve        opening, mm   percent finer");
         for limit in &of.limits {
@@ -101,26 +104,26 @@ fn words(of: &Specification) -> String {
                 }
             ));
         }
-        let beside = of.beside_limits().map(|said| sized(&said));
+        let beside = beside_limits(of, unit);
         beside.iter().flat_map(|text| wrapped(text, 0)).for_each(|text| line(&text));
         line("");
     }
     for product in &of.products {
-        line(&sized(&format!(
-            "{}, D15 {} to {} mm: {}",
+        line(&format!(
+            "{}, D15 {} to {} mm{}: {}",
             product.product,
             significant(product.d15_fine_mm),
             significant(product.d15_coarse_mm),
-            of.product_in_words(product)
-        )));
+            unit.beside_range(product.d15_fine_mm, product.d15_coarse_mm),
+            product_result(of, product)
+        ));
         line(&format!("    {}", margins(product)));
     }
-    let sources = of.products.iter().map(|of| (of.product.as_str(), of.source.as_str()));
-    if let Some(said) = to_be_checked(sources) {
+    if let Some(said) = to_be_checked(&of.products) {
         line(&said);
     }
     if of.nearest_product().is_some() {
-        line(&of.products_in_words());
+        line(&products(of));
     }
     text
 }

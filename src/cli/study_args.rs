@@ -26,13 +26,12 @@ pub struct DesignArgs {
     /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: a
     /// design for each, one table and the samples that govern in --out [default: voidwalk-designs]. The same
     /// command continues what was stopped or killed. With --steps nothing is walked
-    #[arg(long, requires = "base", conflicts_with = "inverse")]
+    #[arg(long, requires = "base")]
     pub each: bool,
     /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
     /// sieve and standard products
     #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
-          "as_sampled", "as_given", "inverse", "seed", "bracket", "packings", "memory",
-          "threads"])]
+          "as_sampled", "as_given", "seed", "bracket", "packings", "memory", "threads"])]
     pub steps: bool,
     /// With --steps: place the band at the finer end of what is allowed: its maximum D15F is lowered, not its
     /// minimum raised
@@ -64,15 +63,12 @@ pub struct DesignArgs {
     /// [default: 60layers]
     #[arg(long = "thickness", value_name = "THICKNESS", allow_hyphen_values = true)]
     pub thicknesses: Vec<ThicknessList>,
-    /// Walk the base as sampled, not as filter practice regrades it (base.regrade); always so with --inverse
+    /// Walk the base as sampled, not as filter practice regrades it (base.regrade)
     #[arg(long)]
     pub as_sampled: bool,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// Find the finest base that the filter holds instead: the filter keeps its size, the base is scaled
-    #[arg(long)]
-    pub inverse: bool,
     /// Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be
     /// repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]

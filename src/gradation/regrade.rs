@@ -1,5 +1,7 @@
 //! Regrading: the part of a base soil that filter practice looks at.
 
+use serde::{Deserialize, Serialize};
+
 use super::Gradation;
 use super::curve_point::TIE;
 use super::group::{FINES_MM, GRAVEL_MM};
@@ -26,7 +28,8 @@ pub struct Regraded {
 }
 
 /// Why practice regrades a base, or leaves it as it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RegradeReason {
     /// What practice asks of the soil.
     pub cause: RegradeCause,
@@ -35,7 +38,9 @@ pub struct RegradeReason {
 }
 
 /// What of a soil has it regraded, or not.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "id", content = "from_mm", rename_all = "snake_case")]
 pub enum RegradeCause {
     /// It has a gap that begins at this size (mm).
     Gap(f64),

@@ -1,11 +1,11 @@
-//! What a rule of practice says of two soils, and how far a verdict can be relied on; as they are recorded.
+//! Rules of practice applied to two soils, as they are recorded.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::rule_note::RuleText;
+use super::rule_note::RuleNote;
 
 /// A filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,9 +47,9 @@ pub struct AppliedRule {
     /// erosion `true` says only that this is not reached: some or excessive erosion is not excluded.
     pub met: Option<bool>,
     /// What is missing for a result; may be empty.
-    pub needs: RuleText,
+    pub needs: Vec<RuleNote>,
     /// Where the value is, why the rule was not made for these soils; may be empty.
-    pub note: RuleText,
+    pub notes: Vec<RuleNote>,
     /// What the rule was made for.
     pub applies_to: String,
     /// Its limit in words.
@@ -60,8 +60,6 @@ pub struct AppliedRule {
     /// `None` of other rules.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_finer: Option<WithoutFiner>,
-    /// Which verdicts it speaks against where it is not kept.
-    pub speaks_against: String,
     /// Which curve of the filter it read, where that is an envelope of several.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub filter_curve: String,
@@ -162,22 +160,6 @@ pub enum RuleRole {
     Stability,
     /// The walk itself: it is checked by this, not the filter.
     Walk,
-}
-
-impl RuleRole {
-    /// Which verdicts a rule of this role speaks against where it is not kept.
-    pub fn speaks_against(self) -> &'static str {
-        match self {
-            Self::Retention => "a verdict of no erosion",
-            Self::Continuation => "a verdict of no or of some erosion",
-            Self::Stability => "any verdict: without its fines it is not the filter that was walked",
-            Self::Drainage => "building this filter: it may not drain, which says nothing of retention",
-            Self::Placing => {
-                "building this filter: it may segregate when placed, which says nothing of retention"
-            }
-            Self::Walk => "no verdict",
-        }
-    }
 }
 
 #[cfg(test)]

@@ -7,10 +7,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::SizeUnit;
-use super::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
-use super::table::Columns;
+use super::record::{
+    Headline, Model, ModelLimit, Outcome, Practice, Ratios, SheetCover, Statistic, Verdict, commit,
+};
 use super::{BaseSize, leaves_out_of_all};
+use crate::outcome::record::Note;
 
 /// Error of all differences together where it is said that two cases differ.
 const ERROR: f64 = 0.05;
@@ -64,12 +65,14 @@ pub struct ComparedCase {
     /// The answer of practice; `None` without two sieve curves in mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub headline: Option<Headline>,
-    /// The lines of practice and model, each with its name.
+    /// What filter practice says of the pair; `None` likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub practice: Option<Practice>,
+    /// What the walk says.
+    pub model: Model,
+    /// What else to know, in the order of every face.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub first_lines: Vec<(String, String)>,
-    /// What a reader must know besides, the weightiest first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub found: Vec<String>,
+    pub notes: Vec<Note>,
     /// Replicates.
     pub replicates: u64,
     /// Thickness of the filter along the flow (mm); `None` where the network does not say.
@@ -144,10 +147,9 @@ impl Comparison {
         }
     }
 
-    /// What no interval of a difference holds, where a case has it.
-    pub fn not_in_intervals(&self) -> Option<&'static str> {
-        let is_guess = self.cases.iter().any(|case| !case.curve_range.is_empty());
-        is_guess.then_some("how far the constriction curve of a case may be off")
+    /// Whether a case has a range of its constriction curve, which no interval of a difference holds.
+    pub fn has_range_of_curve(&self) -> bool {
+        self.cases.iter().any(|case| !case.curve_range.is_empty())
     }
 }
 
@@ -163,30 +165,6 @@ fn differences(one: &Outcome, other: &Outcome) -> Vec<Vec<f64>> {
 }
 
 impl ComparedCase {
-    /// The columns of `compare.csv` and of the page's table, whose sizes are shown in this unit.
-    pub fn columns(unit: SizeUnit) -> Columns<'static, Self> {
-        Columns::default()
-            .column("case", |case: &Self| case.name.clone())
-            .headed("Case")
-            .column("verdict", |case| case.verdict)
-            .headed("Class")
-            .broken_rules("rules_not_kept", "Rules not kept", |case| Some(case.rules_not_kept.len()))
-            .column("replicates", |case| case.replicates)
-            .headed("Replicates")
-            .place(3)
-            .column("n_base", |case| case.n_base)
-            .headed("Base particles")
-            .place(3)
-            .ratios(6, unit, |case| (case.ratios, case.base))
-            .eroded(|case, run| (case.runs.get(run).copied(), case.curve_range.get(run).copied()))
-            .digits("grains_per_void", 5, |case| case.grains_per_void)
-            .headed("Grains per void")
-            .place(2)
-            .thickness(5, unit, |case| (case.thickness_mm, case.scale_free, None))
-            .place(2)
-            .column("folder", |case| case.folder.clone())
-    }
-
     fn new(name: &str, folder: &str, outcome: &Outcome) -> Self {
         let broken = outcome.rules.iter().filter(|rule| rule.is_broken());
         Self {
@@ -195,8 +173,9 @@ impl ComparedCase {
             verdict: outcome.model.class,
             by_practice: None,
             headline: outcome.headline,
-            first_lines: Vec::new(),
-            found: Vec::new(),
+            practice: outcome.practice.clone(),
+            model: outcome.model.clone(),
+            notes: outcome.notes.clone(),
             rules_not_kept: broken.map(|rule| rule.name.clone()).collect(),
             replicates: outcome.replicates.len() as u64,
             thickness_mm: outcome.inputs.network.thickness_mm,
@@ -215,19 +194,6 @@ impl ComparedCase {
 }
 
 impl ComparedPair {
-    /// The columns of `compare_pairs.csv`.
-    pub fn columns() -> Columns<'static, Self> {
-        Columns::default()
-            .column("first", |pair: &Self| pair.first.clone())
-            .column("second", |pair| pair.second.clone())
-            .column("run", |pair| pair.run)
-            .column("replicates", |pair| pair.replicates)
-            .statistic(["difference_percentage_points", "low", "high"], |pair| Some(pair.difference))
-            .percent("joint_low", |pair| pair.joint.map(|joint| joint[0]))
-            .percent("joint_high", |pair| pair.joint.map(|joint| joint[1]))
-            .column("differ", |pair| pair.differ)
-    }
-
     /// The differences `values` of one run, one of `count` that are looked at together.
     fn new(first: &str, second: &str, run: u64, values: &[f64], count: usize) -> Self {
         let joint = Statistic::with_error(values, ERROR / count as f64);
@@ -240,44 +206,6 @@ impl ComparedPair {
             difference: Statistic::of(values),
             joint,
             differ: joint.map(|[low, high]| low > 0.0 || high < 0.0),
-        }
-    }
-
-    /// What the difference comes to, in a sentence.
-    pub fn sentence(&self) -> String {
-        let (one, other) = (&self.first, &self.second);
-        let run = if self.run == 1 { "first" } else { "second" };
-        let Statistic { mean, low, high, .. } = self.difference;
-        let points = |share: f64| {
-            let text = format!("{:.2}", 100.0 * share);
-            // No minus before nothing.
-            if text == "-0.00" { "0.00".to_owned() } else { text }
-        };
-        let Some((low, high)) = low.zip(high) else {
-            return format!(
-                "{run} run: {one} less {other} is {} percentage points in the one replicate that both have, \
-                 which says nothing of chance",
-                points(mean)
-            );
-        };
-        let interval = |low, high| format!("95 % interval {} to {}", points(low), points(high));
-        match self.differ {
-            Some(true) if mean > 0.0 => format!(
-                "{run} run: {one} erodes {} percentage points more than {other} ({})",
-                points(mean),
-                interval(low, high)
-            ),
-            Some(true) => format!(
-                "{run} run: {one} erodes {} percentage points less than {other} ({})",
-                points(-mean),
-                interval(-high, -low)
-            ),
-            _ => format!(
-                "{run} run: no difference between {one} and {other} is shown; {one} less {other} is {} \
-                 percentage points ({})",
-                points(mean),
-                interval(low, high)
-            ),
         }
     }
 }
@@ -298,7 +226,6 @@ mod tests {
         assert!((one.difference.low.unwrap() - (0.02 - half)).abs() < 1e-9);
         assert_eq!(one.joint, one.difference.low.zip(one.difference.high).map(|(low, high)| [low, high]));
         assert_eq!(one.differ, Some(false));
-        assert!(one.sentence().contains("no difference between a and b is shown"), "{}", one.sentence());
     }
 
     /// What would count as different alone does not where thirty differences are looked at.
@@ -307,16 +234,14 @@ mod tests {
         let values = [0.010, 0.012, 0.030, 0.032];
         assert_eq!((pair(&values, 1).differ, pair(&values, 30).differ), (Some(true), Some(false)));
         assert_eq!(pair(&values, 1).difference, pair(&values, 30).difference);
-        let less: Vec<f64> = values.iter().map(|v| -v).collect();
-        assert!(pair(&values, 1).sentence().contains("a erodes 2.10 percentage points more than b"));
-        assert!(pair(&less, 1).sentence().contains("a erodes 2.10 percentage points less than b"));
+        let less = pair(&values.map(|value| -value), 1);
+        assert!(less.differ == Some(true) && less.difference.mean < 0.0, "{less:?}");
     }
 
     #[test]
     fn one_replicate_decides_nothing() {
         let one = pair(&[0.5], 1);
         assert_eq!((one.joint, one.differ), (None, None));
-        assert!(one.sentence().contains("says nothing of chance"));
         assert_eq!(pair(&[0.0, 0.0], 1).differ, Some(false));
     }
 }

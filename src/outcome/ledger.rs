@@ -2,13 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::digits::count;
-use super::numbers::{SizeUnit, whole};
 use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict};
-use super::table::{Columns, TableCell};
 use super::undecided::UndecidedBy;
 use super::{BaseSize, Modelled, leaves_out_of_all};
-use crate::text::shorten;
+use crate::outcome::record::Note;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,8 +59,8 @@ pub struct LedgerLine {
     pub base: Option<BaseSize>,
     /// Statistics of each run.
     pub runs: Vec<RunSummary>,
-    /// What else a reader must know.
-    pub warnings: Vec<String>,
+    /// What else to know.
+    pub notes: Vec<Note>,
     /// Where and when, apart from the rest: two campaigns of one plan differ here only.
     pub made: Made,
 }
@@ -103,13 +100,6 @@ impl ModelledThickness {
         let network = &outcome.inputs.network;
         Self { layers: network.layers, mm: network.thickness_mm, scale_free: outcome.inputs.scale_free }
     }
-
-    /// `60 layers, 93.1 mm`.
-    pub fn words(&self) -> String {
-        let unit = if self.scale_free { "D0F" } else { "mm" };
-        let size = self.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
-        format!("{} {}, {size}", count(self.layers), if self.layers == 1 { "layer" } else { "layers" })
-    }
 }
 
 /// Where and when a case was walked.
@@ -130,60 +120,6 @@ pub struct Made {
 }
 
 impl LedgerLine {
-    /// The columns of `cases.csv` and of the page's table.
-    pub fn columns(factors: &[String]) -> Columns<'_, Self> {
-        let mut columns = Columns::default()
-            .column("case", |line: &Self| line.case.clone())
-            // The levels say which case it is, where there are any.
-            .words(
-                "Case",
-                |line| if line.levels.is_empty() { shorten(&line.case, 60) } else { String::new() },
-            );
-        for factor in factors {
-            let level = move |line: &Self| line.levels.get(factor)?.as_str().map(String::from);
-            let shown = move |line: &Self| shorten(&level(line).unwrap_or_default(), 40);
-            columns = columns.column(factor, level).words(factor, shown);
-        }
-        let run = |line: &Self, run: usize| line.runs.get(run).cloned();
-        let largest = move |line: &Self, of: usize| Some(run(line, of)?.largest_eroded_over_d15f?.mean);
-        let blocked = move |line: &Self, of: usize| Some(run(line, of)?.blocked_fraction.mean);
-        columns
-            .column("verdict", |line| line.verdict)
-            .headed("Class")
-            .place(-1)
-            .broken_rules("rules_not_met", "Rules not met", |line| Some(line.rules_not_met.len()))
-            .column("warnings", |line| line.warnings.len())
-            .headed("Warnings")
-            .column("layers", |line| line.thickness.layers)
-            .thickness(3, SizeUnit::Mm, |line| {
-                let ModelledThickness { layers, mm, scale_free } = line.thickness;
-                (mm, scale_free, Some(layers))
-            })
-            .place(2)
-            .column("replicates", |line| line.replicates)
-            .column("n_base", |line| line.n_base)
-            .number("Base particles", |line| {
-                whole(line.n_base).shown().below(line.capped.then(|| "capped".into()))
-            })
-            .place(3)
-            .column("capped", |line| line.capped)
-            .digits("grains_per_void", 5, |line| line.grains_per_void)
-            .headed("Grains per void")
-            .place(2)
-            .ratios(5, SizeUnit::Mm, |line| (line.ratios, line.base))
-            .eroded(|line, run| (line.runs.get(run).map(|run| run.eroded_mass_fraction), None))
-            .digits("first_largest_eroded_over_d15f", 5, move |line| largest(line, 0))
-            .headed("Largest eroded/ D15F")
-            .digits("second_largest_eroded_over_d15f", 5, move |line| largest(line, 1))
-            .percent("first_blocked_percent", move |line| blocked(line, 0))
-            .percent("second_blocked_percent", move |line| blocked(line, 1))
-            .column("replicates_no_erosion", |line| line.replicate_verdicts[0])
-            .column("replicates_some_erosion", |line| line.replicate_verdicts[1])
-            .column("replicates_continuing_erosion", |line| line.replicate_verdicts[2])
-            .column("seed", |line| line.seed)
-            .column("folder", |line| line.folder.clone())
-    }
-
     /// The line of an outcome.
     pub fn new(
         case: &str,
@@ -220,7 +156,7 @@ impl LedgerLine {
             ratios: outcome.ratios,
             base: outcome.inputs.base_size(),
             runs: outcome.summary.clone(),
-            warnings: outcome.findings.iter().map(|of| of.sentence.clone()).collect(),
+            notes: outcome.notes.clone(),
             made,
         }
     }

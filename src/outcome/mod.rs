@@ -20,28 +20,27 @@
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit; [`with_inches`] has inches
-//!   behind lengths.
+//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit.
 
 pub(crate) mod apart;
 mod applied;
 mod base_size;
 pub mod by_connectivity;
 pub(crate) mod by_void;
-mod case_columns;
 pub mod comparison;
 mod curve_range;
 pub mod design;
 pub mod digest;
 pub(crate) mod digits;
 pub(crate) mod early_stop;
-mod inches;
 mod infiltration;
 mod least_squares;
 pub mod ledger;
+pub mod left_out;
 mod metrics;
 mod model_limit;
 pub mod network_walk;
+pub mod note;
 pub mod number_rows;
 pub mod numbers;
 pub mod packing;
@@ -63,8 +62,6 @@ pub mod verdict;
 
 pub use crate::gradation::CurvePoint;
 pub use base_size::BaseSize;
-pub(crate) use base_size::three;
-pub use inches::{page_with_inches, with_inches};
 pub use infiltration::infiltration;
 pub(crate) use least_squares::{Straight, log_log_slope};
 pub(crate) use metrics::eroded_mass_fraction;
@@ -73,6 +70,7 @@ pub use model_limit::{Modelled, leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};
 
 use crate::network::ExitRule;
+use note::Note;
 
 impl record::Outcome {
     /// Whether water gave particles their way.
@@ -82,12 +80,12 @@ impl record::Outcome {
         self.network.as_ref().is_some_and(|network| with_flow(&network.exit))
     }
 
-    /// What its walk contained; without openings in folders of versions that knew none.
+    /// What its walk contained.
     pub fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.is_with_flow(),
             arches: self.arching.is_some(),
-            openings: self.findings.iter().any(|finding| finding.id == "openings"),
+            openings: self.notes.contains(&Note::Openings {}),
         }
     }
 }

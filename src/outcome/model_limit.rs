@@ -1,8 +1,11 @@
-//! What the model does not contain, as values. Their words are in `verdict`.
+//! What the model does not contain.
+
+use serde::{Deserialize, Serialize};
 
 /// Something that the model does not contain.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum ModelLimit {
     /// Flow, gradient and time.
     Hydraulics,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::{BaseRecord, FindingRecord, ModelLimit, Replicate, RunSummary, Verdict};
+use super::record::{BaseRecord, LeftOut, ModelLimit, Note, Replicate, RunSummary, Verdict};
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -10,8 +10,8 @@ use super::record::{BaseRecord, FindingRecord, ModelLimit, Replicate, RunSummary
 pub struct NetworkWalkRecord {
     /// The class that the replicates together support.
     pub verdict: Verdict,
-    /// What a reader must know besides, in the order of every face.
-    pub findings: Vec<FindingRecord>,
+    /// What else to know, in the order of every face.
+    pub notes: Vec<Note>,
     /// The user's seed.
     pub seed: u64,
     /// Base particles inserted in each run.
@@ -33,7 +33,7 @@ pub struct NetworkWalkRecord {
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Parts of the program that this walk did not need.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<ModelLimit>,
     /// The base.

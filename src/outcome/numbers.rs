@@ -31,8 +31,36 @@ pub fn significant(value: f64) -> String {
     if !(-4.0..6.0).contains(&magnitude) {
         return format!("{value:.2e}");
     }
-    let decimals = (2.0 - magnitude).max(0.0) as usize;
-    format!("{value:.decimals$}")
+    let rounded = |magnitude: f64| format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize);
+    let text = rounded(magnitude);
+    // 9.999 has one digit more before the point once it is rounded.
+    let size = text.parse().map_or(magnitude, |shown: f64| libm::floor(libm::log10(shown.abs())));
+    if size > magnitude { rounded(size) } else { text }
+}
+
+/// The same without zeros behind the last digit that is not zero.
+pub fn trimmed_significant(value: f64) -> String {
+    let text = significant(value);
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A number with this many decimals.
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+    if value.abs() < 1e7 { format!("{value:.decimals$}") } else { given(value) }
+}
+
+/// A number as it was given.
+pub(crate) fn given(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (1e-12..1e16).contains(&size) => value.to_string(),
+        size if size.is_finite() => format!("{value:e}"),
+        _ => "an unknown number of".into(),
+    }
 }
 
 /// A greatest value: three significant digits, rounded down.
@@ -208,6 +236,25 @@ impl SizeUnit {
         let [size, most] = [shown(&texts[0], size), shown(&texts[1], most)];
         let mut both = texts.into_iter().zip(self.beside_both(size, most, false));
         std::array::from_fn(|_| both.next().map(|(mm, inches)| format!("{mm}{name}{inches}")))
+    }
+
+    /// A least and a greatest size in mm, each rounded to its safe side.
+    pub fn limits(self, least: f64, most: f64) -> String {
+        let [low, high] = [rounded_up(least), rounded_down(most)];
+        let [shown_low, shown_high] = [shown(&low, least), shown(&high, most)];
+        let inches = format!("{} to {}", rounded_up(shown_low / INCH_MM), rounded_down(shown_high / INCH_MM));
+        format!("{low} to {high} mm{}", self.bracket(inches))
+    }
+
+    /// A range of sizes in mm that tests left, with ends rounded outward.
+    pub fn range_of_tests(self, low: f64, high: f64) -> String {
+        let inches = format!("{} to {}", rounded_down(low / INCH_MM), rounded_up(high / INCH_MM));
+        format!("{} to {} mm{}", rounded_down(low), rounded_up(high), self.bracket(inches))
+    }
+
+    /// What stands behind a range of sizes in mm, where inches are shown.
+    pub fn beside_range(self, from: f64, to: f64) -> String {
+        self.bracket(format!("{} to {}", significant(from / INCH_MM), significant(to / INCH_MM)))
     }
 
     /// A size without its unit, and its inches.

@@ -1,10 +1,14 @@
-//! What rules say beside their results, as values. Their words are in `verdict`.
+//! What rules say beside their results, as data.
+
+use serde::{Deserialize, Serialize};
 
 /// Declares the notes; a test can make each of them with any number.
 macro_rules! notes {
     ($($(#[$doc:meta])* $id:ident $(($($type:ty),*))?,)*) => {
         /// What a rule says beside its result.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+        #[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "schema::RuleNote"))]
+        #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
         pub enum RuleNote {
             $($(#[$doc])* $id $(($($type),*))?,)*
         }
@@ -15,6 +19,26 @@ macro_rules! notes {
             pub fn all_with(number: f64) -> Vec<Self> {
                 vec![$(Self::$id $(($(number as $type),*))?),*]
             }
+        }
+
+        #[cfg(test)]
+        mod schema {
+            /// What a rule says beside its result.
+            #[derive(schemars::JsonSchema)]
+            #[allow(dead_code)]
+            pub struct RuleNote {
+                /// Its name.
+                id: RuleNoteId,
+                /// Its number, or its numbers in order; missing without any.
+                #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+                numbers: serde_json::Value,
+            }
+
+            /// The name of what a rule says.
+            #[derive(schemars::JsonSchema)]
+            #[schemars(rename_all = "snake_case")]
+            #[allow(dead_code)]
+            enum RuleNoteId { $($id,)* }
         }
     };
 }
@@ -151,38 +175,25 @@ notes! {
     UniformFilter,
 }
 
-/// What a rule says, in its order; or as a file says it that was read back.
-#[derive(Clone, Debug)]
-#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "String"))]
-pub enum RuleText {
-    /// The notes of a rule that was applied here.
-    Of(Vec<RuleNote>),
-    /// The words of a file.
-    Said(String),
-}
-
-impl Default for RuleText {
-    fn default() -> Self {
-        Self::Of(Vec::new())
-    }
-}
-
-impl RuleText {
-    /// The openings (mm) of the two sieves between which D15F lies, where they stand far apart; `None` of a
-    /// text that was read back.
-    pub fn d15f_between(&self) -> Option<[f64; 2]> {
-        let Self::Of(notes) = self else { return None };
-        notes.iter().find_map(|note| match *note {
-            RuleNote::D15FBetween(from, to) => Some([from, to]),
-            _ => None,
-        })
-    }
-
-    /// Whether it says nothing.
-    pub fn is_empty(&self) -> bool {
+impl RuleNote {
+    /// The openings (mm) of two sieves that stand far apart, on whose sizes between a result depends.
+    pub fn sieves_between(self) -> Option<[f64; 2]> {
         match self {
-            Self::Of(notes) => notes.is_empty(),
-            Self::Said(words) => words.is_empty(),
+            Self::D15FBetween(from, to)
+            | Self::D15BBetween(from, to)
+            | Self::D85BBetween(from, to)
+            | Self::D95BBetween(from, to)
+            | Self::FilterBetween(from, to)
+            | Self::BaseBetween(from, to) => Some([from, to]),
+            _ => None,
         }
     }
+}
+
+/// The openings (mm) of the two sieves between which D15F lies, where they stand far apart.
+pub fn d15f_between(notes: &[RuleNote]) -> Option<[f64; 2]> {
+    notes.iter().find_map(|note| match *note {
+        RuleNote::D15FBetween(from, to) => Some([from, to]),
+        _ => None,
+    })
 }

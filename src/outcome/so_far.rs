@@ -52,39 +52,12 @@ impl SoFar {
     }
 }
 
-impl FirstLook {
-    /// In a line, of so many replicates that the verdict is to have; `None` of one replicate, which says
-    /// nothing of the scatter.
-    ///
-    /// ```
-    /// use voidwalk::outcome::so_far::SoFar;
-    /// let mut so_far = SoFar::default();
-    /// for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
-    ///     so_far.add(replicate, 1, eroded, false);
-    /// }
-    /// let words = so_far.look(1).and_then(|look| look.words(10)).unwrap();
-    /// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
-    /// ```
-    pub fn words(&self, of: u64) -> Option<String> {
-        let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
-        let runs = self.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
-            let (low, high) = interval(statistic)?;
-            Some(format!("{run} {:.1} to {:.1} %", 100.0 * low, 100.0 * high))
-        });
-        let runs = runs.collect::<Option<Vec<String>>>()?.join(", ");
-        let (replicates, class) = (self.replicates, self.class.words());
-        Some(format!(
-            "after {replicates} of {of} replicates, not yet final: {class}; {runs} of the mass eroded"
-        ))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn only_whole_replicates_count_and_one_has_no_words() {
+    fn only_whole_replicates_count() {
         let mut so_far = SoFar::default();
         assert_eq!(so_far.look(2), None);
         so_far.add(2, 1, 0.5, false);
@@ -92,18 +65,13 @@ mod tests {
         so_far.add(2, 2, 0.01, true);
         so_far.add(1, 1, 0.52, false);
         let one = so_far.look(2).unwrap();
-        assert_eq!((one.replicates, one.class, one.words(10)), (1, Verdict::Some, None));
+        assert_eq!((one.replicates, one.class), (1, Verdict::Some));
         so_far.add(1, 2, 0.011, true);
         let two = so_far.look(2).unwrap();
         assert_eq!((two.replicates, two.class), (2, Verdict::Some));
-        let words = two.words(10).unwrap();
-        assert!(
-            words.starts_with("after 2 of 10 replicates, not yet final: some erosion; first run 38."),
-            "{words}"
-        );
         // Far apart, they support no class.
         so_far.add(3, 1, 0.0, true);
         so_far.add(3, 2, 0.9, false);
-        assert!(so_far.look(2).unwrap().words(10).unwrap().contains("not yet final: undecided;"));
+        assert_eq!(so_far.look(2).unwrap().class, Verdict::Undecided);
     }
 }

@@ -18,10 +18,12 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::batch::open_in_words;
-use crate::verdict::batch_counts::{counts_in_words, governs_drainage};
-use crate::verdict::words::capital;
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
+use crate::words::batch::{
+    answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,
+};
+use crate::words::capital;
+use crate::words::left_out::NOT_COVERED;
 
 const RECORD: &str = "batch.json";
 
@@ -97,6 +99,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
         (leaves_out(&batch.model_leaves_out, &html! {
             p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
+            p { (NOT_COVERED) }
         }))
     } };
     let made = html! { p {
@@ -107,7 +110,6 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
         .model()
         .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
-        .inches(batch.inches)
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
@@ -119,15 +121,15 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
 
 /// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
-    let walks = batch.walks_in_words(&filter.name);
+    let walks = walks(batch, &filter.name, SizeUnit::of(false, batch.inches));
     let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
-    let besides = governs_drainage(&rules, &filter.name).into_iter();
-    let besides = besides.chain(open_in_words(&rules, &filter.name));
+    let besides = governs_drainage(&rules, &filter.name, SizeUnit::of(false, batch.inches)).into_iter();
+    let besides = besides.chain(open_limits(&rules, &filter.name));
     html! {
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (d15f(&rules).unwrap_or("not known".into())) }
         ul {
-            li { b { "Practice" } ": " (counts_in_words(&rules, &filter.name)) "." }
+            li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
             @for (at, said) in walks.iter().enumerate() {
                 li {
                     @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
@@ -146,7 +148,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 /// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
     let beside = rules.iter().filter_map(|row| {
-        let [d15f, _] = row.d15f_and_limit(SizeUnit::Mm, " mm");
+        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm, " mm");
         d15f
     });
     beside.max_by_key(String::len)
@@ -156,13 +158,13 @@ fn d15f(rules: &[BatchRow]) -> Option<String> {
 fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
     let unit = SizeUnit::of(false, inches);
-    let [d15f, limit] = rules.d15f_and_limit(unit, " mm").map(|size| size.unwrap_or("not known".into()));
+    let [d15f, limit] = d15f_and_limit(rules, unit, " mm").map(|size| size.unwrap_or("not known".into()));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
         ", here " (d15f)
-        ": " (clean(&row.answer_in_words()))
+        ": " (clean(&answer(row)))
         @if let Some(walk) = &row.walk {
             ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
         }
@@ -177,7 +179,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     };
     let table = Table::of(batch.rows.iter().take(LISTED))
         .class("cases")
-        .columns(WalkedRow::columns(SizeUnit::of(false, batch.inches)), |row| row)
+        .columns(walked_columns(SizeUnit::of(false, batch.inches)), |row| row)
         .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);

@@ -11,9 +11,12 @@ use super::numbers::whole;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;
+use crate::words::ledger::columns;
+use crate::words::{sentence, undecided_by};
 
 /// Cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
@@ -31,7 +34,9 @@ pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Mar
              differ. Below a number its 95 % interval over the replicates."
         }
         (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
-        (listed("Warnings", &tally(ledger, |line| line.warnings.clone())))
+        (listed("Notes", &tally(ledger, |line| {
+            line.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>()
+        })))
     }
 }
 
@@ -44,7 +49,7 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
         @for (by, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
             p {
                 "Undecided, " (whole(count)) @if count == 1 { " case: " } @else { " cases: " }
-                (by.words()) "."
+                (undecided_by(by)) "."
             }
         }
     }
@@ -53,7 +58,7 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
 fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     Table::of(ledger.iter().take(LISTED))
         .class("cases")
-        .columns(LedgerLine::columns(&about.factors), |line| line)
+        .columns(columns(&about.factors), |line| line)
         .named_by("verdict", |line| class(line, folder))
         .render()
 }

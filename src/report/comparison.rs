@@ -19,9 +19,10 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
 use crate::outcome::record::Verdict;
-use crate::verdict::FOREMOST;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::capital;
+use crate::words::capital;
+use crate::words::comparison::{case_columns, difference, not_in_intervals};
+use crate::words::left_out::left_out_in_brief;
+use crate::words::{FOREMOST, lines_of, sentence};
 
 const RECORD: &str = "compare.json";
 
@@ -140,7 +141,6 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
             &program(&comparison.version, comparison.commit.as_deref()),
             Some(comparison.seed),
         )
-        .inches(comparison.inches)
         .words(&first)
         .contents()
         .section("Cases", &table)
@@ -164,11 +164,15 @@ fn lead(comparison: &Comparison) -> String {
 
 /// The lines that every face begins with, of each case.
 fn answers(comparison: &Comparison) -> Markup {
+    let lines = |case: &ComparedCase| {
+        let unit = SizeUnit::of(case.scale_free, comparison.inches);
+        lines_of(case.headline, case.practice.as_ref(), &case.model, unit)
+    };
     html! { @for case in &comparison.cases {
         section.verdict.(colour(case.headline)) {
             p.practice { b { bdi { (name(&case.name)) } } }
             ul {
-                @for (name, words) in &case.first_lines { li { b { (name) } ": " (unbroken(words)) "." } }
+                @for (name, words) in lines(case) { li { b { (name) } ": " (unbroken(&words)) "." } }
             }
         }
     } }
@@ -177,7 +181,7 @@ fn answers(comparison: &Comparison) -> Markup {
 fn cases(folder: &Path, comparison: &Comparison) -> Markup {
     Table::of(&comparison.cases)
         .class("cases")
-        .columns(ComparedCase::columns(SizeUnit::of(false, comparison.inches)), |case| case)
+        .columns(case_columns(SizeUnit::of(false, comparison.inches)), |case| case)
         .named_by("case", |case| html! { bdi { (name(&case.name)) } })
         .showing("verdict", |case| cases::class(case.verdict, folder, &case.folder))
         .render()
@@ -187,7 +191,7 @@ fn pairs(comparison: &Comparison) -> Markup {
     let uncertain = comparison.pairs.iter().any(|pair| pair.differ.is_none());
     html! {
         @if comparison.pairs.is_empty() { p { "No two cases share a replicate." } }
-        ul { @for pair in &comparison.pairs { li { (clean(&capital(&pair.sentence()))) "." } } }
+        ul { @for pair in &comparison.pairs { li { (clean(&capital(&difference(pair)))) "." } } }
         p.small {
             "Mass eroded as a part of the base’s, replicate by replicate: replicates of the same number \
              share their random numbers, so scatter common to both cases drops out of the \
@@ -196,7 +200,7 @@ fn pairs(comparison: &Comparison) -> Markup {
             (comparison.pairs.len()) " differences at once excludes 0."
             @if uncertain { " One replicate does not show the scatter." }
         }
-        @if let Some(what) = comparison.not_in_intervals() {
+        @if let Some(what) = not_in_intervals(comparison) {
             p {
                 span.amber { "Not in these intervals" } ": " (what)
                 ". Its range stands in the table, as “curve”."
@@ -207,18 +211,19 @@ fn pairs(comparison: &Comparison) -> Markup {
 
 /// Which rules are not kept, and what else to know of each case.
 fn reasons(comparison: &Comparison) -> Markup {
+    let unit = SizeUnit::of(false, comparison.inches);
     html! { @for case in &comparison.cases {
         section.warnings {
             h2 { bdi { (name(&case.name)) } ": what else to know" }
-            @let (foremost, rest) = case.found.split_at(case.found.len().min(FOREMOST));
-            ul { @for sentence in foremost { li { (clean(sentence)) } } }
+            @let (foremost, rest) = case.notes.split_at(case.notes.len().min(FOREMOST));
+            ul { @for note in foremost { li { (clean(&sentence(note, unit))) } } }
             @if !case.rules_not_kept.is_empty() {
                 p { "Rules of practice that are not kept: " (clean(&case.rules_not_kept.join("; "))) "." }
             }
             @if !rest.is_empty() {
                 details {
                     summary { "and " (rest.len()) " more" }
-                    ul { @for sentence in rest { li { (clean(sentence)) } } }
+                    ul { @for note in rest { li { (clean(&sentence(note, unit))) } } }
                 }
             }
         }

@@ -13,6 +13,9 @@ pub(super) const LINE: usize = 120;
 /// Characters that stand at the foot of a printed page.
 const FOOT: usize = 60;
 
+/// Those who sign: on paper their names stand where they do.
+const SIGNED: [&str; 2] = ["Author", "Checked by"];
+
 /// Version and commit of the program, in short.
 pub(super) fn program(version: &str, commit: Option<&str>) -> String {
     match commit {
@@ -41,8 +44,12 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
     html! {
         div.title {
             dl.about { @for (name, value) in shown { @match value {
-                Some(value) => div { dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } } },
-                None => div.blank aria-hidden="true" { dt { (name) } " " dd {} },
+                Some(value) => div class=[SIGNED.contains(name).then_some("signed")] {
+                    dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
+                },
+                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" {
+                    dt { (name) } " " dd {}
+                },
             } } }
             (signatures(of))
         }
@@ -106,13 +113,13 @@ mod tests {
         {
             assert!(page.contains(said), "{said}: {page}");
         }
-        assert!(!page.contains("class=\"blank\""), "{page}");
+        assert!(!page.contains("class=\"blank"), "{page}");
         assert!(
             page.contains("2026-11-25") && page.contains("voidwalk 1.0") && page.contains(">7<"),
             "{page}"
         );
         let none = cover(&SheetCover::default(), "1.0", None).into_string();
-        assert_eq!((none.matches("<dt>").count(), none.matches("class=\"blank\"").count()), (9, 8), "{none}");
+        assert_eq!((none.matches("<dt>").count(), none.matches("class=\"blank").count()), (9, 8), "{none}");
         assert!(none.contains("Program") && !none.contains("Seed"), "{none}");
         let project = SheetCover { project: text("Main dam"), ..SheetCover::default() };
         assert_eq!((foot(&project).as_deref(), foot(&SheetCover::default())), (Some("Main dam"), None));

@@ -16,7 +16,9 @@ use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::sizes::{SizedSoil, of_many};
 use super::table::Table;
 use super::written::Written;
-use crate::verdict::{DESIGN_EACH_AGAIN, DesignedSample, DesignedSamples, DesignedWalks};
+use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks};
+use crate::words::designed::{columns, lines};
+use crate::words::specification::DESIGN_EACH_AGAIN;
 
 const RECORD: &str = "designs.json";
 
@@ -40,7 +42,7 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         @if all.filter.is_empty() { ", by the rules of practice alone" }
         @else { ", " (titled_by_file("filter", "filter of the shape", &all.filter)) }
     };
-    let said = all.in_words(DESIGN_EACH_AGAIN);
+    let said = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::of(false, all.inches));
     let has_walks = !all.model_leaves_out.is_empty();
     let first = html! { div.first[has_walks] {
         section.verdict {
@@ -73,7 +75,6 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         &program(&all.version, all.commit.as_deref()),
         all.walks.as_ref().map(|of| of.seed),
     )
-    .inches(all.inches)
     .words(&first)
     .contents()
     .words(&html! { h2 { "Figures" } })
@@ -141,32 +142,26 @@ fn table(folder: &Path, all: &DesignedSamples) -> Markup {
     };
     let table = Table::of(all.rows.iter().take(LISTED))
         .class("cases")
-        .columns(DesignedSample::columns(SizeUnit::of(false, all.inches)), |row| row)
+        .columns(columns(SizeUnit::of(false, all.inches)), |row| row)
         .named_by("sample", sample);
     html! {
         (table.render())
         @if all.rows.len() > LISTED { p.small { "The rest is in designs.csv." } }
         p.small {
             "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
-             minimum D15F that drains it. "
-            @if !all.filter.is_empty() {
-                "No erosion by walk up to: the D15F that nearly all networks hold. "
-            }
-            "D15F up to: the greatest that both allow; “no band”: no filter of this D15F is specified for \
-             the sample alone. Governs: 1 for the sample with the least of these, or with the least limit of \
-             practice where none of these is known."
-            @if !all.filter.is_empty() {
-                " Confidence: how far the D15F can be relied on, with the weightiest reason."
-            }
+             minimum D15F that drains it. Band: D15F of both sides of its specification. Governs: 1 for the \
+             sample with the least limit."
+            @if !all.filter.is_empty() { " Model: the D15F/D85B and the D15F that nearly all networks hold." }
         }
     }
 }
 
-/// The limit of practice and the maximum D15F of every sample against its D85B; none without a number.
+/// The limit of practice of every sample against its D85B, and the D15F that the model holds; none without a
+/// number.
 fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let of = |row: &DesignedSample, mm: Option<f64>| Some((row.d85b_mm?, mm?, row.governs == Some(1)));
-    let practice: Vec<_> = all.rows.iter().filter_map(|row| of(row, row.limit_mm)).collect();
-    let walk = |row: &DesignedSample| row.design.as_ref().and_then(|of| of.no_erosion_d15f_mm);
+    let practice: Vec<_> = all.rows.iter().filter_map(|row| of(row, row.d15f_max_mm)).collect();
+    let walk = |row: &DesignedSample| row.design.as_ref().and_then(|of| of.model_d15f_mm);
     let walked: Vec<_> = all.rows.iter().filter_map(|row| of(row, walk(row))).collect();
     let both = || practice.iter().chain(&walked);
     both().next()?;
@@ -174,9 +169,9 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
     let (low, high) = positive_range(both().map(|(_, mm, _)| *mm));
     let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
-    let what = "Maximum D15F by practice and by the walk against D85B of each sample";
+    let what = "Maximum D15F by practice, and D15F of the model, against D85B of each sample";
     let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
-    let governs = all.governing().first().and_then(|row| row.bound());
+    let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
     if let Some(mm) = governs {
         figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
     }
@@ -185,10 +180,10 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     };
     figure.add_points("limit of practice", practice.iter().map(point));
     if !walked.is_empty() {
-        figure.add_points("no erosion by walk", walked.iter().map(|of| point(of).hollow()));
+        figure.add_points("model (research)", walked.iter().map(|of| point(of).hollow()));
     }
     let hollow =
-        if walked.is_empty() { "" } else { " Hollow: the D15F up to which the walk shows no erosion." };
+        if walked.is_empty() { "" } else { " Hollow: the D15F that nearly all networks of the model hold." };
     let caption = format!(
         "The strictest limit of practice of each sample.{hollow} Square: the sample that governs. The dashed \
          line is the D15F beyond which that sample is not served."

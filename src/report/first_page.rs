@@ -1,5 +1,5 @@
-//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in four lines
-//! and the findings that matter most, the gradations with their sizes, and every rule of practice in short.
+//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in three lines,
+//! the gradations with their sizes, and the rules of practice that decide or are not met.
 
 use maud::{Markup, html};
 use serde::Deserialize;
@@ -9,15 +9,16 @@ use super::folder::RunFolder;
 use super::names::{is_named, titled};
 use super::numbers::SizeUnit;
 use super::rules::{result, value_and_limit};
-use super::shell::{clean, model, unbroken};
+use super::shell::{clean, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
-use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_NO_EROSION};
-use crate::verdict::left_out::left_out_in_brief;
+use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{RuleResult, limit_begins, limit_ends, result_of, value_begins};
-use crate::verdict::words::capital;
+use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::words::left_out::left_out_line;
+use crate::words::rule::{self, limit_begins, limit_ends, value_begins};
+use crate::words::{first_lines, judged_alone};
 
 /// What the scene says of the page, and nothing else of it.
 #[derive(Default, Deserialize)]
@@ -54,7 +55,6 @@ pub(super) fn header(folder: &RunFolder) -> Markup {
     html! {
         h1 { (QUESTION) }
         @if is_said { p.names { (base) " against " (filter) } }
-        (model())
         (about(folder))
     }
 }
@@ -75,21 +75,22 @@ fn about(folder: &RunFolder) -> Markup {
     cover(&said.cover.dated(day), &program, Some(folder.outcome.seed))
 }
 
-/// The answer: the lines of practice and model, and the findings that matter most.
-pub(super) fn answer(outcome: &Outcome) -> Markup {
-    let (foremost, more) = outcome.foremost();
+/// The answer: the lines of practice and model, and the number of notes.
+pub(super) fn answer(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let notes = outcome.notes.len();
     html! {
         section.verdict.(colour(outcome.headline)) {
-            @for (name, words) in outcome.first_lines() {
+            @for (name, words) in first_lines(outcome, unit) {
                 p.practice { b { (name) } ": " (unbroken(&words)) "." }
-                @if name == "Practice" && let Some(alone) = outcome.judged_alone() {
+                @if name == "Practice" && let Some(alone) = judged_alone(outcome) {
                     p.counted { (alone) }
                 }
             }
-            @if !foremost.is_empty() {
-                ul { @for finding in foremost { li { (unbroken(&finding.sentence)) } } }
+            @match notes {
+                0 => {}
+                1 => p.small { "1 note below." }
+                _ => p.small { (notes) " notes below." }
             }
-            @if more > 0 { p.small { "and " (more) " more below, under “Other findings”" } }
         }
     }
 }
@@ -124,13 +125,20 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     of_few(&soils, unit)
 }
 
-/// The rules of practice, those that decide first, and the thickness that was modelled.
+/// The rules of practice that decide or are not met, and how many others there are.
 pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let rules = listed(&outcome.rules);
     let mut practice: Vec<&AppliedRule> = rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
     practice.sort_by_key(|rule| place(rule));
-    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        practice.into_iter().partition(|rule| place(rule) < WITHOUT_RESULT);
+    let mut roles: Vec<RuleRole> = Vec::new();
+    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) = practice.into_iter().partition(|rule| {
+        // Of several rules of one kind that are not met the first is enough here.
+        let is_first = !roles.contains(&rule.role);
+        if result_of(rule) == RuleResult::NotMet {
+            roles.push(rule.role);
+        }
+        place(rule) < NOT_MET || place(rule) == NOT_MET && is_first
+    });
     let is_empty = shown.is_empty() && others.is_empty();
     let range = outcome.practice.as_ref().and_then(|practice| practice.range_of_tests_mm);
     html! {
@@ -140,66 +148,102 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
             @if !shown.is_empty() { (table(&shown, unit)) }
             @if !others.is_empty() {
                 p.others {
-                    @for kind in RuleResult::WITHOUT {
-                        @let of_kind = others.iter().filter(|of| result_of(of) == kind);
-                        @let names: Vec<&str> = of_kind.map(|of| &*of.name).collect();
-                        @if !names.is_empty() {
-                            b { (capital(kind.words())) } ": " (clean(&names.join("; "))) ". "
+                    "Others: "
+                    @for (at, (count, result)) in counts(&others).into_iter().enumerate() {
+                        @if at > 0 { ", " }
+                        @match result {
+                            RuleResult::NotMet => span.breaks { "✗ " (count) " " (rule::result(result)) },
+                            RuleResult::NoResult => b { (count) " " (rule::result(result)) },
+                            RuleResult::DoesNotApply if count > 1 => { (count) " do not apply" }
+                            _ => { (count) " " (rule::result(result)) }
                         }
                     }
+                    ". See “All rules”."
                 }
             }
             @if let Some([low, high]) = range {
                 p {
-                    "Tests of bases with such fines began to erode at a D15F of " (unit.greatest(low)) " to "
+                    "In tests of such bases erosion began at D15F " (unit.greatest(low)) " to "
                     (unit.least(high)) " mm (Fell et al., Table 9.2)."
                 }
             }
-            p.small { (clean(&left_out_in_brief(&outcome.model_leaves_out))) " The model does not replace \
-                a filter test or a designer’s judgement." }
+            p.small { (left_out_line(&outcome.model_leaves_out)) }
         }
     }
 }
 
+/// How many of these rules have each result, those that are not met first.
+fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
+    let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
+    let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
+    let counts = with.into_iter().chain(RuleResult::WITHOUT).map(|result| (count(result), result));
+    counts.filter(|(count, _)| *count > 0).collect()
+}
+
 /// The rules that decide whether a filter retains and drains a base, in the order of a reader.
-const DECIDING: [&str; 3] = [DESIGN, TESTS_NO_EROSION, PERMEABILITY];
+const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEABILITY];
 
-/// The place of rules without a result, which stand below the table.
-const WITHOUT_RESULT: usize = DECIDING.len() + 2;
+/// The place of other rules that are not met.
+const NOT_MET: usize = DECIDING.len();
 
-/// Where a rule stands: those that decide first, then those that are not met, and then the others.
+/// The place of a rule: those that decide first, then those that are not met, and then the others.
 fn place(rule: &AppliedRule) -> usize {
-    let deciding = DECIDING.iter().position(|id| *id == rule.id);
+    let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
     match (deciding, result_of(rule)) {
         (Some(place), _) => place,
-        (None, RuleResult::NotMet) => DECIDING.len(),
-        (None, of) if RuleResult::WITHOUT.contains(&of) => WITHOUT_RESULT,
-        (None, _) => DECIDING.len() + 1,
+        (None, RuleResult::NotMet) => NOT_MET,
+        (None, _) => NOT_MET + 1,
     }
+}
+
+/// The purpose of a rule, in a word or two.
+fn purpose(rule: &AppliedRule) -> &'static str {
+    match (rule.id.as_str(), rule.role) {
+        (DESIGN, _) => "Design",
+        (TESTS_NO_EROSION, _) => "No erosion",
+        (_, RuleRole::Retention) => "Retention",
+        (_, RuleRole::Continuation) => "Continuing erosion",
+        (_, RuleRole::Drainage) => "Drainage",
+        (_, RuleRole::Placing) => "Placing",
+        (_, RuleRole::Stability) => "Stability",
+        (_, RuleRole::Walk) => "Walk",
+    }
+}
+
+/// The quantity of a rule without the soil and the splits, which “All rules” names.
+fn quantity_in_brief(rule: &AppliedRule) -> &str {
+    let name = rule.quantity.name();
+    name.split([',', '(']).next().and_then(|name| name.split(" of the filter").next()).unwrap_or(name)
 }
 
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let table = Table::of(rules)
         .name("Rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
-            true => html! { b { (clean(&rule.name)) } },
-            false => html! { (clean(&rule.name)) },
+            true => html! { b { (purpose(rule)) } },
+            false => html! { (purpose(rule)) },
         })
-        .text("here", |rule| match &value_and_limit(rule, unit)[0] {
-            Some(value) => html! {
-                (clean(rule.quantity.name())) " " span.q { (value_begins(rule)) " " (clean(value)) }
-            },
+        .text("Quantity", |rule| clean(quantity_in_brief(rule)))
+        .text("Here", |rule| match &value_and_limit(rule, unit)[0] {
+            Some(value) if rule.value_bound.is_none() => html! { span.q { (clean(value)) } },
+            Some(value) => html! { (value_begins(rule)) " " span.q { (clean(value)) } },
             None => html! { "–" },
         })
-        .text("limit", |rule| {
+        .text("Limit", |rule| {
             let [_, limit] = value_and_limit(rule, unit);
+            // The name of the row says beyond which boundary.
+            let begins = match rule.role {
+                RuleRole::Continuation => "beyond",
+                _ => limit_begins(rule),
+            };
             match limit.as_deref().map(clean) {
                 Some(limit) if rule.at_least && rule.limit_at_most => html! {
-                    span.q { (limit_begins(rule)) } " " span.q { (limit) (limit_ends(rule)) }
+                    span.q { (begins) } " " span.q { (limit) (limit_ends(rule)) }
                 },
-                Some(limit) => html! { span.q { (limit_begins(rule)) " " (limit) } (limit_ends(rule)) },
+                Some(limit) => html! { span.q { (begins) " " (limit) } (limit_ends(rule)) },
                 None => html! { "–" },
             }
         })
-        .text("result", |rule| result(rule));
+        .text("Whose", |rule| clean(rule.authorities().first().unwrap_or(&"–")))
+        .text("Result", |rule| result(rule));
     html! { (table) }
 }

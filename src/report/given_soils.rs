@@ -55,7 +55,7 @@ impl<'a> GivenSoils<'a> {
             curves.push(GivenCurve { name: &base.name, sampled, regraded });
         }
         let filter = (!of.filter_gradation.is_empty()).then_some((&*of.filter, &of.filter_gradation[..]));
-        let scaled = Some(if of.inverse { "base" } else { "filter" });
+        let scaled = Some("filter");
         Self { curves, filter, record: "design.json", inches: of.inches, scaled }
     }
 

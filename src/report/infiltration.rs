@@ -17,7 +17,8 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
                 "Not given: the closed form holds for a regular cubic lattice whose exits are chosen by \
                  area, and this network is another."
             },
-            Some(found) => {
+            Some(found) => details {
+                summary { "Eq. (1) for single particles, beside the walk" }
                 p {
                     "How far a single particle gets in the clean filter: with a confidence P of \
                      95 % (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) \

@@ -28,8 +28,9 @@
 //! replaced.
 //!
 //! # Order
-//! An engineer reads the verdict first, with its numbers, and beside it what the model leaves out; then
-//! warnings, figures, the rules of practice, tables, and how to run it again.
+//! An engineer reads the answer first, the gradations and the rules that decide, on one sheet; then notes,
+//! what the model found and leaves out, all rules. Figures and tables of research stay on the screen; paper
+//! ends with the gradations in numbers, the sources, and how to run it again.
 
 mod appendix;
 mod batch;
@@ -88,7 +89,6 @@ pub use packing::write_packing;
 pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
 pub use precision::{precision_judgements, write_precision};
-pub(crate) use rules::value_and_limit;
 pub use soils::soils_figure;
 pub use specification::write_specification;
 #[cfg(feature = "xlsx")]

@@ -16,8 +16,10 @@ use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_word
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
-use crate::verdict::words::capital;
+use crate::words::left_out::left_out_words;
+use crate::words::sentence;
 
 /// What errors call the record.
 const RECORD: &str = "outcome";
@@ -57,7 +59,7 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
         &Said {
             lines: &[("Model (research)", record.verdict.words().to_owned())],
             meaning: in_words(&walks),
-            findings: &record.findings,
+            notes: &record.notes,
             replicate: replicate(&record),
             leaves_out: &record.model_leaves_out,
         },
@@ -135,11 +137,11 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 (leaves_out(&record.model_leaves_out, &html! {}))
             }
         }
-        (findings(record))
+        (notes(record))
         (shell::contents())
         h2 { "Figures" }
         (shell::figures(figures))
-        (results(walks, &[]))
+        (results(walks))
         (by_connectivity(walks))
         (replicates(walks))
         (inputs(record))
@@ -147,12 +149,12 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
     whole_page(&title, &header, &main, &citation())
 }
 
-fn findings(record: &NetworkWalkRecord) -> Markup {
+fn notes(record: &NetworkWalkRecord) -> Markup {
     html! {
-        @if !record.findings.is_empty() {
+        @if !record.notes.is_empty() {
             section.sheet {
                 h2 { "What else to know" }
-                ul { @for finding in &record.findings { li { (clean(&capital(&finding.sentence))) } } }
+                ul { @for note in &record.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             }
         }
     }
@@ -223,7 +225,7 @@ fn inputs(record: &NetworkWalkRecord) -> Markup {
             (fact("Engine", &record.engine))
             (fact("voidwalk", &record.version))
             @if !record.left_out.is_empty() {
-                (fact("Not needed for this walk", record.left_out.join("; ")))
+                (fact("Not needed for this walk", left_out_words(&record.left_out, "mm")))
             }
         } }
     }

@@ -12,20 +12,25 @@ use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::{file_name, is_named, soil_name};
-use super::numbers::{known, percent, significant, size, whole};
+use super::numbers::{known, percent, significant, size, size_unit, whole};
 use super::results::{replicates, results, varied};
-use super::rules::rules;
+use super::rules::{rules, sources};
 use super::run_figures;
-use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot};
+use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
 use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::packing::PackingRecord;
+use crate::outcome::record::Note;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
-use crate::verdict::words::capital;
+use crate::words::capital;
+use crate::words::grading;
+use crate::words::left_out::left_out_words;
+use crate::words::{first_lines, foremost, sentence, undecided_by};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -60,11 +65,11 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
-    let lines = outcome.first_lines();
+    let lines = first_lines(&outcome, SizeUnit::Mm);
     let said = Said {
         lines: &lines,
         meaning: in_words(&outcome, &walks),
-        findings: outcome.foremost().0,
+        notes: foremost(&outcome).0,
         replicate: replicate(&outcome),
         leaves_out: &outcome.model_leaves_out,
     };
@@ -114,27 +119,32 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
     };
     let main = html! {
         section.sheet {
-            (answer(outcome))
-            div.pair { (shell::figure(1, gradations)) (sizes(outcome, unit)) }
-            (in_short(outcome, unit))
+            (answer(outcome, unit))
+            (shell::figure(1, gradations))
+            div.pair { (in_short(outcome, unit)) (sizes(outcome, unit)) }
         }
         (shell::contents())
-        (findings(outcome))
+        (notes(outcome, unit))
         (walk(folder, verdict))
         (leaves_out(&outcome.model_leaves_out, &html! {
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+            p { "The model does not replace a filter test or a designer’s judgement." }
         }))
-        h2 { "Figures" }
-        @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
-        (missing(folder, figures))
         (rules(outcome, unit))
-        (results(&folder.walks(), &["permeability", "overfull", "no_room"].map(|id| outcome.sentence_of(id))))
-        (infiltration(outcome))
-        (by_connectivity(&folder.walks()))
-        (replicates(&folder.walks()))
-        (varied(outcome))
-        (inputs(outcome, folder.packing.as_ref()))
+        // What a client is not handed in stays on the screen.
+        section.screen {
+            h2 { "Figures" }
+            @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
+            (missing(folder, figures))
+            (results(&folder.walks()))
+            (infiltration(outcome))
+            (by_connectivity(&folder.walks()))
+            (replicates(&folder.walks()))
+            (varied(outcome))
+            (inputs(outcome, folder.packing.as_ref()))
+        }
         (appendix::of_run(outcome, unit))
+        (sources(outcome))
         (provenance(folder))
     };
     let foot = first_page::foot_of(folder);
@@ -143,7 +153,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
 
 /// The void ratio of the filter, where that was given; else what the library has.
 fn void_ratio(outcome: &Outcome) -> String {
-    let is_given = !outcome.findings.iter().any(|finding| finding.id == "library_of_any_density");
+    let is_given = !outcome.notes.iter().any(|note| matches!(note, Note::LibraryOfAnyDensity { .. }));
     match outcome.inputs.filter.void_ratio {
         Some(ratio) if !is_given => {
             format!("not given; {} is that of the packing of the library", significant(ratio))
@@ -155,23 +165,19 @@ fn void_ratio(outcome: &Outcome) -> String {
 /// What the walk found: its class, the mass eroded, and what leaves it open.
 fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
     let (outcome, walks) = (&folder.outcome, &folder.walks());
-    let falls_short = outcome.stopping.as_ref().is_some_and(|stopping| !stopping.met);
     html! {
         h2 { "What the model found" }
+        (shell::model())
         p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
         div.drawn { (drawing(verdict)) }
         (verdict_box::eroded_table(walks))
-        @if let Some(stopping) = &outcome.stopping { p { (stopped(outcome, stopping)) } }
-        // What a rule that adds replicates says is said above.
-        @if let Some(said) = outcome.sentence_of("second_run_missing").filter(|_| !falls_short) {
-            p { (clean(&said)) }
-        }
+        @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
         (verdict_box::replicates_in_words(walks, replicate(outcome)))
     }
 }
 
 /// What the rule that added replicates arrived at.
-fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
+fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
         text += &format!(
@@ -182,35 +188,24 @@ fn stopped(outcome: &Outcome, stopping: &Stopping) -> String {
     if let Some(pp) = stopping.target_error_pp {
         text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
     }
-    let short = ["level_missed", "target_missed", "second_run_missing"];
-    let short = short.into_iter().find_map(|id| outcome.sentence_of(id));
-    text += match (&short, stopping.met) {
-        (_, true) => "That was reached.",
-        (Some(sentence), _) => sentence,
-        (None, false) => "That was not reached.",
-    };
+    text += if stopping.met { "That was reached." } else { "That was not reached." };
     text
 }
 
 /// What the class means, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
-        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", open.words()),
+        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),
         _ => verdict_box::in_words(walks),
     }
 }
 
-/// What was found about the verdict and does not stand on the first sheet: folded on a screen, and open in
-/// print.
-fn findings(outcome: &Outcome) -> Markup {
-    let rest = &outcome.findings[outcome.foremost().0.len()..];
+/// Every note on the answer.
+fn notes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
-        @if !rest.is_empty() {
-            h2 { "Other findings" }
-            details {
-                summary { (rest.len()) " more" }
-                ul { @for finding in rest { li { (clean(&finding.sentence)) } } }
-            }
+        @if !outcome.notes.is_empty() {
+            h2 { "Notes" }
+            ul { @for note in &outcome.notes { li { (unbroken(&sentence(note, unit))) } } }
         }
     }
 }
@@ -241,7 +236,7 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
 
 fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let inputs = &outcome.inputs;
-    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", base.grading()));
+    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     let mm = |value: f64| size(value, inputs.scale_free);
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
@@ -266,60 +261,65 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     };
     html! {
         h2 { "Inputs" }
-        h3 { "Filter" }
-        table.facts { tbody {
-            (fact("Name", file_name(&filter.name)))
-            (fact("Cu = D60/D10", known(filter.cu, significant)))
-            (fact("D0, D15, D50, D85 (by mass)",
-                [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
-            (fact("D50 by number", mm(filter.d50_by_number_mm)))
-            @if let Some(packing) = packing {
-                (fact("Packing", format!(
-                    "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
-                    whole(packing.grains), significant(packing.friction), significant(packing.pressure_kpa),
-                    significant(packing.after.coordination), packing.seed)))
-            }
-            (fact("Void ratio", void_ratio(outcome)))
-            (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
-            (fact("Constriction curve",
-                format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
-                    significant(filter.cu_csd))))
-            (fact("Credit for the curve",
-                if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
-        } }
-        h3 { "Base" }
-        table.facts { tbody {
-            (fact("Name", file_name(&base.name)))
-            (fact("Cu = D60/D10", known(base.cu, significant)))
-            (fact("D0, D15, D50 (by mass)",
-                [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
-            (fact(&format!("D85, D95, D100 (by mass){grading}"),
-                [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
-            @if let Some(before) = &base.as_sampled {
-                (fact("D85, D95, D100 as sampled (not walked)",
-                    [before.d85_mm, before.d95_mm, Some(before.d100_mm)].map(|d| known(d, mm)).join(", ")))
-            }
-            @if base.tail_mass_fraction > 0.0 {
-                (fact("Pan fraction (finer than the finest sieve)",
-                    format!("{} by mass; taken as too fine to block any constriction (passive)",
-                        percent(base.tail_mass_fraction))))
-            }
-            (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
-                significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
-            (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
-            (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
-                if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
-                else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
-            (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
-        } }
-        h3 { "Network" }
-        table.facts { tbody {
-            (fact("Kind", &kind))
-            @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
-            (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
-            (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
-            (fact("Thickness modelled", known(network.thickness_mm, mm)))
-        } }
+        details {
+            summary { "Filter, base and network as walked" }
+            h3 { "Filter" }
+            table.facts { tbody {
+                (fact("Name", file_name(&filter.name)))
+                (fact("Cu = D60/D10", known(filter.cu, significant)))
+                (fact("D0, D15, D50, D85 (by mass)",
+                    [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
+                (fact("D50 by number", mm(filter.d50_by_number_mm)))
+                @if let Some(packing) = packing {
+                    (fact("Packing", format!(
+                        "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
+                        whole(packing.grains), significant(packing.friction),
+                        significant(packing.pressure_kpa), significant(packing.after.coordination),
+                        packing.seed)))
+                }
+                (fact("Void ratio", void_ratio(outcome)))
+                (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
+                (fact("Constriction curve",
+                    format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
+                        significant(filter.cu_csd))))
+                (fact("Credit for the curve",
+                    if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
+            } }
+            h3 { "Base" }
+            table.facts { tbody {
+                (fact("Name", file_name(&base.name)))
+                (fact("Cu = D60/D10", known(base.cu, significant)))
+                (fact("D0, D15, D50 (by mass)",
+                    [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
+                (fact(&format!("D85, D95, D100 (by mass){grading}"),
+                    [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
+                @if let Some(before) = &base.as_sampled {
+                    (fact("D85, D95, D100 as sampled (not walked)",
+                        [before.d85_mm, before.d95_mm, Some(before.d100_mm)]
+                            .map(|d| known(d, mm)).join(", ")))
+                }
+                @if base.tail_mass_fraction > 0.0 {
+                    (fact("Pan fraction (finer than the finest sieve)",
+                        format!("{} by mass; taken as too fine to block any constriction (passive)",
+                            percent(base.tail_mass_fraction))))
+                }
+                (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
+                    significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
+                (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
+                (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
+                    if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
+                    else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
+                (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
+            } }
+            h3 { "Network" }
+            table.facts { tbody {
+                (fact("Kind", &kind))
+                @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
+                (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
+                (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
+                (fact("Thickness modelled", known(network.thickness_mm, mm)))
+            } }
+        }
     }
 }
 
@@ -334,17 +334,23 @@ fn provenance(folder: &RunFolder) -> Markup {
             (fact("voidwalk",
                 format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
+            @if !outcome.digest.is_empty() { (fact("Digest of the numbers", &outcome.digest)) }
             (appendix::input_files(&manifest.inputs))
-            @if !outcome.left_out.is_empty() {
-                (fact("Not needed here", outcome.left_out.join("; ")))
-            }
         } }
-        details open {
-            summary { "Settings (scene.toml)" }
-            pre { (scene) }
-            @if cut { p.small { "Cut here; the whole is in scene.toml." } }
-            p.small { "The same settings give the same results, bit for bit. Machine, command and times are \
-                       in manifest.json." }
+        div.screen {
+            @if !outcome.left_out.is_empty() {
+                table.facts { tbody {
+                    (fact("Not needed here",
+                        left_out_words(&outcome.left_out, size_unit(outcome.inputs.scale_free))))
+                } }
+            }
+            details {
+                summary { "Settings (scene.toml)" }
+                pre { (scene) }
+                @if cut { p.small { "Cut here; the whole is in scene.toml." } }
+                p.small { "The same settings give the same results, bit for bit. Machine, command and times \
+                           are in manifest.json." }
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic, Verdict};
-use crate::verdict::words::capital;
+use crate::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
@@ -31,7 +31,7 @@ pub(super) fn fraction(statistic: &Statistic) -> Markup {
 }
 
 /// Means over the replicates.
-pub(super) fn results(walks: &Walks, sentences: &[Option<String>]) -> Markup {
+pub(super) fn results(walks: &Walks) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
     let scale_free = walks.scale_free;
     let nothing = || html! { "nothing eroded" };
@@ -78,9 +78,6 @@ pub(super) fn results(walks: &Walks, sentences: &[Option<String>]) -> Markup {
     html! {
         h2 { "Results" }
         (table)
-        @for said in sentences.iter().flatten() {
-            p { (capital(said)) "." }
-        }
     }
 }
 

@@ -5,15 +5,12 @@ use maud::{Markup, html};
 use super::numbers::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::apart::{self, digits_of, digits_within};
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{
-    LIMITS_ROUNDED, RuleResult, limit_begins, limit_ends, result_of, value_begins,
-};
-
-/// Digits of a value and a limit, where more are not needed to tell them apart.
-const DIGITS: i32 = 3;
+use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::words::left_out::NOT_COVERED;
+use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends, value_begins};
+use crate::words::rule_note::rule_notes;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
@@ -21,74 +18,80 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
         listed.iter().partition(|rule| rule.role == RuleRole::Walk);
     html! {
-        h2 { "Filter rules beside the verdict" }
+        h2 { "All rules" }
         @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
-            p.small { (LIMITS_ROUNDED) }
-            (table(&practice, unit))
+            p.small { (LIMITS_ROUNDED) " " (NOT_COVERED) " In brackets: sources, below." }
+            (numbered(&practice, unit, &outcome.rules))
             @if !walk.is_empty() {
-                h3 { "Comparisons of the walk with tests and with the paper" }
-                p.small { "They show whether the walk agrees with both. No filter fails by them." }
-                (table(&walk, unit))
+                div.screen {
+                    h3 { "Comparisons of the walk with tests and with the paper" }
+                    p.small { "They show whether the walk agrees with both. No filter fails by them." }
+                    (numbered(&walk, unit, &outcome.rules))
+                }
             }
         }
     }
 }
 
-/// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
-/// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
-pub(crate) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
-    let numbers = match (rule.value, rule.limit) {
-        (Some(value), Some(limit)) => apart::value_and_limit(value, limit, rule.at_least, DIGITS).map(Some),
-        (value, limit) => [
-            value.map(|value| digits_of(value, DIGITS)),
-            limit.map(|limit| digits_within(limit, DIGITS, rule.at_least)),
-        ],
+/// Rules as a table in which numbers stand for the sources.
+fn numbered(rules: &[&AppliedRule], unit: SizeUnit, all: &[AppliedRule]) -> Markup {
+    let listed = distinct_sources(&listed(all));
+    table_with(rules, unit, |rule| match listed.iter().position(|source| *source == rule.source) {
+        Some(place) => html! { " [" (place + 1) "]" },
+        None => html! {},
+    })
+}
+
+/// The sources of all rules, by the numbers that stand in the table.
+pub(super) fn sources(outcome: &Outcome) -> Markup {
+    let sources = distinct_sources(&listed(&outcome.rules));
+    let is_of_walk = |source: &String| {
+        let citing = outcome.rules.iter().filter(|rule| rule.source == *source);
+        citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
     };
-    let inches = inches_of(rule, &numbers, unit);
-    let mut both = numbers.into_iter().zip(inches).map(|(number, inches)| {
-        let number = number?;
-        // The digits of a length say how closely it was worked out; 4.00 times D85B is four times.
-        let is_ratio = rule.unit.is_empty() || rule.unit == "%";
-        let number = if is_ratio { without_zeros(&number) } else { &number };
-        let with_unit = format!("{number}\u{202f}{}", rule.unit);
-        Some(with_unit.trim_end().to_owned() + &inches)
-    });
-    std::array::from_fn(|_| both.next().flatten())
-}
-
-/// What stands behind both: inches that follow from the mm beside them, as far apart as those, where they are
-/// shown.
-fn inches_of(rule: &AppliedRule, numbers: &[Option<String>; 2], unit: SizeUnit) -> [String; 2] {
-    if rule.unit != "mm" {
-        return Default::default();
-    }
-    let [value, limit] = [0, 1].map(|at| numbers[at].as_ref().and_then(|mm| mm.parse::<f64>().ok()));
-    match (value, limit) {
-        (Some(value), Some(limit)) => unit.beside_both(value, limit, rule.at_least),
-        (Some(value), None) => [unit.beside(value), String::new()],
-        (None, Some(limit)) if rule.at_least => [String::new(), unit.beside_least(limit)],
-        (None, Some(limit)) => [String::new(), unit.beside_greatest(limit)],
-        (None, None) => Default::default(),
+    html! {
+        @if !sources.is_empty() {
+            h2 { "Sources" }
+            ol.sources {
+                @for source in &sources {
+                    // Comparisons of the walk stay on the screen.
+                    li.screen[is_of_walk(source)] { (clean(source)) }
+                }
+            }
+        }
     }
 }
 
-/// A number without zeros at its end.
-fn without_zeros(number: &str) -> &str {
-    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
+/// Each source once, those of practice first.
+fn distinct_sources(rules: &[AppliedRule]) -> Vec<String> {
+    let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+        rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+    let mut sources: Vec<String> = Vec::new();
+    for rule in practice.into_iter().chain(walk) {
+        if !rule.source.is_empty() && !sources.contains(&rule.source) {
+            sources.push(rule.source.clone());
+        }
+    }
+    sources
+}
+
+/// Value and limit of a rule, which no line breaks apart from their units.
+pub(super) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
+    words::value_and_limit(rule, unit).map(|text| text.map(|text| text.replacen(' ', "\u{202f}", 1)))
 }
 
 /// What stands in the place of a limit that is not there.
 fn no_limit(rule: &AppliedRule) -> &'static str {
     let is_none = result_of(rule) == RuleResult::NotALimit;
-    if is_none { RuleResult::NotALimit.words() } else { "–" }
+    if is_none { words::result(RuleResult::NotALimit) } else { "–" }
 }
 
 /// What a rule found: a tick where it is kept alone.
 pub(super) fn result(rule: &AppliedRule) -> Markup {
     match result_of(rule) {
-        of @ RuleResult::Met => html! { span.keeps { "✓ " (of.words()) } },
-        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (of.words()) } },
-        of => html! { (of.words()) },
+        of @ RuleResult::Met => html! { span.keeps { "✓ " (words::result(of)) } },
+        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (words::result(of)) } },
+        of => html! { (words::result(of)) },
     }
 }
 
@@ -100,13 +103,13 @@ pub(super) fn authorities(rule: &AppliedRule) -> Markup {
     }
 }
 
-/// Rules as a table.
-pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
+/// Rules as a table, with what stands for the source behind the name of each.
+fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
     let table = Table::of(rules)
         .class("rules")
         .name("Rule, what it is for, source", |rule| {
             html! {
-                (clean(&rule.name))
+                (clean(&rule.name)) (source(rule))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
                 @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
@@ -114,10 +117,9 @@ pub(super) fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                         (unit.size(left.d15f)) "."
                     }
                 }
-                @for text in [&rule.note, &rule.needs] {
-                    @if !text.is_empty() { br; span.small { b { (clean(&text.to_string())) } } }
+                @for notes in [&rule.notes, &rule.needs] {
+                    @if !notes.is_empty() { br; span.small { b { (clean(&rule_notes(notes, unit))) } } }
                 }
-                br; span.small { (clean(&rule.source)) }
             }
         })
         .text("Authority", |rule| authorities(rule))
@@ -165,7 +167,7 @@ mod tests {
         assert_eq!(terzaghi(4.0003), ["4.0003", "4"]);
         assert_eq!(terzaghi(3.9998), ["3.9998", "4"]);
         assert_eq!(terzaghi(3.52), ["3.52", "4"]);
-        let page = table(&[&rule(TERZAGHI, 4.0003, 4.0)], SizeUnit::Mm).into_string();
+        let page = table_with(&[&rule(TERZAGHI, 4.0003, 4.0)], SizeUnit::Mm, |_| html! {}).into_string();
         assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
         // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
         let of = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);

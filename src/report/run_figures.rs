@@ -7,15 +7,17 @@ use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
-use super::first_page::{coarse_left, units};
+use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
-use super::numbers::{interval, interval_in_percent, percent, significant, size, threshold, whole};
+use super::numbers::{interval, interval_in_percent, percent, size, threshold, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
-use crate::verdict::words::capital;
+use crate::words::capital;
+use crate::words::{base_size, grading};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;
@@ -86,17 +88,17 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let (limits, unit) = (boundaries(&folder.outcome), units(folder));
+    let limits = boundaries(&folder.outcome);
     let sampled = base.as_sampled.as_ref();
     let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
     let rows =
         filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
     let x =
-        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit, _)| *limit)));
+        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
     let x = if coarse_left(folder) { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
-        Some(of) => of.words(),
+        Some(of) => base_size(&of, SizeUnit::Mm),
         None => format!("D85B is {}", size(base.d85_mm, true)),
     };
     let what = format!(
@@ -107,7 +109,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
         .sizes((720.0, 460.0), (358.0, 400.0))
-        .sheet((510.0, 244.0));
+        .sheet((680.0, 350.0));
     if !inputs.scale_free {
         figure = figure.sieves();
     }
@@ -118,7 +120,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     boundaries::draw(&mut figure, &limits);
     // Of two curves of the base each says which it is; of one, it is as sampled.
     let walked = match (inputs.base_size(), sampled) {
-        (Some(of), Some(_)) => format!("base, {}", of.grading()),
+        (Some(of), Some(_)) => format!("base, {}", grading(&of)),
         _ => name("base", &base.name),
     };
     if let Some(before) = sampled {
@@ -130,17 +132,13 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(constrictions.label("constrictions\n(by number)"));
     figure.add(Line::of_rows(&filter.gradation, BLACK).width(2.6).label(&name("filter", &filter.name)));
     let mark = |at: f64, percent: f64, colour, shape, text: &str| {
-        let label = format!("{text} = {}", unit.size(at));
-        Point::new(at, percent, colour, shape).dropped().label(&label)
+        Point::new(at, percent, colour, shape).dropped().label(text)
     };
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
-        "Gradations by mass, and the filter’s constrictions by number. D15F/D85B = {}{}, D15F/D95B = {}.{}{}",
-        significant(folder.outcome.ratios.d15f_over_d85b),
-        inputs.base_size().map_or(String::new(), |of| format!(" ({})", of.words_in(unit))),
-        significant(folder.outcome.ratios.d15f_over_d95b),
-        boundaries::caption(&folder.outcome, &limits, unit),
+        "Gradations by mass, constrictions by number.{}{}",
+        boundaries::caption(&folder.outcome, &limits),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)

@@ -9,7 +9,6 @@ use super::cover::{cover, foot};
 use super::error::ReportError;
 use super::shell::{Drawn, contents, figure, model, page_with_foot};
 use super::written::{Written, write_page_as};
-use crate::outcome::page_with_inches;
 use crate::outcome::record::SheetCover;
 
 /// A page that is put together from above.
@@ -19,21 +18,13 @@ pub(super) struct Sections {
     header: Markup,
     main: String,
     drawn: Vec<Drawn>,
-    inches: bool,
 }
 
 impl Sections {
     /// A page with its title for a browser, its first heading, and below that what it is about.
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
-        Self {
-            title: title.into(),
-            foot: None,
-            header,
-            main: String::new(),
-            drawn: Vec::new(),
-            inches: false,
-        }
+        Self { title: title.into(), foot: None, header, main: String::new(), drawn: Vec::new() }
     }
 
     /// With a line on what the model is, before anything is said by it.
@@ -47,11 +38,6 @@ impl Sections {
         self.header = html! { (self.header) (cover(of, program, seed)) };
         self.foot = foot(of);
         self
-    }
-
-    /// With inches behind every length in mm, or without.
-    pub(super) fn inches(self, inches: bool) -> Self {
-        Self { inches, ..self }
     }
 
     /// With words, or a table.
@@ -84,8 +70,8 @@ impl Sections {
 
     /// The page as text, with this at its end.
     pub(super) fn text(&self, footer: &Markup) -> String {
-        let main = if self.inches { page_with_inches(&self.main) } else { self.main.clone() };
-        page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &PreEscaped(main), footer])
+        let main = PreEscaped(self.main.clone());
+        page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &main, footer])
     }
 
     /// Writes the figures and then the page, with this at its end, under its name in the folder.

@@ -25,9 +25,9 @@ impl<'a> SizedSoil<'a> {
 fn note(unit: SizeUnit) -> Markup {
     html! { p.small {
         @if unit != SizeUnit::D0f {
-            "Group by ASTM D2487 of the part finer than 75 mm, from the sieve curve. "
+            "Group by ASTM D2487, finer than 75 mm. "
         }
-        "–: not known from the sieves."
+        "–: not known."
     } }
 }
 

@@ -17,11 +17,17 @@ use super::section::Sections;
 use super::shell::{clean, unbroken};
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::products::to_be_checked;
 use crate::outcome::design::specification::ProductMargin;
-use crate::outcome::design::{DesignFinding, Specification, SpecificationStep};
-use crate::verdict::DESIGN_AGAIN;
-use crate::verdict::fitting::FITS;
+use crate::outcome::design::{Specification, SpecificationStep};
+use crate::words::design::limit;
+use crate::words::products::{
+    FITS, not_kept, product as product_result, products as products_line, to_be_checked,
+};
+use crate::words::row_note;
+use crate::words::specification::{
+    DESIGN_AGAIN, band, beside_limits, if_dispersive, no_band, raised, step_name, step_notes, step_value,
+    still_to_set as still_to_set_line, without_margin,
+};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
@@ -40,19 +46,15 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         p.small { "voidwalk " (of.version) "." }
     };
     #[cfg(feature = "xlsx")]
-    super::workbook::write_specification_workbook(folder, &of, None)?;
-    let (stated, soils) = (Stated::of(&of), GivenSoils::of_specification(&of));
+    super::workbook::write_specification_workbook(folder, &of)?;
+    let soils = GivenSoils::of_specification(&of);
     let made = html! { table.facts { tbody { (input_files(&of.inputs)) } } };
     let title = "Specification of a filter";
-    Sections::new(title, title, &names)
+    let page = Sections::new(title, title, &names)
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
-        .inches(of.inches)
         .words(&html! { section.sheet { (answer(&of)) } })
-        .figures(soils.figure(of.band.as_ref(), of.band_in_words().as_deref()))
-        .section("More warnings", &more_warnings(&of))
-        .section("Limits sieve by sieve", &stated.limits)
-        .section("Standard products", &products(&of, true))
-        .section("Step by step", &stated.words)
+        .figures(soils.figure(of.band.as_ref(), band(&of, SizeUnit::of(false, of.inches)).as_deref()));
+    with_details(page, &of)
         .section(soils.heading(), &soils.appendix())
         .section(
             "How this was made",
@@ -65,41 +67,31 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "specification.html", &footer)
 }
 
-/// The parts of a specification that its own page and that of a design show.
-#[derive(Default)]
-pub(super) struct Stated {
-    /// Every step.
-    pub words: Markup,
-    /// What a delivery may have finer than each sieve.
-    pub limits: Markup,
-    /// Margins of standard products.
-    pub products: Markup,
+/// Adds what a page says of a specification below its first sheet.
+pub(super) fn with_details(page: Sections, of: &Specification) -> Sections {
+    page.section("More warnings", &more_warnings(of))
+        .section("Limits sieve by sieve", &limits(of))
+        .section("Standard products", &products(of))
+        .section("Step by step", &steps(of))
 }
 
-impl Stated {
-    pub(super) fn of(specification: &Specification) -> Self {
-        Self {
-            words: steps(specification),
-            limits: limits(specification),
-            products: products(specification, false),
-        }
-    }
-}
-
-fn answer(of: &Specification) -> Markup {
+/// The answer of practice.
+pub(super) fn answer(of: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, of.inches);
     html! {
         section.verdict {
-            @if let Some(band) = of.band_in_words() { p.word.long { (clean(&band)) ", by practice." } }
+            @if let Some(band) = band(of, unit) { p.word.long { (clean(&band)) ", by practice." } }
+            p { "Limit: " (clean(&limit(of, unit))) "." }
             (to_specify(of))
-            @if let Some(said) = of.without_margin_in_words() { p { (unbroken(&said)) "." } }
-            @if let Some(said) = of.if_dispersive_in_words(DESIGN_AGAIN) {
+            @if let Some(said) = without_margin(of, unit) { p { (unbroken(&said)) "." } }
+            @if let Some(said) = if_dispersive(of, DESIGN_AGAIN, unit) {
                 p { (clean(&said)) "." }
             }
-            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(why)) } }
-            (cautions(&of.findings))
-            @if of.findings.len() > WARNINGS { p.small { "More warnings stand below." } }
+            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(&no_band(why, unit))) } }
+            (cautions(of))
+            @if of.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
             (still_to_set(of))
-            p { (clean(&of.products_in_words())) "." }
+            p { (clean(&products_line(of))) "." }
         }
     }
 }
@@ -108,28 +100,30 @@ fn answer(of: &Specification) -> Markup {
 const WARNINGS: usize = 4;
 
 fn more_warnings(of: &Specification) -> Markup {
-    let more = of.findings.iter().skip(WARNINGS);
+    let (more, unit) = (of.notes.iter().skip(WARNINGS), SizeUnit::of(false, of.inches));
     html! {
-        @if of.findings.len() > WARNINGS { ul { @for found in more { li { (clean(&found.words())) } } } }
+        @if of.notes.len() > WARNINGS { ul { @for row in more { li { (clean(&row_note(row, unit))) } } } }
     }
 }
 
 /// The first warnings of the base itself.
-pub(super) fn cautions(of: &[DesignFinding]) -> Markup {
+fn cautions(of: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, of.inches);
     html! {
-        @for found in of.iter().take(WARNINGS) {
-            p.caution { b { "Warning" } ": " (unbroken(&found.words())) }
+        @for row in of.notes.iter().take(WARNINGS) {
+            p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
         }
     }
 }
 
 /// What the specification lacks; nothing without a band.
-pub(super) fn still_to_set(of: &Specification) -> Markup {
-    html! { @if let Some(said) = of.still_to_set() { p.caution { b { (unbroken(&said)) } } } }
+fn still_to_set(of: &Specification) -> Markup {
+    let said = still_to_set_line(of, SizeUnit::of(false, of.inches));
+    html! { @if let Some(said) = said { p.caution { b { (unbroken(&said)) } } } }
 }
 
 /// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
-pub(super) fn to_specify(of: &Specification) -> Markup {
+fn to_specify(of: &Specification) -> Markup {
     let Some(band) = &of.band else { return html! {} };
     let unit = SizeUnit::of(false, of.inches);
     let sides = [("Fine side", true), ("Coarse side", false)];
@@ -141,7 +135,7 @@ pub(super) fn to_specify(of: &Specification) -> Markup {
         })
     });
     html! {
-        @if let Some(raised) = of.raised_in_words() { p { (clean(&raised)) "." } }
+        @if let Some(raised) = raised(of, unit) { p { (clean(&raised)) "." } }
         (table)
     }
 }
@@ -156,15 +150,15 @@ fn steps(of: &Specification) -> Markup {
         }
         (Table::of(&of.steps).class("study steps")
             .name("What is done, formula, source", |step: &SpecificationStep| html! {
-                (step.step) ". " (clean(&step.does))
-                @for text in [&step.formula, &step.note] {
+                (step.step) ". " (step_name(step.does))
+                @for text in [&step.formula, &step_notes(step, unit)] {
                     @if !text.is_empty() { br; span.small { (clean(text)) } }
                 }
                 @if !step.source.is_empty() { br; span.small { "Source: " (clean(&step.source)) } }
             })
             .text("Numbers", |step| html! {
                 @for value in &step.values {
-                    (clean(&value.name)) " = " b { (known(value.words_in(unit), |words| words)) } br;
+                    (clean(&value.name)) " = " b { (known(step_value(value, unit), |words| words)) } br;
                 }
             })
             .render())
@@ -173,7 +167,8 @@ fn steps(of: &Specification) -> Markup {
 
 fn limits(of: &Specification) -> Markup {
     if of.band.is_none() {
-        return html! { @if let Some(why) = &of.no_band { p { (clean(why)) } } };
+        let unit = SizeUnit::of(false, of.inches);
+        return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, unit))) } } };
     }
     html! {
         (Table::of(&of.limits)
@@ -182,8 +177,8 @@ fn limits(of: &Specification) -> Markup {
             .number("Least finer (%)", |limit| trimmed(limit.min_percent_finer))
             .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), trimmed))
             .render())
-        @if let Some(beside) = of.beside_limits() { p { (clean(&beside)) } }
-        @if of.if_dispersive_in_words(DESIGN_AGAIN).is_some() {
+        @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
+        @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
@@ -195,11 +190,11 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Margins of standard products; who judges them elsewhere says there whether they fit.
-fn products(of: &Specification, says_fit: bool) -> Markup {
+/// Margins of standard products, and whether they fit.
+fn products(of: &Specification) -> Markup {
     let margin = |value: Option<f64>| known(value, significant);
     let unit = SizeUnit::of(false, of.inches);
-    let mut table = Table::of(&of.products)
+    let table = Table::of(&of.products)
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
         .number("D15, fine to coarse side (mm)", |of| {
@@ -208,15 +203,13 @@ fn products(of: &Specification, says_fit: bool) -> Markup {
         })
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
-        .text("What else its sides do not keep", |of| clean(&of.not_kept));
-    if says_fit {
-        table = table.text("", |product| match (&*of.product_in_words(product), product.fits()) {
+        .text("What else its sides do not keep", |of| clean(&not_kept(&of.not_kept)))
+        .text("", |product| match (&*product_result(of, product), product.fits()) {
             (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
             (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
             (said, _) => html! { (said) },
         });
-    }
-    let to_check = to_be_checked(of.products.iter().map(|of| (of.product.as_str(), of.source.as_str())));
+    let to_check = to_be_checked(&of.products);
     html! {
         @if !of.products.is_empty() {
             (table.render())
@@ -240,16 +233,16 @@ mod tests {
     fn products_are_said_to_fit_as_far_as_is_known() {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
-        let said = core.products_in_words();
+        let said = products_line(&core);
         assert_eq!(said, "Standard products that fit: ASTM C33 fine aggregate");
-        assert!(limits(&core).into_string().contains("D15F of each delivery must lie between 0.140 and"));
+        assert!(limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
         // The greatest is not known, and the least alone refuses the finest product.
         let unknown =
             Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };
-        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
+        assert!(products_line(&unknown).starts_with("No other product is known to fit"));
         let unknown = Specification { products: margins((Some(0.1), 0.1), None), ..unknown };
-        assert!(unknown.products_in_words().starts_with("No other product is known to fit"));
-        let page = products(&core, true).into_string();
+        assert!(products_line(&unknown).starts_with("No other product is known to fit"));
+        let page = products(&core).into_string();
         assert!(
             page.contains("Limits to be checked against the standard: ASTM C33 fine aggregate, "),
             "{page}"

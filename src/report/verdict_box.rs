@@ -10,9 +10,11 @@ use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::record::{FindingRecord, ModelLimit, RunSummary, Verdict};
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::words::meaning;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::{ModelLimit, Note, RunSummary, Verdict};
+use crate::words::left_out::left_out_in_brief;
+use crate::words::meaning;
+use crate::words::sentence;
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
@@ -64,7 +66,7 @@ pub(super) struct Said<'a> {
     /// What the class means, in the sentence of the page.
     pub meaning: String,
     /// What a reader must know besides.
-    pub findings: &'a [FindingRecord],
+    pub notes: &'a [Note],
     /// What one replicate is, and what each of several is.
     pub replicate: [&'static str; 2],
     /// What the model leaves out.
@@ -81,7 +83,7 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
         div {
             @for (name, words) in said.lines { p { b { (name) } ": " (clean(words)) "." } }
             p { (clean(&said.meaning)) }
-            ul { @for finding in said.findings { li { (clean(&finding.sentence)) } } }
+            ul { @for note in said.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
             (table)

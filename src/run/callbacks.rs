@@ -7,7 +7,8 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
-use crate::outcome::record::Outcome;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::{Note, Outcome};
 use crate::packing::CompressionProgress;
 use crate::store::Folder;
 
@@ -27,6 +28,13 @@ pub enum Event<'a> {
     Packing(&'a CompressionProgress),
     /// The packing has ended, well or not.
     PackingEnded,
+    /// What is to be known of a case before its walk.
+    Noted {
+        /// The most important first.
+        notes: &'a [Note],
+        /// In what the case gives sizes.
+        unit: SizeUnit,
+    },
     /// Replicates are walked: so many runs, as far as is known.
     WalkBegun {
         /// How many.

@@ -12,9 +12,11 @@ use super::prepare::{Draft, PrepareOptions};
 use super::replicates::{have_networks, left_out_of_first_run};
 use super::results::left_out;
 use crate::case::{CaseError, PackedFilter, PackingPlan};
-use crate::outcome::record::{Inputs, Ratios};
+use crate::outcome::record::Note;
+use crate::outcome::record::{Inputs, LeftOut, Ratios};
 use crate::scene::Scene;
 use crate::store::Placement;
+use crate::verdict::ordered;
 
 /// What a run of a scene would do; sizes and times are estimates.
 #[derive(Debug, Serialize)]
@@ -53,9 +55,9 @@ pub struct Check {
     /// What goes in.
     pub inputs: Inputs,
     /// Parts of the program that are not needed.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
     /// What a user must know.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
     /// Why a run would be refused all the same: memory does not suffice.
     #[serde(skip)]
     pub refusal: Option<CaseError>,
@@ -133,7 +135,7 @@ fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError>
         packing,
         inputs: case.record(),
         left_out: left_out(&case, &of_run),
-        warnings: case.warnings(),
+        notes: ordered(&[], case.notes()),
         refusal,
     })
 }

@@ -6,20 +6,20 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use super::replicates::said_by_walks;
 use crate::case::PAPER_MASS_RATIO;
 use crate::network::Network;
-use crate::outcome::record::FindingRecord;
+use crate::outcome::record::Note;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::{Finding, PlannedWalk, finding, ordered};
+use crate::verdict::{PlannedWalk, ordered};
 
 impl NetworkOutcome {
-    /// What a reader must know besides the class, on so many networks of which this is the first.
-    pub fn findings(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<FindingRecord> {
+    /// Notes on the class, on so many networks of which this is the first.
+    pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
         let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
-        found.extend(plan.findings(network, self.replicates.len() as u64));
+        found.extend(plan.notes(network, self.replicates.len() as u64));
         if networks == 1 && self.replicates.len() > 1 {
-            found.push(finding::one_network());
+            found.push(Note::OneNetwork {});
         }
         let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
             let largest: Vec<f64> =
@@ -30,16 +30,13 @@ impl NetworkOutcome {
                 ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        let mut all = ordered(&rules, found);
-        // Settings are those of a scene, and there is none.
-        all.iter_mut().for_each(|finding| finding.to_do.clear());
-        all
+        ordered(&rules, found)
     }
 }
 
 impl NetworkWalk {
     /// What was not checked, or is not known, whatever comes of the walk.
-    fn findings(&self, network: &Network, replicates: u64) -> Vec<Finding> {
+    fn notes(&self, network: &Network, replicates: u64) -> Vec<Note> {
         let filter = self.filter.as_ref();
         let planned = PlannedWalk {
             base: &self.base,
@@ -55,20 +52,20 @@ impl NetworkWalk {
             increments: self.increments,
             replicates,
         };
-        planned.findings().into_iter().chain(self.amount(network)).collect()
+        planned.notes().into_iter().chain(self.amount(network)).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
     /// can compare with it.
-    fn amount(&self, network: &Network) -> Option<Finding> {
-        let n = self.n_base;
-        let Some(eq2) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
-            return Some(finding::amount_unknown(n));
+    fn amount(&self, network: &Network) -> Option<Note> {
+        let particles = self.n_base;
+        let Some(needed) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
+            return Some(Note::AmountUnknown { particles });
         };
-        match n.cmp(&eq2) {
-            Ordering::Less => Some(finding::few_particles(n, eq2)),
+        match particles.cmp(&needed) {
+            Ordering::Less => Some(Note::FewParticles { particles, needed }),
             Ordering::Equal => None,
-            Ordering::Greater => Some(finding::more_particles(n, eq2)),
+            Ordering::Greater => Some(Note::MoreParticles { particles, needed }),
         }
     }
 }
@@ -91,7 +88,7 @@ mod tests {
         n_base: Option<u64>,
         filter: Option<Gradation>,
         grains_per_void: Option<f64>,
-    ) -> (u64, Vec<FindingRecord>) {
+    ) -> (u64, Vec<Note>) {
         let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
         let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
         let filter = filter.map(|gradation| GivenFilter { gradation, is_measured: true, grains_per_void });
@@ -100,7 +97,7 @@ mod tests {
         let eq2 = plan.eq2(&network, 0.05).unwrap();
         plan.n_base = n_base.or(eq2).unwrap();
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        (plan.n_base, outcome.findings(&plan, &network, 1))
+        (plan.n_base, outcome.notes(&plan, &network, 1))
     }
 
     /// What nobody can compare with Eq. (2), what falls short of it, and what exceeds it are doubts; its own
@@ -108,7 +105,7 @@ mod tests {
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
-        let has = |found: &[FindingRecord], id: &str| found.iter().any(|finding| finding.id == id);
+        let has = |found: &[Note], id: &str| found.iter().any(|note| note.id() == id);
         let (n, of_eq2) = said(None, filter(), Some(0.6));
         assert!(
             n > 1000
@@ -122,8 +119,7 @@ mod tests {
         assert!(has(&said(Some(n), None, None).1, "no_filter"));
     }
 
-    /// The one constriction is closed by the first particle: what to try is said in the words of a walk
-    /// without a scene.
+    /// The one constriction is closed by the first particle.
     #[test]
     fn a_network_that_clogs_is_a_doubt() {
         let columns = NetworkColumns {
@@ -140,9 +136,8 @@ mod tests {
         let network = Arc::new(Network::from_columns(&columns).unwrap().0);
         let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        let found = outcome.findings(&plan, &network, 1);
-        let clogged = found.iter().find(|finding| finding.id == "clogged").expect("a finding");
-        assert!(clogged.to_do.is_empty() && !clogged.sentence.contains("inject_share"), "{clogged:?}");
+        let found = outcome.notes(&plan, &network, 1);
+        assert!(found.iter().any(|note| note.id() == "clogged"), "{found:?}");
     }
 
     /// Findings that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
@@ -150,7 +145,7 @@ mod tests {
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
 
     /// What is found of a scene, and of its soils on its network without it: all but the list above.
-    fn of_both(case: &Case, network: &Network) -> [BTreeSet<(&'static str, String)>; 2] {
+    fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
         let filter = GivenFilter {
             gradation: case.filter.clone(),
             is_measured: case.filter_is_measured(),
@@ -161,13 +156,13 @@ mod tests {
             filter: Some(filter),
             ..NetworkWalk::new(case.base.clone(), case.n_base)
         };
-        let said = |found: Vec<Finding>, own: &[&str]| {
-            let shared = found.iter().filter(|finding| !own.contains(&finding.id()));
-            shared.map(|finding| (finding.id(), finding.with_to_do())).collect()
+        let shared = |notes: Vec<Note>, own: &[&str]| {
+            let shared = notes.into_iter().filter(|note| !own.contains(&&*note.id()));
+            shared.map(|note| (note.id(), format!("{note:?}"))).collect()
         };
-        let of_scene = case.findings();
-        let of_network = plan.findings(network, case.scene.walk.replicates);
-        [said(of_scene, &OF_A_SCENE), said(of_network, &[])]
+        let of_scene = case.notes();
+        let of_network = plan.notes(network, case.scene.walk.replicates);
+        [shared(of_scene, &OF_A_SCENE), shared(of_network, &[])]
     }
 
     /// A narrow lattice, and one whose water stops before any of the base can be through.
@@ -182,9 +177,9 @@ mod tests {
             let set: Vec<String> = own.iter().chain(&small).chain(&rest).map(ToString::to_string).collect();
             let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
             let [of_scene, mut of_network] = of_both(&case, &case.network(1).unwrap());
-            of_network.retain(|(id, _)| *id != "given_network");
+            of_network.retain(|(id, _)| id != "given_network");
             assert_eq!(of_scene, of_network);
-            let ids: BTreeSet<&str> = of_scene.iter().map(|(id, _)| *id).collect();
+            let ids: BTreeSet<&str> = of_scene.iter().map(|(id, _)| &**id).collect();
             assert_eq!(ids, [id, "few_particles", "few_replicates"].into());
         }
     }
@@ -239,7 +234,7 @@ mod tests {
                 let network = case.fixed_network.as_ref().unwrap();
                 let [of_scene, of_network] = of_both(&case, network);
                 assert_eq!(of_scene, of_network, "{base:?}");
-                seen.extend(of_scene.iter().map(|(id, _)| *id));
+                seen.extend(of_scene.into_iter().map(|(id, _)| id));
                 pairs += 1;
             }
         }
@@ -253,6 +248,6 @@ mod tests {
             "not_regraded",
             "one_replicate",
         ];
-        assert!(wanted.iter().all(|id| seen.contains(id)) && pairs == 27, "{seen:?}");
+        assert!(wanted.iter().all(|id| seen.contains(*id)) && pairs == 27, "{seen:?}");
     }
 }

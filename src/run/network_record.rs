@@ -6,6 +6,7 @@ use super::network_walk::{NetworkOutcome, NetworkWalk};
 use crate::case::base_record;
 use crate::gradation::Gradation;
 use crate::network::Network;
+use crate::outcome::left_out::LeftOut;
 use crate::outcome::network_walk::{GivenNetwork, NetworkWalkRecord};
 use crate::outcome::{Modelled, leaves_out, verdict};
 
@@ -18,7 +19,7 @@ impl NetworkOutcome {
         let first = self.replicates.first().map(|walked| &walked.result);
         NetworkWalkRecord {
             verdict: self.verdict,
-            findings: self.findings(plan, network, networks),
+            notes: self.notes(plan, network, networks),
             seed: plan.seed,
             n_base: plan.n_base,
             n_base_eq2: plan.eq2(network, plan.mass_ratio).ok().flatten(),
@@ -29,9 +30,8 @@ impl NetworkOutcome {
             replicates: self.replicates.iter().map(|walked| walked.result.replicate.clone()).collect(),
             summary: self.summary.clone(),
             threshold: verdict::THRESHOLD,
-            left_out: first.map_or(Vec::new(), |first| {
-                first.left_out.iter().map(|shortcut| shortcut.sentence("mm")).collect()
-            }),
+            left_out: first
+                .map_or(Vec::new(), |first| first.left_out.iter().copied().map(LeftOut::Walk).collect()),
             model_leaves_out: leaves_out(Modelled {
                 flow: network.exit_rule().needs_flow(),
                 ..Modelled::default()
@@ -79,6 +79,7 @@ mod tests {
 
     use super::*;
     use crate::network::{ExitRule, NetworkColumns};
+    use crate::outcome::record::ModelLimit;
     use crate::run::{Callbacks, walk_networks};
 
     /// Two constrictions that are passed both ways and one that is closed from the start, each counted once.
@@ -105,12 +106,8 @@ mod tests {
         assert!(given.diameters.iter().all(|&[mm, percent]| (mm == 0.25) == (percent <= 50.0)));
         assert_eq!((record.base.name.as_str(), record.base.d85_mm), ("one size", 0.1));
         assert_eq!((record.n_base, record.replicates.len(), record.summary.len()), (1000, 2, 2));
-        assert!(record.model_leaves_out[0].to_string().starts_with("hydraulics but for"));
+        assert!(record.model_leaves_out.contains(&ModelLimit::Gradient));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
-        assert!(
-            record.findings.iter().any(|finding| finding.id == "amount_unknown"),
-            "{:?}",
-            record.findings
-        );
+        assert!(record.notes.iter().any(|note| note.id() == "amount_unknown"), "{:?}", record.notes);
     }
 }

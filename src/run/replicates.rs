@@ -20,10 +20,10 @@ use crate::outcome::record::{Replicate, Run, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
 use crate::outcome::verdict::classify;
 
+use crate::outcome::record::Note;
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
-use crate::verdict::Finding;
 use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{
     Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl,
@@ -368,7 +368,7 @@ pub fn said_by_walks<'a>(
     base: &Gradation,
     increments: u64,
     (layers, openings): (u64, bool),
-) -> Vec<Finding> {
+) -> Vec<Note> {
     let walked = walked.into_iter();
     let mut clogged: Vec<[u64; 3]> = Vec::new();
     let is_none = |k_over_k0| is_clogged(k_over_k0, openings);
@@ -380,7 +380,7 @@ pub fn said_by_walks<'a>(
     }
     let replicates = walked.map(|w| &w.replicate).collect();
     let share = 1.0 / increments as f64;
-    walks::findings(verdict, &Walked { replicates, clogged, base, share, layers, openings })
+    walks::notes(verdict, &Walked { replicates, clogged, base, share, layers, openings })
 }
 
 #[cfg(test)]

@@ -12,6 +12,8 @@ use super::studies::Studies;
 use super::summary::{concluded, summarise};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::digest::digest;
+use crate::outcome::left_out::LeftOut;
+use crate::outcome::record::Note;
 use crate::outcome::record::{
     ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Verdict,
     VoidRow, commit,
@@ -22,8 +24,7 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
-use crate::verdict::left_out::LeftOut;
-use crate::verdict::{Finding, beside, dispersion, finding, ordered, practice};
+use crate::verdict::{dispersion, ordered, practice};
 use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -40,11 +41,11 @@ pub fn outcome(
     let inputs = rule_inputs(case, walked);
     let rules = rules::apply(&inputs);
     let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
-    let mut found = findings_of_walk(case, verdict, walked);
+    let mut found = notes_of_walk(case, verdict, walked);
     found.extend(case.unchecked_clogging());
-    found.extend(unsure.map(finding::decided_below_95));
-    found.extend(case.findings());
-    found.extend(other.range.as_ref().map(beside::curve_range));
+    found.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
+    found.extend(case.notes());
+    found.extend(other.range.as_ref().map(|_| Note::CurveRange {}));
     let inputs_record = case.record();
     let mut outcome = Outcome {
         headline: None,
@@ -55,7 +56,7 @@ pub fn outcome(
             replicates: walked.len() as u64,
             network: inputs_record.network.kind,
         },
-        findings: Vec::new(),
+        notes: Vec::new(),
         if_dispersive: None,
         constrictions: ConstrictionsRecord { origin: case.curve_origin() },
         seed: case.scene.walk.seed,
@@ -86,15 +87,17 @@ pub fn outcome(
         digest: String::new(),
         seconds,
     };
-    found.extend(outcome.found());
+    found.extend(outcome.notes_of_results());
     if case.scene.base.dispersive.is_none() {
-        let d15f = case.filter.d(15.0);
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
-        let note = |limit| dispersion::finding(d15f, &outcome.rules, limit);
-        found.extend(outcome.if_dispersive.map(note));
+        found.extend(outcome.if_dispersive.map(dispersion::note));
     }
-    outcome.findings = ordered(&outcome.rules, found);
-    outcome.headline = practice::headline(&outcome.rules, outcome.beyond_if_dispersive().is_some());
+    outcome.notes = ordered(&outcome.rules, found);
+    let is_beyond = outcome
+        .if_dispersive
+        .and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
+    let is_beyond = is_beyond.is_some();
+    outcome.headline = practice::headline(&outcome.rules, is_beyond);
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
 }
@@ -110,7 +113,7 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
 }
 
 /// What these walks say themselves against the verdict.
-fn findings_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Finding> {
+fn notes_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Note> {
     let of_network = (case.counts[3], case.scene.leaves_openings());
     said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network)
 }
@@ -167,12 +170,9 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     }
 }
 
-/// What the scene does not need, and what the first replicate's first run does not, in words.
-pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<String> {
-    // The smallest grain stands for 1 mm while it is walked.
-    let unit = if case.is_scale_free() { "D0F" } else { "mm" };
-    let of_run = of_run.iter().map(|shortcut| shortcut.sentence(unit));
-    case.left_out().iter().map(LeftOut::words).chain(of_run).collect()
+/// Parts that the scene does not need, and that the first replicate's first run does not.
+pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
+    case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
 /// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.
@@ -239,9 +239,11 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::numbers::SizeUnit;
     use crate::outcome::record::Headline;
     use crate::run::{Callbacks, walk_case};
     use crate::scene::Scene;
+    use crate::words;
 
     /// What comes of a soil with so many percent of fines and a uniform filter of this D15F.
     fn walked(fines: f64, d15f: f64, set: &[&str]) -> Outcome {
@@ -269,21 +271,24 @@ mod tests {
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
-        let next = coarse.next_in_words();
+        let next = words::next(&coarse, SizeUnit::Mm);
         let beside =
             "at most 0.700 mm (0.500 mm if the base is dispersive, which is not stated) and at least ";
         assert!(next.contains(beside), "{next}");
-        let next = walked(45.0, 0.06, &[]).next_in_words();
+        let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
         let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
-        let open = walked(25.0, 9.0, &[]).next_in_words();
+        let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
         let beside = "(if the base is dispersive, which is not stated: less than ";
         assert!(open.contains(beside), "{open}");
         let test = " mm, by how much no source that was read says; have the pair tested)";
         assert!(open.contains(test), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
-            assert!(said.if_dispersive.is_none() && !said.next_in_words().contains("dispersive"), "{set}");
+            assert!(
+                said.if_dispersive.is_none() && !words::next(&said, SizeUnit::Mm).contains("dispersive"),
+                "{set}"
+            );
         }
     }
 
@@ -291,12 +296,22 @@ mod tests {
     fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
         let broken = walked(45.0, 0.6, &[]);
         assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
-        assert!(broken.practice_in_words().contains("; if the base is dispersive, the limit is 0.500 mm, "));
-        assert_eq!(broken.next_in_words(), "have the base tested for dispersion by a pinhole or crumb test");
+        assert!(
+            words::practice(&broken, SizeUnit::Mm)
+                .contains("; if the base is dispersive, the limit is 0.500 mm, ")
+        );
+        assert_eq!(
+            words::next(&broken, SizeUnit::Mm),
+            "have the base tested for dispersion by a pinhole or crumb test"
+        );
         let kept = walked(45.0, 0.45, &[]);
         assert_eq!(kept.headline, Some(Headline::Meets));
-        assert!(!kept.next_in_words().contains("dispers"), "{}", kept.next_in_words());
-        assert!(!kept.practice_in_words().contains("dispersive"));
+        assert!(
+            !words::next(&kept, SizeUnit::Mm).contains("dispers"),
+            "{}",
+            words::next(&kept, SizeUnit::Mm)
+        );
+        assert!(!words::practice(&kept, SizeUnit::Mm).contains("dispersive"));
     }
 
     /// With 38 % fines design allows 0.860 mm, more than the boundary of no erosion, and a dispersive base
@@ -304,9 +319,9 @@ mod tests {
     /// enough.
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
-        let next = |rows: &str| walked_base(rows, 9.0, &[]).next_in_words();
+        let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
         let begin = "take a filter with a D15F of at most 0.860 mm (if the base is dispersive, which is not \
-                     stated: at most 0.500 mm, and have the pair tested) and at least ";
+                     stated: at most 0.500 mm; have the pair tested) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
         let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");
@@ -331,7 +346,7 @@ mod tests {
     fn the_next_step_goes_down_to_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
-            let next = walked_base(rows, d15f, set).next_in_words();
+            let next = words::next(&walked_base(rows, d15f, set), SizeUnit::Mm);
             next.split("at most ").nth(1).map(|of| of.split(' ').next().unwrap().to_owned())
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
@@ -339,10 +354,10 @@ mod tests {
         // Within the floor nothing is to be done.
         let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
         let fine = of(0.18);
-        assert_eq!(fine.next_in_words(), "nothing by these rules");
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "nothing by these rules");
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = of(0.08);
-        assert_eq!(fine.next_in_words(), "take a coarser filter, D15F 0.100 to 0.200 mm");
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200 mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {

@@ -20,11 +20,13 @@ use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 use crate::store::format::from_json;
 use crate::text::{plain, shell_word};
+use crate::verdict::ordered;
 
 /// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
 ///
@@ -195,9 +197,8 @@ fn walk_here(
     };
     let at = wanted.unwrap_or(Path::new("."));
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    for warning in case.warnings() {
-        (callbacks.warn)(&warning);
-    }
+    let unit = SizeUnit::of(case.is_scale_free(), false);
+    (callbacks.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
     if resumed {

@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 use super::sheets::Sheets;
 use crate::outcome::numbers::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
-use crate::outcome::with_inches;
 use crate::study::batch::BatchWalks;
 use crate::study::numbered;
-use crate::verdict::left_out::left_out_in_brief;
-use crate::verdict::{BatchRow, WalkedBatch, WalkedRow};
+use crate::verdict::{BatchFilter, BatchRow, WalkedBatch, WalkedRow};
+use crate::words::batch::{answer, of_filter, walked_columns, walks};
+use crate::words::left_out::left_out_in_brief;
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -105,7 +105,7 @@ pub fn table<T>(columns: Columns<T>, rows: &[T]) -> Value {
 
 /// The rows of a batch as far as they are walked, and which of them are in doubt though a rule is met.
 pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
-    let mut value = table(WalkedRow::columns(SizeUnit::of(false, inches)), rows);
+    let mut value = table(walked_columns(SizeUnit::of(false, inches)), rows);
     value["doubted"] = json!(rows.iter().map(WalkedRow::is_doubted).collect::<Vec<_>>());
     value
 }
@@ -113,15 +113,15 @@ pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
 /// What the page shows of a batch that is done: its table, and what a client asks of each filter.
 pub fn of_batch(batch: &WalkedBatch) -> Value {
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
-    let sized = |said: String| if batch.inches { with_inches(&said) } else { said };
-    let of_filter = |filter: &crate::verdict::BatchFilter| -> Vec<String> {
+    let unit = SizeUnit::of(false, batch.inches);
+    let lines = |filter: &BatchFilter| -> Vec<String> {
         let answers = batch.governing(&filter.name).into_iter();
-        let answers = answers.map(|row| format!("{}: {}", row.rules.sample, row.answer_in_words()));
-        let walks = batch.walks_in_words(&filter.name).into_iter();
-        filter.in_words(&rules).into_iter().chain(walks).chain(answers).map(sized).collect()
+        let answers = answers.map(|row| format!("{}: {}", row.rules.sample, answer(row)));
+        let walks = walks(batch, &filter.name, unit).into_iter();
+        of_filter(filter, &rules, unit).into_iter().chain(walks).chain(answers).collect()
     };
     let mut value = so_far(&batch.rows, batch.inches);
-    value["filters"] = json!(batch.filters.iter().map(of_filter).collect::<Vec<_>>());
+    value["filters"] = json!(batch.filters.iter().map(lines).collect::<Vec<_>>());
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value

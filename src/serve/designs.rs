@@ -7,10 +7,16 @@ use serde_json::{Value, json};
 
 use super::sheets::Sheets;
 use crate::constrictions;
-use crate::outcome::design::band::Band;
-use crate::outcome::design::{Design, DesignFinding, share_of_networks};
+use crate::outcome::design::{Design, RowNote};
+use crate::outcome::numbers::SizeUnit;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
+use crate::words::base_size;
+use crate::words::design::{design_lines, share_of_networks};
+use crate::words::left_out::model_limit;
+use crate::words::products::products;
+use crate::words::specification::{DESIGN_AGAIN, if_dispersive, without_margin};
+use crate::words::{row_note, sentence};
 
 /// What the page asks for.
 #[derive(Debug, Deserialize)]
@@ -33,8 +39,6 @@ pub struct AskedDesign {
     #[serde(default)]
     pub thickness: String,
     #[serde(default)]
-    pub inverse: bool,
-    #[serde(default)]
     pub as_sampled: bool,
     #[serde(default)]
     pub as_given: bool,
@@ -52,7 +56,6 @@ pub struct KeptDesign {
     #[serde(default)]
     pack: bool,
     thicknesses: Vec<String>,
-    inverse: bool,
     #[serde(default)]
     as_sampled: bool,
     #[serde(default)]
@@ -100,7 +103,6 @@ impl AskedDesign {
             densities: listed(&self.density),
             pack: self.pack,
             thicknesses: listed(&self.thickness),
-            inverse: self.inverse,
             as_sampled: self.as_sampled,
             as_given: self.as_given,
             settings: self.changes,
@@ -136,7 +138,6 @@ impl KeptDesign {
             pack: self.pack,
             thicknesses,
             settings: self.settings.clone(),
-            inverse: self.inverse,
             as_sampled: self.as_sampled,
             as_given: self.as_given,
             out: out.to_owned(),
@@ -154,10 +155,7 @@ impl KeptDesign {
             FilterShape::Named(shape) => shape.clone(),
             FilterShape::Settings => "its settings".into(),
         };
-        match self.inverse {
-            false => format!("How coarse may a filter as of {filter} be for {}?", named(&self.base)),
-            true => format!("How fine may a base as of {} be for {filter}?", named(&self.base)),
-        }
+        format!("How coarse may a filter as of {filter} be for {}?", named(&self.base))
     }
 }
 
@@ -166,11 +164,13 @@ fn listed(text: &str) -> Vec<String> {
     text.split(',').map(str::trim).filter(|one| !one.is_empty()).map(str::to_owned).collect()
 }
 
-/// What the page shows of a design: its boundaries as they stand in `design.json`, without each network.
+/// The lines of practice and model of a design, and its boundaries as they stand in `design.json`, without
+/// each network.
 ///
 /// # Errors
 /// A number that is none.
 pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
+    let unit = SizeUnit::of(false, design.inches);
     let mut boundaries = serde_json::to_value(&design.boundaries)?;
     let rows = boundaries.as_array_mut().into_iter().flatten().filter_map(Value::as_object_mut);
     for (row, of) in rows.zip(&design.boundaries) {
@@ -178,81 +178,34 @@ pub fn of_design(design: &Design) -> Result<Value, serde_json::Error> {
         for (name, shown) in ["no_erosion", "continuing"].into_iter().zip(of.shown()) {
             row.insert(name.into(), serde_json::to_value(shown)?);
         }
-        // A limit is rounded inward, which no script of the page does.
-        let practice = of.band.as_ref().and_then(Band::practice_in_words);
-        row.insert("practice".into(), practice.into());
+        for (name, notes) in [("no_erosion", &of.no_erosion_notes), ("continuing", &of.continuing_notes)] {
+            let words: Vec<String> = notes.iter().map(|note| sentence(note, unit)).collect();
+            row.insert(format!("{name}_notes"), words.into());
+        }
     }
+    let practice = design.specification.as_ref();
+    let words = |notes: &[RowNote]| notes.iter().map(|row| row_note(row, unit)).collect::<Vec<_>>();
     Ok(json!({
-        "inverse": design.inverse,
-        "answer": design.answer(),
+        "lines": design_lines(design, unit),
+        "beside": practice.map(|of| [without_margin(of, unit), if_dispersive(of, DESIGN_AGAIN, unit)]),
         "base": design.base.name,
-        "d85b": design.base.size().map(|base| base.words()),
+        "d85b": design.base.size().map(|base| base_size(&base, unit)),
         "filter": design.filter,
         "boundaries": boundaries,
         "share_of_networks": share_of_networks(design.replicates),
         "replicates": design.replicates,
-        "fits_by_practice": design.fits_by_practice(),
-        "cautions": design.cautions().iter().map(DesignFinding::words).collect::<Vec<_>>(),
-        "warnings": design.findings_beside_cautions(),
-        "products": design.products_in_words(),
-        "model_leaves_out": design.model_leaves_out,
+        "cautions": practice.map(|of| words(&of.notes)),
+        "warnings": words(&design.notes),
+        "products": practice.map(products),
+        "model_leaves_out":
+            design.model_leaves_out.iter().map(|limit| model_limit(*limit)).collect::<Vec<_>>(),
     }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gradation::Gradation;
-    use crate::outcome::design::band::SetBy;
-    use crate::outcome::design::{Boundary, Specification};
-    use crate::verdict::SpecificationOptions;
-
-    /// The limit of practice is 0.8069 mm, and its base is not stable itself.
-    #[test]
-    fn limits_are_rounded_inward_and_the_base_is_warned_of_once() {
-        let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
-        let gap = Gradation::from_lines(&gap).unwrap();
-        let of = Specification::of("gap", &[("gap".into(), gap)], SpecificationOptions::default());
-        let unstable = of.findings.iter().find(|of| of.finding.id == "unstable_base").unwrap().clone();
-        let text = json!({
-            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
-            "unit": "mm",
-            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.2, "d95_over_d85": null,
-                "tail_mass_fraction": 0.0},
-            "threshold": 0.075, "replicates": 2, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
-            "step": 0.005,
-            "rules": [], "rules_at": 1.75,
-            "products": [], "findings": [unstable.clone()],
-            "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": of,
-            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
-                "grains_per_void": 0.6, "no_erosion": null, "continuing": null, "not_monotone": 0,
-                "networks": [], "band": null}],
-        });
-        let mut design: Design = serde_json::from_value(text).unwrap();
-        let band = Band {
-            least: 0.7,
-            least_at_most: false,
-            greatest: 0.75,
-            set_by: SetBy::Walk,
-            practice: Some(0.8069),
-            practice_rule: "r".into(),
-            practice_rule_id: None,
-            unit: "mm".into(),
-            is_empty: false,
-            said: "D15F from 0.700 to 0.750 mm".into(),
-        };
-        design.boundaries[0].band = Some(band);
-        let shown = of_design(&design).unwrap();
-        assert_eq!(shown["boundaries"][0]["practice"], "practice allows up to 0.806 mm");
-        assert_eq!(shown["cautions"][0], unstable.words());
-        // The page shows the answer part by part.
-        assert_eq!(shown["answer"]["limit"], design.answer().limit);
-        assert!(!design.answer().limit.is_empty());
-        assert_eq!(shown["warnings"], json!([]));
-        // Without a specification the warning stays where it was.
-        let alone = Design { specification: None, ..design };
-        assert_eq!(of_design(&alone).unwrap()["warnings"].as_array().unwrap().len(), 1);
-    }
+    use crate::outcome::design::Boundary;
 
     /// Five networks: the ends on the page are the least and the most of them.
     #[test]
@@ -261,18 +214,15 @@ mod tests {
         let boundary = Boundary::of(&ratios.map(Ok), Some(0.5)).unwrap();
         let networks = ratios.map(|ratio| json!({"network": 1, "no_erosion": ratio, "continuing": null}));
         let text = json!({
-            "version": "1", "inverse": false, "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
-            "unit": "mm",
+            "version": "1", "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
             "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": 0.5, "d95_over_d85": null,
                 "tail_mass_fraction": 0.0},
             "threshold": 0.075, "replicates": 5, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
             "step": 0.005,
-            "rules": [], "rules_at": 1.75,
-            "products": [], "findings": [],
-            "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
+            "notes": [], "model_leaves_out": [], "settings": [], "seconds": 1.0, "specification": null,
             "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
                 "grains_per_void": 0.6, "no_erosion": boundary, "continuing": null, "not_monotone": 0,
-                "networks": networks, "band": null}],
+                "networks": networks}],
         });
         let shown = of_design(&serde_json::from_value(text).unwrap()).unwrap();
         let no_erosion = &shown["boundaries"][0]["no_erosion"];
@@ -291,7 +241,6 @@ mod tests {
             density: "loose, dense,".into(),
             thickness: "8layers".into(),
             pack: false,
-            inverse: false,
             as_sampled: false,
             as_given: false,
             changes: Vec::new(),

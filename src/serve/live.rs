@@ -9,6 +9,7 @@ use crate::campaign::CaseEvent;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;
+use crate::words::sentence;
 
 /// Fewer replicates have no class while more are to come.
 const FEW: usize = 4;
@@ -72,6 +73,7 @@ impl Live {
                 self.lines.push(line.to_owned());
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
+            Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, unit))),
             Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
         }
     }

@@ -341,14 +341,14 @@ const ROLES = [["retention", "The filter retains the base"],
 const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
 
 function showRules(pair) {
-  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at] }))
+  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at], words: pair.rule_words[at] }))
     .filter((row) => row.named);
   const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
-  const parts = pair.warnings.map((warning) => el("p", { class: "problem" }, warning));
+  const parts = pair.notes.map((note) => el("p", { class: "problem" }, note));
   const { base } = pair;
   parts.push(el("p", {}, `The base as practice reads it: D85 ${number(base.d85_mm)} mm, `, base.regraded
     ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
-  `; ${base.why}.`));
+  `; ${pair.why}.`));
   parts.push(el("p", {}, el("b", {}, "Practice: "), `${pair.practice}.`));
   const named = (some) => some.map((row) => row.named[0]).join("; ");
   const open = rows.filter(({ found }) => found === "no result");
@@ -356,11 +356,11 @@ function showRules(pair) {
   if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), named(open)));
   if (!broken.length && !open.length) parts.push(el("p", {}, "Every rule that was made for these soils is met. What the walk says is another question."));
   parts.push(el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound }) => {
+  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound, words }) => {
     return el("tr", {}, el("td", {}, result(found)), el("td", {}, name), el("td", {}, authorities || "–"),
       el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
       el("td", { class: "n" }, limit ? `${sign} ${limit}${ends}` : "–"),
-      el("td", { class: "small" }, [rule.note, rule.needs, source].filter(Boolean).join(" – ")));
+      el("td", { class: "small" }, [words, source].filter(Boolean).join(" – ")));
   });
   const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
     ...["Result", "Rule", "Authority", "Quantity"].map((text) => el("th", {}, text)),
@@ -480,7 +480,7 @@ async function design() {
   try {
     if (shape === CU && !cu) throw new Error("give the Cu of the filter");
     await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
-      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, inverse: $("#inverse").checked, ...taken(), changes });
+      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, ...taken(), changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
@@ -503,7 +503,7 @@ async function check() {
     }
     into.replaceChildren(el("table", {}, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("th", {}, name), el("td", {}, value))))),
       ...(check.refusal ? [el("p", { class: "problem" }, check.refusal)] : []),
-      ...(check.warnings.length ? [el("ul", {}, ...check.warnings.map((warning) => el("li", {}, warning)))] : []));
+      ...(check.notes.length ? [el("ul", {}, ...check.notes.map((note) => el("li", {}, note)))] : []));
     into.hidden = false;
   } catch (error) {
     show($("#form-problem"), error.message);
@@ -582,49 +582,36 @@ const between = (range) => (range.low === null && range.high === null ? ""
   : `${number(range.low)} to ${number(range.high)}`);
 
 /** A boundary over networks, or why there is none; in bold where the walk decides. */
-function boundary(of, note, decides) {
-  const shown = (text) => el(decides ? "b" : "span", {}, text);
-  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, note || "it lies beyond the search")];
-  const sized = of.d85b_mm ? ["D85B", of.d85b_mm] : of.d15f_mm ? ["D15F", of.d15f_mm] : null;
+function boundary(of, notes = []) {
+  const words = notes.join(" ");
+  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, words || "it lies beyond the search")];
   return [
-    ...(sized ? [shown(`${sized[0]} ${number(sized[1].median)} mm`), el("br"), between(sized[1]), el("br")] : []),
-    sized ? `D15F/D85B ${number(of.median)}` : shown(`D15F/D85B ${number(of.median)}`), el("br"), between(of),
-    note ? el("span", { class: "small" }, el("br"), note) : null];
+    ...(of.d15f_mm ? [`D15F ${number(of.d15f_mm.median)} mm`, el("br"), between(of.d15f_mm), el("br")] : []),
+    `D15F/D85B ${number(of.median)}`, el("br"), between(of),
+    words ? el("span", { class: "small" }, el("br"), words) : null];
 }
 
 function boundariesOf(job) {
   const done = job.result;
-  const head = done.inverse ? ["In the model: no erosion down to", "continuing erosion below"] : ["In the model: no erosion up to", "continuing erosion from"];
-  const decides = !done.answer || (done.answer.set_by !== "practice" && done.answer.d15f_over_d85b !== null);
   const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
-    el("td", {}, boundary(row.no_erosion, row.no_erosion_note, decides)), el("td", {}, boundary(row.continuing, row.continuing_note, decides)),
-    el("td", {}, row.band ? row.band.said : row.band_note || "–", row.practice ? [el("br"), el("span", { class: "small" }, row.practice)] : null,
+    el("td", {}, boundary(row.no_erosion, row.no_erosion_notes)), el("td", {}, boundary(row.continuing, row.continuing_notes),
     row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
-  const said = done.answer || {};
-  return [done.answer ? el("p", { class: "word" }, `${said.limit}.`) : null,
-    said.washout ? el("p", {}, el("b", {}, `${said.washout}.`)) : null,
-    said.margin ? el("p", {}, `${said.margin}.`) : null,
-    said.if_dispersive ? el("p", {}, el("b", {}, `${said.if_dispersive}.`)) : null,
-    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
-    said.walk ? el("p", {}, `${said.walk}.`) : null,
+  return [...answer(done.lines),
+    ...(done.beside || []).filter(Boolean).map((said) => el("p", {}, `${said}.`)),
     ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
-    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
-      el("thead", {}, el("tr", {}, ...["Density, thickness", ...head, "Band"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.products ? el("p", {}, `${done.products}.`) : null,
+    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
+    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
+      el("thead", {}, el("tr", {}, ...["Density, thickness", "In the model: no erosion up to", "continuing erosion from"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
     done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
     el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
 }
 
-/** No green where no boundary is known, where the walk sets the answer, where practice has no answer, or where no filter drains and holds. */
-const colourOfDesign = (done) => (!done.fits_by_practice || (done.answer && done.answer.d15f_over_d85b === null)
-  || done.boundaries.some((row) => row.band && row.band.is_empty) ? "amber"
-  : done.boundaries.every((row) => row.no_erosion && !row.band_note) ? "green" : "");
-
 /** The lines that every face begins with. */
 const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
 
-/** At most three findings; the rest is folded. */
-const findings = (all) => [list(all.slice(0, 3)),
+/** At most three notes; the rest is folded. */
+const notes = (all) => [list(all.slice(0, 3)),
   all.length > 3 ? el("details", {}, el("summary", {}, `and ${all.length - 3} more`), list(all.slice(3))) : null];
 
 function verdictOf(job) {
@@ -641,10 +628,10 @@ function verdictOf(job) {
         el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
         ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
           one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.first_lines), ...findings(one.found)]),
+      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.lines), ...notes(one.notes)]),
       el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
-  return [...answer(done.lines), ...plot(done.runs), ...findings(done.findings)];
+  return [...answer(done.lines), ...plot(done.runs), ...notes(done.notes)];
 }
 
 function card(job) {
@@ -657,7 +644,7 @@ function card(job) {
   };
   const isDone = job.state === "done" && job.result;
   const kind = isDone && job.kind === "judge" ? COLOURS[job.result.colour] || ""
-    : isDone && job.kind === "design" ? colourOfDesign(job.result) : job.state;
+    : isDone && job.kind === "design" ? "" : job.state;
   const words = { waiting: `waits, ${job.before} before it`, running: job.stopping ? "stops, and saves what is done" : "is walked", stopped: "stopped",
     done: "", refused: "refused", failed: "failed" }[job.state];
   const parts = [el("h3", {}, job.title, words ? el("span", { class: "small" }, ` ${words}`) : "")];

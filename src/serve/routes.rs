@@ -22,6 +22,7 @@ use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{CurvePoint, Gradation, curves_in_file};
+use crate::outcome::numbers::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
@@ -33,6 +34,7 @@ use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
 use crate::verdict::{PairOptions, PairRules};
+use crate::words::sentence;
 
 const PAGE: &str = include_str!("page.html");
 const SCRIPT: &str = include_str!("page.js");
@@ -208,7 +210,10 @@ impl Routes {
                 let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
                 let refusal =
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
+                let unit = SizeUnit::of(check.inputs.scale_free, false);
+                let notes: Vec<String> = check.notes.iter().map(|note| sentence(note, unit)).collect();
                 let mut value = serde_json::to_value(&check).map_err(wrong)?;
+                value["notes"] = json!(notes);
                 value["refusal"] = json!(refusal);
                 Ok(Answer::json(200, value))
             }

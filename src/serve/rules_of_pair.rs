@@ -3,10 +3,12 @@
 use serde_json::{Value, json};
 
 use crate::outcome::numbers::SizeUnit;
-use crate::report::value_and_limit;
 use crate::verdict::PairRules;
 use crate::verdict::listed::listed;
-use crate::verdict::rule_words::{LIMITS_ROUNDED, limit_begins, limit_ends, result_of, value_begins};
+use crate::verdict::rule_result::result_of;
+use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
+use crate::words::rule_note::{regrade_reason, rule_notes};
+use crate::words::{practice_line, sentence};
 
 /// Every rule with its words: the page shows value and limit as every sheet does, and works nothing out.
 pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
@@ -24,17 +26,23 @@ pub fn rules_of_pair(pair: PairRules) -> serde_json::Result<Value> {
         .map(|of| json!(of))
         .collect();
     let shown: Vec<_> = rules.iter().map(|rule| value_and_limit(rule, SizeUnit::Mm)).collect();
-    let results: Vec<_> = rules.iter().map(|rule| result_of(rule).words()).collect();
+    let results: Vec<_> = rules.iter().map(|rule| result(result_of(rule))).collect();
     let begins: Vec<_> = rules.iter().map(limit_begins).collect();
     let ends: Vec<_> = rules.iter().map(limit_ends).collect();
     let values: Vec<_> = rules.iter().map(value_begins).collect();
+    let words: Vec<_> =
+        rules.iter().map(|rule| rule_notes(&[&rule.notes[..], &rule.needs].concat(), SizeUnit::Mm)).collect();
     let mut value = serde_json::to_value(&pair)?;
     value["listed"] = json!(names);
     value["value_begins"] = json!(values);
     value["shown"] = json!(shown);
+    value["rule_words"] = json!(words);
     value["results"] = json!(results);
     value["limit_begins"] = json!(begins);
     value["limit_ends"] = json!(ends);
+    value["notes"] = json!(pair.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>());
+    value["practice"] = json!(practice_line(rules, pair.if_dispersive, pair.filter.d15_mm, SizeUnit::Mm));
+    value["why"] = json!(regrade_reason(pair.base.why));
     value["rounded"] = json!(LIMITS_ROUNDED);
     Ok(value)
 }

@@ -6,8 +6,8 @@ use super::batches::{filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
 use crate::outcome::numbers::SizeUnit;
 use crate::study::refuse_twice;
-use crate::verdict::batch::columns;
 use crate::verdict::{BatchTable, PairOptions};
+use crate::words::batch::{columns, of_filter};
 
 /// Most rows that a page shows.
 const MOST_SHOWN: usize = 1000;
@@ -30,7 +30,6 @@ impl SampleTable {
         let of_filter = (table.rows.len() / table.filters.len()).max(1);
         for (at, row) in table.rows.iter_mut().enumerate() {
             row.filter.clone_from(&names[at / of_filter]);
-            row.note = sheets.as_named(&row.note);
         }
         table.filters.iter_mut().zip(names).for_each(|(filter, name)| filter.name = name);
         for (file, _) in &mut table.notes {
@@ -47,7 +46,7 @@ impl SampleTable {
         let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display())).chain(cut);
         let mut value = table(columns(SizeUnit::Mm), rows);
         value["unstable"] = json!(rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
-        let of_filters = self.0.filters.iter().map(|filter| filter.in_words(&self.0.rows));
+        let of_filters = self.0.filters.iter().map(|filter| of_filter(filter, &self.0.rows, SizeUnit::Mm));
         value["filters"] = json!(of_filters.collect::<Vec<_>>());
         value["notes"] = json!(notes.collect::<Vec<_>>());
         value

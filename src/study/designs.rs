@@ -20,6 +20,7 @@ use crate::scene::About;
 use crate::store::Folder;
 use crate::store::folder_name;
 use crate::verdict::{DesignedSample, DesignedSamples, DesignedWalks, SpecificationOptions};
+use crate::words::designed::columns;
 
 /// Folder of the designs, inside that of all.
 const SAMPLES: &str = "samples";
@@ -79,7 +80,7 @@ pub fn each(options: &SampleDesignOptions, callbacks: &Callbacks) -> Result<Desi
     let work = planned.work.clone();
     let all = kept::study((&folder, kind, overwrite), work, callbacks, |_, _: Option<()>| {
         let all = planned.designed(options, &folder, callbacks)?;
-        folder.write(TABLE, &DesignedSample::columns(SizeUnit::Mm).csv(&all.rows))?;
+        folder.write(TABLE, &columns(SizeUnit::Mm).csv(&all.rows))?;
         Ok(all)
     });
     all.map_err(|error| match error.exit() {

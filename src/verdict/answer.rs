@@ -1,44 +1,35 @@
-//! The findings of a case in the order in which every face shows them.
+//! The notes of a case in the order in which every face shows them.
 
-use super::entry::Finding;
-use super::finding::ALL;
 use super::practice;
-use crate::outcome::record::{AppliedRule, FindingRecord};
+use crate::outcome::record::{AppliedRule, Note};
 
-/// The place of a finding in the table.
-pub fn rank(finding: &Finding) -> Option<usize> {
-    ALL.iter().position(|entry| entry.id == finding.id())
-}
-
-/// The findings of a case and of its rules of practice, each once, in the order of the table.
-pub fn ordered(rules: &[AppliedRule], findings: Vec<Finding>) -> Vec<FindingRecord> {
-    let mut all: Vec<Finding> = Vec::new();
-    for finding in practice::findings(rules).into_iter().chain(findings) {
-        if !all.contains(&finding) {
-            all.push(finding);
+/// The notes of a case and of its rules of practice, each once, in the order of their table.
+pub fn ordered(rules: &[AppliedRule], notes: Vec<Note>) -> Vec<Note> {
+    let mut all: Vec<Note> = Vec::new();
+    for note in practice::notes(rules).into_iter().chain(notes) {
+        if !all.contains(&note) {
+            all.push(note);
         }
     }
-    all.sort_by_cached_key(rank);
-    all.iter().map(Finding::record).collect()
+    all.sort_by_key(Note::place);
+    all
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::finding;
     use super::*;
 
     #[test]
-    fn findings_stand_in_the_order_of_the_table_whatever_the_order_in_which_they_came() {
-        let mut all = vec![
-            finding::pan_of_filter(2.0),
-            finding::cohesive_fines(35.0),
-            finding::replicates_leave_open(),
-            finding::cohesive_fines(35.0),
+    fn notes_stand_in_the_order_of_the_table_whatever_the_order_in_which_they_came() {
+        let table = [
+            Note::ReplicatesLeaveOpen {},
+            Note::CohesiveFines { fines_percent: 35.0 },
+            Note::PanOfFilter { finest_percent: 2.0 },
         ];
+        let mut all = vec![table[2].clone(), table[1].clone(), table[0].clone(), table[1].clone()];
         for _ in 0..all.len() {
             all.rotate_left(1);
-            let ids: Vec<String> = ordered(&[], all.clone()).into_iter().map(|finding| finding.id).collect();
-            assert_eq!(ids, ["replicates_leave_open", "cohesive_fines", "pan_of_filter"]);
+            assert_eq!(ordered(&[], all.clone()), table);
         }
     }
 }

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::{BatchRow, NAMED, governing, more_with_that_limit, open_in_words};
-use super::batch_counts::{counts_in_words, governs_drainage};
+use super::batch::BatchRow;
 use super::pair::PairOptions;
 use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
-use crate::outcome::numbers::SizeUnit;
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,36 +19,6 @@ pub struct BatchFilter {
     pub curves: Vec<String>,
     /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
     pub d15f_mm: Option<f64>,
-}
-
-impl BatchFilter {
-    /// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
-    pub fn in_words(&self, rows: &[BatchRow]) -> Vec<String> {
-        let Self { name, curves, .. } = self;
-        let mut said = vec![format!("{name}: {}", counts_in_words(rows, name))];
-        if curves.len() > 1 {
-            said.push(format!(
-                "an envelope of {} curves ({}): the worst of them counts for each rule",
-                curves.len(),
-                curves.join(", ")
-            ));
-        }
-        let strictest = governing(rows, name, NAMED);
-        for (at, row) in strictest.iter().enumerate() {
-            let what = if at == 0 { "governing sample" } else { "then" };
-            let at_most = if row.limit_at_most { " at most" } else { "" };
-            let [_, limit] = row.d15f_and_limit(SizeUnit::Mm, " mm");
-            let limit = limit.unwrap_or_default();
-            said.push(format!("{what} {}: D15F up to {limit}{at_most} ({})", row.sample, row.rule));
-        }
-        let more = more_with_that_limit(rows, name, &strictest);
-        if more > 0 {
-            said.push(format!("and {more} more with the same limit"));
-        }
-        said.extend(governs_drainage(rows, name));
-        said.extend(open_in_words(rows, name));
-        said
-    }
 }
 
 /// What practice says of every sample and filter, filter by filter.

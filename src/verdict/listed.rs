@@ -1,6 +1,6 @@
 //! Rules of practice in the rows of a table.
 
-use super::rule_words::without_margin;
+use super::rule_result::without_margin;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 

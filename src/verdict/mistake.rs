@@ -1,17 +1,17 @@
 //! Tables that can hardly be a base and its filter: exchanged, or in another unit.
 
-use super::entry::Finding;
-use super::finding;
-use super::words::capital;
 use crate::gradation::Gradation;
+use crate::outcome::numbers::significant;
+use crate::outcome::record::Note;
 use crate::outcome::rules::{BaseSoil, NamedCurve};
-use crate::outcome::three;
 
 /// Two tables that can hardly be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
-    /// What is wrong, in words.
+    /// The error, where the two are refused.
     pub sentence: String,
+    /// The same as a note, where they are not.
+    pub note: Note,
     /// What it is.
     pub kind: MistakeKind,
 }
@@ -83,7 +83,8 @@ impl Mistake {
                 d50b.least / d50f.most,
                 d50f.words()
             );
-            return Some(Self { sentence, kind: MistakeKind::Unit });
+            let note = Note::UnitDoubtful { base_d50_mm: d50b.least, filter_d50_mm: d50f.most };
+            return Some(Self { sentence, note, kind: MistakeKind::Unit });
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
@@ -92,7 +93,8 @@ impl Mistake {
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
-            let how = regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", three(at)));
+            let how =
+                regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", significant(at)));
             let sentence = format!(
                 "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
                  the two files exchanged? Or its sizes micrometres under a header in mm?",
@@ -102,13 +104,15 @@ impl Mistake {
                 d50f.words()
             );
             let kind = if is_far { MistakeKind::Exchanged } else { MistakeKind::Coarser };
-            return Some(Self { sentence, kind });
+            let note = Note::FilesExchanged { base_d15_mm: d15b.most, filter_d15_mm: d15f.most };
+            return Some(Self { sentence, note, kind });
         }
         (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
             sentence: format!(
                 "the filter's D50 is {:.0} mm: are its sizes micrometres under a header in mm?",
                 d50f.least
             ),
+            note: Note::FilterOfBoulders { d50_mm: d50f.least },
             kind: MistakeKind::Boulders,
         })
     }
@@ -129,11 +133,6 @@ impl Mistake {
     /// Whether two tables are refused for it, unless whoever names them says that they are as given.
     pub fn is_refused(&self) -> bool {
         matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
-    }
-
-    /// The same where the two are not refused.
-    pub fn finding(&self) -> Finding {
-        finding::doubtful_tables(&capital(&self.sentence))
     }
 
     /// What is said where the two are refused, on the command line.

@@ -2,14 +2,11 @@
 
 use serde::Serialize;
 
-use super::entry::Finding;
-use super::finding;
 use super::mistake::Mistake;
-use super::practice::standing;
-use super::practice_words::practice_line;
-use crate::gradation::Gradation;
-use crate::outcome::record::{AppliedRule, IfDispersive, PracticeClass};
-use crate::outcome::rules::{BaseSoil, NamedCurve, apply_and_decide};
+use super::practice::{headline, record};
+use crate::gradation::{Gradation, RegradeReason};
+use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Note, Practice};
+use crate::outcome::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, tested_range};
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -21,15 +18,15 @@ pub struct PairRules {
     pub base: BaseSizes,
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// What they say together, in a line, as it stands on every page: whether practice is met, and why.
-    pub practice: String,
-    /// The same for programs.
-    pub practice_class: PracticeClass,
+    /// The answer of practice; `None` where the limit of design was not applied.
+    pub headline: Option<Headline>,
+    /// What practice says of the pair; `None` likewise.
+    pub practice: Option<Practice>,
     /// The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
     /// What may be wrong with the two tables, and what was taken for what.
-    pub warnings: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// What else the rules are told of two soils.
@@ -86,7 +83,7 @@ pub struct BaseSizes {
     /// The size on which it was regraded.
     pub regraded_at_mm: Option<f64>,
     /// Why it was regraded, or not.
-    pub why: String,
+    pub why: RegradeReason,
     /// 15 % finer, before regrading.
     pub d15_mm: Option<f64>,
     /// 85 % finer, after regrading.
@@ -151,16 +148,21 @@ impl PairRules {
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
         };
         let mistake = Mistake::of_envelopes(bases, filters);
-        let mut found: Vec<Finding> = mistake.iter().map(Mistake::finding).collect();
+        let mut notes: Vec<Note> = mistake.map(|mistake| mistake.note).into_iter().collect();
         for (whose, curves) in [("filter", filters), ("base", bases)] {
             if curves.len() > 1 {
-                found.push(finding::envelope(whose, curves.len() as u64, &names(curves).join(", ")));
+                notes.push(Note::Envelope { soil: whose.into(), curves: names(curves) });
             }
         }
         let if_dispersive = match options.dispersive {
             true => None,
             false => IfDispersive::of_bases(bases, filter),
         };
+        let is_beyond = if_dispersive.is_some_and(|limit| limit.broken_by(&rules, filter.d(15.0)).is_some());
+        let range = tested_range(&RuleInputs {
+            dispersive: options.dispersive,
+            ..RuleInputs::of_soils(base, filter)
+        });
         Self {
             filter: FilterSizes {
                 curves: names(filters),
@@ -179,7 +181,7 @@ impl PairRules {
                 fines_percent,
                 regraded,
                 regraded_at_mm,
-                why: why.words(),
+                why,
                 d15_mm: base.d(15.0),
                 d85_mm: gradation.d(85.0),
                 d85_as_sampled_mm: base.d(85.0),
@@ -187,11 +189,11 @@ impl PairRules {
                 cu: base.cu(),
                 cc: base.cc(),
             },
-            practice: practice_line(&rules, if_dispersive, filter.d(15.0)),
-            practice_class: standing(&rules).class(),
+            headline: headline(&rules, is_beyond),
+            practice: record(&rules, range),
             if_dispersive,
             rules,
-            warnings: found.iter().map(Finding::with_to_do).collect(),
+            notes,
         }
     }
 }
@@ -201,7 +203,7 @@ mod tests {
     use super::*;
     use crate::outcome::record::{Headline, RuleRole};
     use crate::outcome::rules::DESIGN;
-    use crate::verdict::practice::Standing;
+    use crate::verdict::practice::{Standing, standing};
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
     #[test]
@@ -216,7 +218,7 @@ mod tests {
         assert_eq!(met("foster-fell-no-erosion"), Some(false));
         assert_eq!(met("foster-fell-continuing"), None);
         assert_eq!(met("permeability"), Some(true));
-        assert!(pair.warnings.is_empty());
+        assert!(pair.notes.is_empty());
     }
 
     /// 45 % fines, and nobody has said whether they are dispersive: what is met without a condition is said
@@ -230,12 +232,11 @@ mod tests {
             PairRules::of_envelopes(&base, &filter, PairOptions { dispersive, ..PairOptions::default() })
         };
         let pair = said(0.61, false);
-        assert!(pair.practice.starts_with(Headline::MeetsUnlessDispersive.words()), "{}", pair.practice);
-        assert!(pair.practice.contains("the limit is 0.500 mm"), "{}", pair.practice);
+        assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
         assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
-        assert!(said(0.45, false).practice.starts_with("meets practice: "));
+        assert_eq!(said(0.45, false).headline, Some(Headline::Meets));
         let stated = said(0.61, true);
-        assert!(stated.practice.starts_with("does not meet practice: ") && stated.if_dispersive.is_none());
+        assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
     }
 
     /// Bases of every category, with gravel, gaps and tails, and filters from too fine to too coarse.

@@ -1,10 +1,9 @@
-//! What is found about soils and network before they are walked, with a scene or without one.
+//! Notes on soils and network before they are walked, with a scene or without one.
 
 use super::base_cautions::broad_base;
-use super::entry::Finding;
-use super::finding;
 use super::mistake::Mistake;
 use crate::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
+use crate::outcome::record::Note;
 
 /// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
 const FEW_REPLICATES: u64 = 5;
@@ -48,7 +47,7 @@ pub struct PlannedWalk<'a> {
 
 impl PlannedWalk<'_> {
     /// What nobody has checked, or what is not known, in no order.
-    pub fn findings(&self) -> Vec<Finding> {
+    pub fn notes(&self) -> Vec<Note> {
         let found = [
             self.mistake(),
             self.fines(),
@@ -57,9 +56,9 @@ impl PlannedWalk<'_> {
             self.cu_of_base(),
             self.unstable_base(),
             self.pan(),
-            self.filter.is_none().then(finding::no_filter),
+            self.filter.is_none().then_some(Note::NoFilter {}),
             self.gap(),
-            self.given_voids.map(finding::given_network),
+            self.given_voids.map(|voids| Note::GivenNetwork { voids }),
             self.narrow_lattice(),
             self.all_on_its_way(),
             self.few_replicates(),
@@ -68,26 +67,26 @@ impl PlannedWalk<'_> {
     }
 
     /// Two tables that may be exchanged, or in another unit.
-    fn mistake(&self) -> Option<Finding> {
+    fn mistake(&self) -> Option<Note> {
         let stated = self.regraded_from.unwrap_or(self.base);
-        Some(Mistake::find(stated, self.filter?, self.scale_free)?.finding())
+        Some(Mistake::find(stated, self.filter?, self.scale_free)?.note)
     }
 
     /// Fines of the base that may be cohesive, or that are not known.
-    fn fines(&self) -> Option<Finding> {
+    fn fines(&self) -> Option<Note> {
         let fines = self.base.percent_finer_by_mass(FINES_MM);
         if self.scale_free || fines <= FEW_FINES {
             return None;
         }
         let sieve = self.base.smallest_mm();
         Some(match sieve <= FINES_MM || self.base.pan_fraction() == 0.0 {
-            true => finding::cohesive_fines(fines),
-            false => finding::fines_not_sieved(fines, sieve),
+            true => Note::CohesiveFines { fines_percent: fines },
+            false => Note::FinesNotSieved { fines_percent: fines, sieve_mm: sieve },
         })
     }
 
     /// A base that is broadly graded, walked as practice cuts it or as it is.
-    fn broad_base(&self) -> Option<Finding> {
+    fn broad_base(&self) -> Option<Note> {
         if self.scale_free {
             return None;
         }
@@ -96,65 +95,69 @@ impl PlannedWalk<'_> {
         }
         let regraded = self.base.regraded();
         match regraded.at_mm {
-            Some(at) => Some(finding::not_regraded(at, &regraded.why)),
-            None => self.base.cu().filter(|cu| *cu >= BROAD_CU).map(finding::broadly_graded),
+            Some(sieve_mm) => Some(Note::NotRegraded { sieve_mm }),
+            None => self.base.cu().filter(|cu| *cu >= BROAD_CU).map(|cu| Note::BroadlyGraded { cu }),
         }
     }
 
-    fn cu_of_filter(&self) -> Option<Finding> {
+    fn cu_of_filter(&self) -> Option<Note> {
         not_as_uniform("filter", self.filter?.cu(), FILTER_CU)
     }
 
     /// Where D10 is finer than the finest sieve, its size is never looked for: Cu is more than with all of
     /// that part as coarse as that sieve, and how much more is not known.
-    fn cu_of_base(&self) -> Option<Finding> {
+    fn cu_of_base(&self) -> Option<Note> {
         let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
         match (self.base.cu(), self.base.d(60.0)) {
-            (None, Some(d60)) => Some(finding::cu_at_least("base", d60 / sieve, sieve, low, high)),
+            (None, Some(d60)) => {
+                Some(Note::CuAtLeast { soil: "base".into(), least_cu: d60 / sieve, d10_mm: sieve, low, high })
+            }
             (cu, _) => not_as_uniform("base", cu, BASE_CU),
         }
     }
 
     /// A base whose own finer part its coarser part does not hold.
-    fn unstable_base(&self) -> Option<Finding> {
+    fn unstable_base(&self) -> Option<Note> {
         let stated = self.regraded_from.unwrap_or(self.base);
         let found = stated.known_kenney_lau().filter(|found| found.value < 1.0 && !self.scale_free)?;
-        Some(finding::unstable_base(found.value, found.percent))
+        Some(Note::UnstableBase { index: found.value, finer_percent: found.percent })
     }
 
-    fn pan(&self) -> Option<Finding> {
+    fn pan(&self) -> Option<Note> {
         let percent = Some(100.0 * self.base.pan_fraction()).filter(|percent| *percent > 0.0)?;
         let (sieve, finest) = (self.base.smallest_mm(), self.finest_constriction_mm);
         Some(match sieve > finest {
-            true => finding::pan_counts_as_passing(percent, sieve, finest),
-            false => finding::pan_passive(percent),
+            true => {
+                Note::PanCountsAsPassing { finest_percent: percent, sieve_mm: sieve, constriction_mm: finest }
+            }
+            false => Note::PanPassive { finest_percent: percent },
         })
     }
 
-    fn gap(&self) -> Option<Finding> {
+    fn gap(&self) -> Option<Note> {
         let gap = self.filter.filter(|_| self.filter_is_measured)?.gap(0.0)?;
-        Some(finding::gap_graded(gap.within, gap.from_mm))
+        Some(Note::GapGraded { within_percent: gap.within, from_mm: gap.from_mm })
     }
 
-    fn narrow_lattice(&self) -> Option<Finding> {
+    fn narrow_lattice(&self) -> Option<Note> {
         let [nx, ny, _] = self.lattice?;
-        (nx.min(ny) < FEWEST_ACROSS).then(|| finding::narrow_lattice(nx.into(), ny.into()))
+        (nx.min(ny) < FEWEST_ACROSS).then(|| Note::NarrowLattice { nx: nx.into(), ny: ny.into() })
     }
 
     /// Where water flows, a base that has all been inserted before any of it can be through.
     ///
     /// A particle makes one move an increment, and needs as many as there are layers. What is on its way when
     /// the water stops counts as retained; here that is all of it.
-    fn all_on_its_way(&self) -> Option<Finding> {
+    fn all_on_its_way(&self) -> Option<Note> {
         let is_late = self.flows && self.increments <= self.layers;
-        is_late.then(|| finding::all_on_its_way(self.increments, self.layers))
+        is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
     }
 
     /// That the replicates say little of their own scatter.
-    fn few_replicates(&self) -> Option<Finding> {
+    fn few_replicates(&self) -> Option<Note> {
         match self.replicates {
-            1 => Some(finding::one_replicate()),
-            few if few < FEW_REPLICATES => Some(finding::few_replicates(few)),
+            1 => Some(Note::OneReplicate {}),
+            few if few < FEW_REPLICATES => Some(Note::FewReplicates { replicates: few }),
             _ => None,
         }
     }
@@ -165,11 +168,12 @@ fn is_within(cu: f64, [low, high]: [f64; 2]) -> bool {
 }
 
 /// That a soil is more or less uniform than those for which the model was checked.
-fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<Finding> {
+fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<Note> {
+    let soil = soil.to_owned();
     match cu {
         Some(cu) if is_within(cu, [low, high]) => None,
-        Some(cu) => Some(finding::cu_unchecked(soil, cu, low, high)),
-        None => Some(finding::cu_unknown(soil, low, high)),
+        Some(cu) => Some(Note::CuUnchecked { soil, cu, low, high }),
+        None => Some(Note::CuUnknown { soil, low, high }),
     }
 }
 
@@ -205,13 +209,13 @@ mod tests {
             increments: 12,
             replicates: 5,
         };
-        let ids = |plan: &PlannedWalk| plan.findings().iter().map(Finding::id).collect::<Vec<_>>();
+        let ids = |plan: &PlannedWalk| plan.notes().iter().map(Note::id).collect::<Vec<_>>();
         let of = |change: &dyn Fn(&mut PlannedWalk)| {
             let mut changed = plan.clone();
             change(&mut changed);
             ids(&changed)
         };
-        assert_eq!(ids(&plan), Vec::<&str>::new());
+        assert_eq!(ids(&plan), [""; 0]);
         // Of each pair of soils: what is found in mm, and in multiples of D0F.
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
@@ -232,7 +236,7 @@ mod tests {
             ["broad_base", "cu_unchecked", "unstable_base"]
         );
         let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
-        assert_eq!(ids(&exchanged), ["doubtful_tables"]);
+        assert_eq!(ids(&exchanged), ["files_exchanged"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
@@ -240,21 +244,21 @@ mod tests {
         let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
         assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
         let mostly_hidden = soil(&[(0.3, 65.0), (1.0, 100.0)]);
-        assert!(ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown"));
+        assert!(
+            ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown".to_owned())
+        );
         // 14 % finer than 0.002 mm, D60 0.2 mm.
         let clayey = soil(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
         let open = PlannedWalk { base: &clayey, ..plan.clone() };
-        let found = open.findings();
-        let cu = found.iter().find(|of| of.id() == "cu_at_least").unwrap();
-        assert_eq!(
-            cu.sentence(),
-            "The Cu of the base is more than 100 (D10 is finer than 0.002 mm), and the model was checked for \
-             1.2 to 4.5."
-        );
+        let least = open.notes().into_iter().find_map(|note| match note {
+            Note::CuAtLeast { least_cu, d10_mm, .. } => Some([least_cu, d10_mm]),
+            _ => None,
+        });
+        assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");
         // A Cu of more than 3 may be beyond 4.5.
         let narrow = soil(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
         let within = PlannedWalk { base: &narrow, ..plan.clone() };
-        assert!(ids(&within).contains(&"cu_at_least"), "{:?}", ids(&within));
+        assert!(ids(&within).contains(&"cu_at_least".to_owned()), "{:?}", ids(&within));
         assert_eq!(of(&|plan| plan.given_voids = Some(7)), ["given_network"]);
         assert_eq!(of(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
         assert_eq!(of(&|plan| plan.flows = true), ["all_on_its_way"]);

@@ -1,84 +1,43 @@
-//! What the rules of filter practice say of a pair: where the filter stands by all of them, and findings.
+//! What the rules of filter practice say of a pair: where the filter stands by all of them, and notes.
 
-use super::entry::Finding;
-use super::finding;
-use super::rule_words::{against, bounded, first_clause, listed, met_of};
+use super::rule_result::met_of;
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
-use crate::outcome::design::band::retaining;
+use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{
-    AppliedRule, Headline, Practice, PracticeClass, RuleQuantity, RuleRole, TestedClass, Verdict,
+    AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
+    Verdict, d15f_between,
 };
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
-/// Said where the rule of drainage has no result.
-pub(super) const DRAINAGE_UNKNOWN: &str = "drainage not known";
-
 /// The rules of a role that were made for these soils and are not kept.
-pub(super) fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
+pub fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
     match role {
         RuleRole::Retention => retaining(rules).filter(|rule| rule.is_broken()).collect(),
         _ => rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect(),
     }
 }
 
-/// What rules of stability, drainage and placing that are not kept say; what several authors say alike is
-/// one finding. Rules of retention stand in the line of practice.
-pub fn findings(rules: &[AppliedRule]) -> Vec<Finding> {
-    let mut all = Vec::new();
-    let list = |rules: &[&AppliedRule], one: fn(&AppliedRule) -> String| {
-        listed(&rules.iter().map(|rule| one(rule)).collect::<Vec<_>>())
+/// Notes on rules of stability, drainage and placing that are not kept. Rules of retention stand in the line
+/// of practice.
+pub fn notes(rules: &[AppliedRule]) -> Vec<Note> {
+    let [unstable, undrained, placing] =
+        [RuleRole::Stability, RuleRole::Drainage, RuleRole::Placing].map(|role| broken(rules, role));
+    let limit = |of_size: bool| {
+        let is_wanted = |rule: &&&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
+        undrained.iter().find(is_wanted).and_then(|rule| rule.limit)
     };
-    let unstable = broken(rules, RuleRole::Stability);
-    if !unstable.is_empty() {
-        all.push(finding::loses_fines(&list(&unstable, |rule| {
-            let [value, limit] = against(rule, 3);
-            format!("{} ({} {}, limit {limit})", authority(rule), rule.quantity, bounded(rule, &value))
-        })));
-    }
-    all.extend(drainage(rules));
-    let placing = broken(rules, RuleRole::Placing);
-    if !placing.is_empty() {
-        all.push(finding::may_segregate(&list(&placing, asked)));
-    }
-    all
-}
-
-/// A quantity, and what practice asks for.
-fn asked(rule: &AppliedRule) -> String {
-    let [value, limit] = against(rule, 3);
-    let allowed = if rule.at_least { "at least" } else { "up to" };
-    format!("{} is {}, and practice asks for {allowed} {limit}", rule.quantity, bounded(rule, &value))
-}
-
-fn drainage(rules: &[AppliedRule]) -> Vec<Finding> {
-    let too_fine = too_fine(rules).map(|[value, asked]| finding::too_fine_to_drain(&value, &asked));
-    too_fine.into_iter().chain(too_many_fines(rules).map(|fines| finding::fines_of_filter(&fines))).collect()
-}
-
-/// Rules of drainage that are not kept: of D15F, and of anything else.
-fn undrained(rules: &[AppliedRule]) -> (Vec<&AppliedRule>, Vec<&AppliedRule>) {
-    let all = broken(rules, RuleRole::Drainage).into_iter();
-    all.partition(|rule| rule.quantity == RuleQuantity::D15F)
-}
-
-/// D15F of a filter that is too fine to drain, and what practice asks for.
-fn too_fine(rules: &[AppliedRule]) -> Option<[String; 2]> {
-    let (of_size, _) = undrained(rules);
-    let first = *of_size.first()?;
-    let [value, limit] = against(first, 3);
-    let value = bounded(first, &value);
-    let least = of_size.get(1).map_or(String::new(), |least| {
-        format!(", and EM 1110-2-1901 for {} at the least", against(least, 3)[1])
-    });
-    Some([value, format!("USBR and NRCS ask for {limit} or more{least}")])
-}
-
-/// What practice asks of the fines of a filter that has too many to drain.
-fn too_many_fines(rules: &[AppliedRule]) -> Option<String> {
-    let (_, of_fines) = undrained(rules);
-    let all: Vec<String> = of_fines.into_iter().map(asked).collect();
-    (!all.is_empty()).then(|| listed(&all))
+    let authorities = unstable.iter().map(|rule| authority(rule).to_owned()).collect();
+    let quantities = placing.iter().map(|rule| rule.quantity.name().to_owned()).collect();
+    [
+        (!unstable.is_empty()).then_some(Note::LosesFines { authorities }),
+        limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
+        limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
+        (!placing.is_empty()).then_some(Note::MaySegregate { quantities }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// What practice says of a pair, for programs; `None` where no rule of design was applied.
@@ -86,7 +45,7 @@ pub fn record(rules: &[AppliedRule], range_of_tests_mm: Option<[f64; 2]>) -> Opt
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies)?;
     Some(Practice {
         class: standing(rules).class(),
-        d15f_mm: design.needs.d15f_between().or(design.value.map(|d15f| [d15f, d15f])),
+        d15f_mm: d15f_between(&design.needs).or(design.value.map(|d15f| [d15f, d15f])),
         limit_mm: design.limit,
         limit_at_most: design.limit_at_most,
         tests: tested(rules),
@@ -114,7 +73,7 @@ pub fn headline(rules: &[AppliedRule], breaks_if_dispersive: bool) -> Option<Hea
 }
 
 /// Where a filter stands by practice, the worst first.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Standing {
     /// A rule of retention or of coarser filters is not kept, and no test held either.
     Fails,
@@ -125,9 +84,9 @@ pub enum Standing {
     /// It keeps the limits, but may lose its own fines.
     Unstable,
     /// The limit of design has no result: what is missing.
-    Unknown(String),
-    /// A result hangs on sizes between two sieves that stand far apart: which.
-    Open(String),
+    Unknown(Option<RuleNote>),
+    /// A result depends on sizes between two sieves that stand far apart.
+    Open(RuleNote),
     /// The limit of design is kept.
     Met,
     /// No rule of design was applied.
@@ -146,13 +105,13 @@ impl Standing {
 }
 
 /// The sizes between two sieves that stand far apart, on which the limit of design or the stability of the
-/// filter hangs.
-pub(super) fn open_sieves(rules: &[AppliedRule]) -> Option<String> {
+/// filter depends.
+pub fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
     let counts = |rule: &&AppliedRule| {
         [DESIGN, TESTS_CONTINUING].contains(&&*rule.id) || rule.role == RuleRole::Stability
     };
     let open = rules.iter().filter(counts).filter(|rule| rule.applies && rule.met.is_none());
-    open.filter_map(|rule| rule.needs.of_sieves_between()).next()
+    open.flat_map(|rule| &rule.needs).copied().find(|need| need.sieves_between().is_some())
 }
 
 /// Where the filter of a pair stands.
@@ -167,17 +126,14 @@ pub fn standing(rules: &[AppliedRule]) -> Standing {
     }
     let fails = !retention.is_empty() || !broken(rules, RuleRole::Continuation).is_empty();
     let open = open_sieves(rules);
-    match design.met {
+    match (design.met, open) {
         _ if fails => Standing::Fails,
         _ if washout(rules).is_some() => Standing::WashedOut,
-        Some(false) => Standing::NoMargin,
-        _ if open.is_some() => Standing::Open(open.unwrap_or_default()),
+        (Some(false), _) => Standing::NoMargin,
+        (_, Some(sieves)) => Standing::Open(sieves),
         _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
-        Some(true) => Standing::Met,
-        None => {
-            let needs = first_clause(&design.needs.to_string());
-            Standing::Unknown(needs.strip_prefix("needs ").map_or("the limit of design", |of| of).to_owned())
-        }
+        (Some(true), None) => Standing::Met,
+        (None, None) => Standing::Unknown(design.needs.first().copied()),
     }
 }
 
@@ -203,11 +159,8 @@ pub fn counts_as(rules: &[AppliedRule]) -> Option<Verdict> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::design::Specification;
     use crate::outcome::rules::NamedCurve;
-    use crate::outcome::with_inches;
-    use crate::verdict::practice_words::practice_line;
-    use crate::verdict::{BatchRow, PairOptions, PairRules, SpecificationOptions};
+    use crate::verdict::{BatchRow, PairOptions, PairRules};
 
     fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
         vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
@@ -223,20 +176,20 @@ mod tests {
     const SILTY: [(f64, f64); 6] =
         [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
 
-    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    /// Sherard and Dunnigan allow 0.2 and 1.28 mm, Foster and Fell 0.166 and 0.7 mm.
     #[test]
     fn practice_goes_by_design_where_tests_are_stricter() {
-        for (base, d15f, [design, tests]) in
-            [(&CLAY, 0.178, ["0.200 mm", "0.166 mm"]), (&SILTY, 0.85, ["1.28 mm", "0.700 mm"])]
-        {
+        for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
             let options = PairOptions { dispersive: false, ..PairOptions::default() };
             let rules = PairRules::of_envelopes(&soil(base), &filter(d15f), options).rules;
             assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
             assert_eq!(standing(&rules), Standing::Met);
             assert_eq!(counts_as(&rules), Some(Verdict::None));
-            assert!(findings(&rules).is_empty());
-            let line = practice_line(&rules, None, None);
-            assert!(line.contains(design) && line.contains(tests), "{line}");
+            assert!(notes(&rules).is_empty());
+            for (id, wanted) in [(DESIGN, design), (TESTS_NO_EROSION, tests)] {
+                let limit = rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
+                assert!((limit / wanted - 1.0).abs() < 0.01, "{id} {limit}");
+            }
             let sample = crate::gradation::SoilSample {
                 name: "s".into(),
                 path: "s".into(),
@@ -267,70 +220,5 @@ mod tests {
             assert_eq!((record(&rules, None).unwrap().class, counts_as(&rules)), (class, Some(counts)));
         }
         assert_eq!(counts_as(&[]), None);
-    }
-
-    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
-    #[test]
-    fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
-        let soil = |points: &[(f64, f64)], by: f64| {
-            let points: Vec<(f64, f64)> =
-                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
-            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
-        };
-        let bases: [&[(f64, f64)]; 4] = [
-            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
-            &[(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)],
-            &[(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)],
-            &[(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)],
-        ];
-        let (mut checked, mut missed) = (0, Vec::new());
-        for step in 0..60 {
-            let by = libm::pow(1.01, f64::from(step));
-            for base in bases {
-                for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
-                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
-                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
-                    let mut said: Vec<String> = vec![pair.practice.clone()];
-                    said.extend(findings(&pair.rules).iter().map(Finding::sentence));
-                    said.extend(pair.if_dispersive.map(|of| of.words()));
-                    let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
-                    said.extend(
-                        [of.band_in_words(), of.raised_in_words(), of.no_band.clone()].into_iter().flatten(),
-                    );
-                    said.extend(of.if_dispersive_in_words("again"));
-                    let limits = pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F);
-                    for rule in limits {
-                        let [value, limit] = against(rule, 3);
-                        if value == limit {
-                            continue;
-                        }
-                        let Ok(mm) = limit.trim_end_matches(" mm").parse::<f64>() else { continue };
-                        for sentence in &said {
-                            let text = with_inches(sentence);
-                            for (at, _) in text.match_indices(&format!(" {limit} (")) {
-                                let behind = text[at..].split_once('(').unwrap().1.split('\u{202f}').next();
-                                let inches = behind.unwrap().rsplit(' ').next().unwrap();
-                                let back = 25.4 * inches.parse::<f64>().unwrap();
-                                checked += 1;
-                                let is_within = if rule.at_least {
-                                    back >= mm * (1.0 - 1e-9)
-                                } else {
-                                    back <= mm * (1.0 + 1e-9)
-                                };
-                                if !is_within {
-                                    missed.push(text.clone());
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        assert!(
-            checked > 1000 && missed.is_empty(),
-            "{checked} {} {:#?}",
-            missed.len(),
-            &missed[..missed.len().min(6)]
-        );
     }
 }

@@ -3,16 +3,9 @@
 //! No text that was read gives their boundary of excessive erosion, so what lies beyond that of no erosion is
 //! at least some erosion, and never read as no more than that.
 
-use super::rule_words::met_of;
+use super::rule_result::met_of;
 use crate::outcome::record::{AppliedRule, RuleNote, TestedClass};
 use crate::outcome::rules::{TESTS_CONTINUING, TESTS_NO_EROSION};
-
-/// Said where a filter lies between the boundaries of no and of continuing erosion.
-const BETWEEN: &str = "at least some erosion; excessive erosion is not excluded, as its boundary is not \
-                       worked out here";
-
-/// Said where it lies beyond that of no erosion, and no other is known.
-const BEYOND: &str = "at least some erosion";
 
 /// The class by the boundaries of Foster and Fell.
 pub fn tested(rules: &[AppliedRule]) -> TestedClass {
@@ -25,28 +18,6 @@ pub fn tested(rules: &[AppliedRule]) -> TestedClass {
     }
 }
 
-/// The class in words: beyond the boundary of no erosion a base has erosion, also where tests identified no
-/// boundary of the classes beyond.
-pub fn tested_words(rules: &[AppliedRule]) -> &'static str {
-    match tested(rules) {
-        TestedClass::None => "no erosion",
-        TestedClass::Some => BETWEEN,
-        TestedClass::Excessive => "excessive erosion",
-        TestedClass::Continuing => "continuing erosion",
-        TestedClass::Unknown if is_beyond_tests(rules) => BEYOND,
-        TestedClass::Unknown => "class not known",
-    }
-}
-
-/// The same for the cell of a table.
-pub fn tested_in_brief(rules: &[AppliedRule]) -> &'static str {
-    match tested(rules) {
-        TestedClass::Some => "at least some erosion, excessive not excluded",
-        TestedClass::Unknown if is_beyond_tests(rules) => "at least some erosion, worse not excluded",
-        _ => tested_words(rules),
-    }
-}
-
 /// Whether a filter is coarser than any for which tests of Foster and Fell found no erosion.
 pub fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
     met_of(rules, TESTS_NO_EROSION) == Some(false)
@@ -54,7 +25,7 @@ pub fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
 
 /// Whether the filter lies beyond 9 D95B of a base for which tests identified no clear boundary.
 pub fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
-    let is_unclear = |rule: &&AppliedRule| rule.note.says(RuleNote::BeyondUnclearBoundary);
+    let is_unclear = |rule: &&AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
     rules.iter().any(|rule| rule.id == TESTS_CONTINUING && is_unclear(&rule))
 }
 
@@ -88,7 +59,7 @@ mod tests {
         ] {
             let rules = rules(base, d15f);
             assert_eq!(tested(&rules), class, "{d15f}");
-            assert_eq!(tested_in_brief(&rules).contains("not excluded"), !excluded, "{d15f}");
+            assert_eq!(crate::words::tested_class(&rules).contains("not excluded"), !excluded, "{d15f}");
             assert_eq!(is_beyond_unclear(&rules), d15f == 40.0);
         }
     }

@@ -2,31 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::batch::{BatchRow, columns};
+use super::batch::BatchRow;
 use super::batch_table::BatchFilter;
 use super::practice::counts_as;
 use crate::outcome::BaseSize;
-use crate::outcome::numbers::SizeUnit;
-use crate::outcome::record::{
-    Headline, IfDispersive, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit,
-};
-use crate::outcome::table::{Columns, TableCell};
+use crate::outcome::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use crate::outcome::verdict::THRESHOLD;
-
-/// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 11] = [
-    "sample",
-    "filter",
-    "group",
-    "d85b_mm",
-    "limit_mm",
-    "result",
-    "governs",
-    "walked",
-    "class",
-    "first_eroded_mass_percent",
-    "note",
-];
 
 /// The whole of `batch.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -104,10 +85,6 @@ pub struct SampleWalk {
     /// curve is no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
-    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
-    /// where it has few fines.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub if_dispersive: Option<IfDispersive>,
 }
 
 impl SampleWalk {
@@ -125,13 +102,7 @@ impl SampleWalk {
             base: outcome.inputs.base_size(),
             runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
             curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
-            if_dispersive: outcome.if_dispersive,
         }
-    }
-
-    /// How it was walked, in words.
-    pub fn depth(&self) -> &'static str {
-        if self.in_full { "in full" } else { "first look" }
     }
 }
 
@@ -158,37 +129,31 @@ impl WalkedBatch {
     pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
         self.rows.iter().filter(move |row| row.rules.filter == filter)
     }
+
+    /// The samples that govern a filter, the strictest first.
+    pub fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
+        let mut rows: Vec<&WalkedRow> = self.of_filter(filter).filter(|row| row.governs.is_some()).collect();
+        rows.sort_by_key(|row| row.governs);
+        rows
+    }
 }
 
 impl WalkedRow {
-    fn depth(&self) -> &'static str {
-        self.walk.as_ref().map_or("not walked", SampleWalk::depth)
+    /// Whether its walk erodes.
+    pub fn erodes(&self) -> bool {
+        let class = self.walk.as_ref().map(|walk| walk.verdict);
+        matches!(class, Some(Verdict::Some | Verdict::Continuing))
     }
 
-    fn why_not(&self) -> Option<String> {
-        self.walk.is_none().then(|| self.not_walked.clone()).filter(|why| !why.is_empty())
+    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not
+    /// kept, or its walk erodes.
+    pub fn is_doubted(&self) -> bool {
+        self.is_against_practice() || self.erodes()
     }
 
-    /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
-    /// unit.
-    pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, Self> {
-        let walk = |row: &Self| row.walk.clone();
-        let of_walk = Columns::default()
-            .column("governs", |row: &Self| row.governs)
-            .headed("Governs")
-            .column("walked", |row: &Self| row.depth())
-            .words("Walked", |row: &Self| row.depth().shown().below(row.why_not()))
-            .column("class", move |row| walk(row).map(|walk| walk.verdict))
-            .headed("Class by walk")
-            .column("replicates", move |row| walk(row).map(|walk| walk.replicates))
-            .digits("d15f_over_d85b", 4, move |row| walk(row).map(|walk| walk.ratios.d15f_over_d85b))
-            .eroded(|row, run| {
-                let walk = row.walk.as_ref();
-                let range = walk.and_then(|walk| walk.curve_range.get(run).copied());
-                (walk.and_then(|walk| walk.runs.get(run).copied()), range)
-            })
-            .column("not_walked", |row: &Self| row.not_walked.clone())
-            .column("folder", move |row| walk(row).map(|walk| walk.folder));
-        columns(unit).of_part(|row: &Self| &row.rules).and(of_walk).only(&SHOWN)
+    /// Whether a rule of retention or of the filter's own stability is not kept.
+    pub fn is_against_practice(&self) -> bool {
+        let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
+        self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines
     }
 }

@@ -6,29 +6,29 @@
 //! Kezdi's at every size: where it is not met, or has no result and of these two one is not met and none met,
 //! and what is left breaks a limit of retention, practice is not met.
 
-use super::quantity::fixed;
-use super::rule_words::{met_of, with_unit};
+use super::rule_result::met_of;
 use crate::gradation::WIDE_LOOSE_PERCENT;
-use crate::outcome::apart::value_and_limit;
-use crate::outcome::design::band::retention;
+use crate::outcome::design::retention::retention;
 use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
-use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, authority_in_brief};
+use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
-pub(super) struct Washout<'r> {
-    left: WithoutFiner,
+pub struct Washout<'r> {
+    /// What is left.
+    pub left: WithoutFiner,
     /// The criterion by which it is the greatest part that fails.
-    by: &'r AppliedRule,
+    pub by: &'r AppliedRule,
     /// The least limit of retention.
-    least: f64,
-    unit: &'r str,
+    pub least: f64,
+    /// Unit of sizes.
+    pub unit: &'r str,
     /// The boundary of continuing erosion of tests, where it is beyond that, too.
     continuing: Option<&'r AppliedRule>,
 }
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
 /// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
-pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+pub fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
     let d15f = d15f.unwrap_or(1.0);
@@ -74,46 +74,19 @@ fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
 }
 
 impl Washout<'_> {
-    /// Which part it may lose, with its size: "its finest 19.4 %".
-    fn part(&self) -> String {
-        format!("its finest {} %", fixed(self.left.percent, 1))
-    }
-
-    /// By which criterion it may lose that part; no more is looked at than may lie loose.
-    fn whose(&self) -> String {
-        let is_capped = self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9);
-        format!("by {}{}", authority_in_brief(self.by), if is_capped { "; more may go" } else { "" })
-    }
-
-    /// D15F without that part.
-    pub fn d15f(&self) -> String {
-        let [value, _] = value_and_limit(self.left.d15f, self.least, false, 3);
-        with_unit(value, self.unit)
-    }
-
-    /// D15F without the finer part.
-    pub fn without_finer(&self) -> String {
-        format!("without {} ({}) D15F is {}, beyond the limit", self.part(), self.whose(), self.d15f())
+    /// Whether no more of the filter was looked at than may lie loose, so that more may go.
+    pub fn is_capped(&self) -> bool {
+        self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9)
     }
 
     /// Whether what is left is beyond the boundary of continuing erosion of tests.
     pub fn continues(&self) -> bool {
         self.continuing.is_some()
     }
-
-    /// The same for the cell of a table.
-    pub fn in_brief(&self) -> String {
-        format!("may lose its finer part, too coarse without {}", self.part())
-    }
-
-    /// D15F without that part, behind D15F as placed.
-    pub fn as_placed(&self) -> String {
-        format!(" as placed, but {} without {}, which the filter may lose", self.d15f(), self.part())
-    }
 }
 
 #[cfg(test)]
-pub(in crate::verdict) mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::gradation::Gradation;
     use crate::outcome::record::ValueBound;
@@ -125,7 +98,7 @@ pub(in crate::verdict) mod tests {
     }
 
     /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
-    pub(in crate::verdict) const REGRADED_TILL: [(f64, f64); 9] = [
+    pub(crate) const REGRADED_TILL: [(f64, f64); 9] = [
         (0.075, 28.0),
         (0.15, 37.0),
         (0.425, 48.0),
@@ -137,7 +110,7 @@ pub(in crate::verdict) mod tests {
         (37.5, 100.0),
     ];
     /// A gravel of 0 to 32 mm that is not internally stable by three of four criteria.
-    pub(in crate::verdict) const GRAVEL_0_32: [(f64, f64); 11] = [
+    pub(crate) const GRAVEL_0_32: [(f64, f64); 11] = [
         (0.075, 2.0),
         (0.125, 4.0),
         (0.25, 8.0),
@@ -159,7 +132,7 @@ pub(in crate::verdict) mod tests {
         assert_eq!((found.by.id.as_str(), found.continues()), (KEZDI, false));
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
-        assert_eq!(washout(&read).unwrap().without_finer(), found.without_finer());
+        assert_eq!(washout(&read).unwrap().left, found.left);
     }
 
     /// Without a fifth of it a gap-graded filter is beyond the boundary of continuing erosion, too.
@@ -172,7 +145,7 @@ pub(in crate::verdict) mod tests {
 
     /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
     /// 14 %, where it is 0.993, much more is lost, and what is left has a D15F beyond 4.00 and 7.00 mm.
-    pub(in crate::verdict) const STEPPED: [(f64, f64); 8] = [
+    pub(crate) const STEPPED: [(f64, f64); 8] = [
         (0.1, 0.0),
         (0.2, 4.0),
         (0.8, 4.0),
@@ -182,8 +155,7 @@ pub(in crate::verdict) mod tests {
         (16.0, 60.0),
         (32.0, 100.0),
     ];
-    pub(in crate::verdict) const SAND_OF_1_MM: [(f64, f64); 4] =
-        [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];
+    pub(crate) const SAND_OF_1_MM: [(f64, f64); 4] = [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];
 
     #[test]
     fn the_greatest_part_that_may_be_lost_counts_and_not_where_the_index_is_worst() {

@@ -175,7 +175,7 @@ impl RunPlan {
 }
 
 /// The finest constriction that is open when a run begins.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Finest {
     /// Its size (mm).
     pub size_mm: f64,
@@ -184,7 +184,8 @@ pub struct Finest {
 }
 
 /// What is not needed of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shortcut {
     /// Nothing moves, as no constriction is open.
     NothingOpen,

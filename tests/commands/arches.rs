@@ -49,8 +49,8 @@ fn a_law_holds_what_sieving_lets_pass_and_is_said() {
             .sum();
         assert_eq!(sum, run["inserted"].as_u64().unwrap());
         assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
-        let findings = arching["findings"].as_array().unwrap();
-        assert!(findings.iter().any(|of| of["id"] == "arches"), "{findings:?}");
+        let notes = arching["notes"].as_array().unwrap();
+        assert!(notes.iter().any(|note| note["id"] == "arches"), "{notes:?}");
         // One thread or three, and every engine that walks the same particles.
         let threads = walked(at, "threads", &["--set", &format!("walk.arching={law}"), "--threads", "3"]);
         assert_eq!(threads["summary"], arching["summary"]);
@@ -94,8 +94,8 @@ fn a_design_takes_the_law() {
     assert!(boundary(&arching).unwrap() > 1.5 * boundary(&sieving).unwrap(), "{:?}", boundary(&arching));
     assert!(sieving["model_leaves_out"].to_string().contains("bridging"));
     assert!(!arching["model_leaves_out"].to_string().contains("bridging"));
-    let findings = arching["findings"].as_array().unwrap();
-    assert!(findings.iter().any(|of| of["id"] == "arches"), "{findings:?}");
+    let notes = arching["notes"].as_array().unwrap();
+    assert!(notes.iter().any(|note| note["id"] == "arches"), "{notes:?}");
 }
 
 /// A base three times as fine is held by arches as sieving holds one three times as coarse.

@@ -149,8 +149,11 @@ fn words_of_page(folder: &Path) -> String {
     let page = fs::read_to_string(folder.join("report.html")).unwrap();
     let body = page.split("</style>").nth(1).unwrap();
     let body = body.split("<pre>").next().unwrap();
-    let (before, rules) = body.split_once(">Filter rules beside the verdict</h2>").unwrap();
-    format!("{before} {}", rules.split_once("<h2").unwrap().1)
+    let without = |body: &str, heading: &str| {
+        let (before, section) = body.split_once(&format!(">{heading}</h2>")).unwrap();
+        format!("{before} {}", section.split_once("<h2").unwrap().1)
+    };
+    without(&without(body, "All rules"), "Sources")
 }
 
 /// Nothing has a scale in the built-in scene: sizes are multiples of D0F.

@@ -53,14 +53,14 @@ fn a_pan_fraction_that_may_block_is_walked_as_passive() {
     };
     let eroded = |of: &Value| of["summary"][0]["eroded_mass_fraction"]["mean"].as_f64().unwrap();
     let note = |of: &Value| {
-        let all = of["findings"].as_array().unwrap();
+        let all = of["notes"].as_array().unwrap();
         all.iter().find(|finding| finding["id"] == "pan_counts_as_passing").cloned()
     };
     let passive = walked(&[], "passive");
     let found = note(&passive).expect("a note of the finest part");
     let number = |name: &str| found["numbers"][name].as_f64().unwrap();
     assert!(
-        (number("share_percent") - 30.0).abs() < 1e-9 && (number("sieve_mm") - 0.15).abs() < 1e-9,
+        (number("finest_percent") - 30.0).abs() < 1e-9 && (number("sieve_mm") - 0.15).abs() < 1e-9,
         "{found}"
     );
     assert!(number("constriction_mm") < 0.15, "{found}");
@@ -85,13 +85,12 @@ fn cu_of_an_open_tail_is_more_than_that_of_its_sieves() {
         let check = call(root.path(), &["check", "scene.toml", "--json"]);
         done(&check);
         let value: Value = serde_json::from_slice(&check.stdout).unwrap();
-        value["warnings"].to_string()
+        value["notes"].to_string()
     };
     for (finest, d85, cu) in [("0.04", "0.2", "2.88"), ("0.14", "0.19", "1.22"), ("0.02", "0.2", "4.54")] {
         let text = warnings(finest, d85);
-        let least = format!("Cu of the base is more than {cu} (D10 is finer than {finest} mm)");
-        assert!(text.contains(&least), "{text}");
-        assert_eq!(text.contains("count as passing"), finest == "0.14", "{text}");
+        assert!(text.contains("cu_at_least") && text.contains(&format!("\"least_cu\":{cu}")), "{text}");
+        assert_eq!(text.contains("pan_counts_as_passing"), finest == "0.14", "{text}");
     }
 }
 

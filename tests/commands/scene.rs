@@ -158,7 +158,7 @@ fn what_is_left_out_changes_nothing_else() {
     let checked: Value = serde_json::from_slice(&voidwalk(&[&args[..], &less[..]].concat()).stdout).unwrap();
     assert_eq!(checked["left_out"], part_outcome["left_out"]);
     let sentences = checked["left_out"].to_string();
-    assert!(sentences.contains("the second run") && sentences.contains("so few that walking"), "{sentences}");
+    assert!(sentences.contains("second_run") && sentences.contains("few_passive"), "{sentences}");
 }
 
 /// Replicates are added until the verdict is certain or the error small; where that cannot be, it says what it would take.
@@ -194,8 +194,8 @@ fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
     let hopeless = ["--target-error", "0.01pp", "--set", "stop.most_replicates=10"];
     let output = run_small(&folder("hopeless"), &hopeless);
     assert!(output.status.success());
-    let found = outcome(&folder("hopeless"))["findings"].to_string();
-    assert!(found.contains("was not reached") && found.contains("would do"), "{found}");
+    let found = outcome(&folder("hopeless"))["notes"].to_string();
+    assert!(found.contains("target_missed"), "{found}");
     for (flag, value) in [("--target-error", "0.1"), ("--decide", "99.9"), ("--decide", "many%")] {
         refused(&voidwalk(&["run", flag, value]), &["with its unit"]);
     }
@@ -256,7 +256,7 @@ fn init_writes_a_scene_that_check_understands() {
     let capped: Value = serde_json::from_slice(&voidwalk(&set).stdout).unwrap();
     assert!((capped["n_base_eq2"].as_f64().unwrap() / n_base as f64 / (2.5 / 0.61) - 1.0).abs() < 1e-6);
     assert_eq!((&capped["n_base"], &capped["capped"]), (&5_000_000.into(), &true.into()));
-    assert!(capped["warnings"][0].as_str().unwrap().contains("cap"));
+    assert!(capped["notes"][0]["id"] == "capped_base");
     let words = String::from_utf8(voidwalk(&["check", path.to_str().unwrap()]).stdout).unwrap();
     assert!(words.contains("base particles") && words.contains("memory") && words.contains("left out"));
 }
@@ -340,8 +340,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let limit = |name: &str| rule(name)["limit"].as_f64().unwrap();
     assert!((limit("Foster and Fell: no") - 2.2).abs() < 1e-9);
     assert!((limit("Sherard") - 1.42).abs() < 1e-9);
-    let fines =
-        value["findings"].as_array().unwrap().iter().find(|finding| finding["id"] == "cohesive_fines");
+    let fines = value["notes"].as_array().unwrap().iter().find(|finding| finding["id"] == "cohesive_fines");
     assert_eq!(fines.unwrap()["numbers"]["fines_percent"], 20.0);
     let stdout = String::from_utf8(output.stdout).unwrap();
     assert!(stdout.contains("Practice: does not meet"), "{stdout}");

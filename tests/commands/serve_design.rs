@@ -40,7 +40,7 @@ fn a_design_finds_the_boundaries_of_the_command_line() {
     let told: Value = serde_json::from_slice(&told).unwrap();
     let (rows, expected) = (&job["result"]["boundaries"], &told["boundaries"]);
     assert_eq!(rows.as_array().unwrap().len(), 1);
-    for name in ["density", "thickness", "layers", "no_erosion_note", "band"] {
+    for name in ["density", "thickness", "layers", "no_erosion_note"] {
         assert_eq!(rows[0][name], expected[0][name], "{name}");
     }
     // Of three networks the page has the least and the most, the file the 5 and 95 percentiles.
@@ -52,6 +52,8 @@ fn a_design_finds_the_boundaries_of_the_command_line() {
         assert!(least.is_some() && least <= low && most >= high, "{name}: {shown} {written}");
     }
     assert!(rows[0]["no_erosion"]["d15f_mm"]["median"].as_f64().unwrap() > 0.1, "{rows}");
+    let names: Vec<&Value> = job["result"]["lines"].as_array().unwrap().iter().map(|line| &line[0]).collect();
+    assert_eq!(names, ["Practice", "Limit", "Model (research)"]);
     assert_eq!(job["result"]["base"], "narrow.csv", "no folder");
     let (status, head, zip) = served.get(&format!("zip/design-{id}.zip"));
     assert!(status == 200 && head.contains("attachment") && zip.starts_with(b"PK"), "{head}");
@@ -61,7 +63,7 @@ fn a_design_finds_the_boundaries_of_the_command_line() {
     assert_eq!((&same["kind"], &same["state"]), (&"design".into(), &"done".into()));
     assert_eq!((&same["result"], &same["page"]), (&job["result"], &job["page"]));
     let (status, _, page) = next.get(same["page"].as_str().unwrap());
-    assert!(status == 200 && String::from_utf8(page).unwrap().contains("The band"));
+    assert!(status == 200 && String::from_utf8(page).unwrap().contains("Boundaries of the model"));
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn what_a_killed_server_had_begun_continues() {
     let next = serve_in(at);
     let job = next.job(id);
     assert_eq!((&job["state"], &job["result"]["model"]), (&"done".into(), &outcome["model"]["class"]));
-    assert!(!job["result"]["findings"].as_array().unwrap().is_empty(), "{job}");
+    assert!(!job["result"]["notes"].as_array().unwrap().is_empty(), "{job}");
     let (page, zip) = (job["page"].as_str().unwrap(), format!("zip/run-{id}.zip"));
     assert_eq!((next.get(page).0, next.get(&zip).0), (200, 200));
     // In place of its folder a link to another is not followed.

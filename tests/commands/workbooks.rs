@@ -310,21 +310,3 @@ fn the_template_is_read_back_as_soils() {
     assert_eq!(call(root.path(), &["soil"]).status.code(), Some(2));
     assert_eq!(call(root.path(), &["soil", "site.xlsx", "--template", "b.xlsx"]).status.code(), Some(2));
 }
-
-/// No product fits in the workbook of a design whose page says that none is said to.
-#[test]
-fn the_workbook_of_a_design_in_doubt_says_so() {
-    let root = tempfile::tempdir().unwrap();
-    let sand = "opening_mm,percent_finer\n0.075,2\n0.15,12\n0.3,45\n0.6,85\n1.18,100\n";
-    fs::write(root.path().join("sand.csv"), sand).unwrap();
-    let set = ["network.nx=8", "network.ny=8", "replicates=2", "filter.grains_per_void=0.6"];
-    let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-    let args =
-        [&["design", "sand.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"], &sets[..]];
-    done(&call(root.path(), &args.concat()));
-    let out = root.path().join("voidwalk-design");
-    let all = sheets(&out.join("specification.xlsx"));
-    let products = rows(&all["Products"]);
-    assert!(!products.is_empty() && products.iter().all(|row| row["Fits"] != Cell::Truth(true)));
-    assert_eq!(item(&all["Specification"], "Basis").words(), "By the rules of practice and a walk.");
-}

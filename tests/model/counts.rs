@@ -3,7 +3,9 @@
 use bitvec::vec::BitVec;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ExitRule, Network};
-use voidwalk::walk::{Engine, Isa, Passive, RunPlan, SizeClasses, State, Supply, Tally, Walk, WalkControl};
+use voidwalk::walk::{
+    Engine, Isa, Passive, RunPlan, Shortcut, SizeClasses, State, Supply, Tally, Walk, WalkControl,
+};
 
 fn sampler(d0: f64, cu: f64) -> SizeSampler {
     let base = if cu == 1.0 { Gradation::single(d0) } else { Gradation::linear_from_d0(d0, cu) };
@@ -309,9 +311,8 @@ fn few_particles_are_walked_one_by_one() {
     let least = (1..).find(|&share| plan(share).engine() == Engine::Counts).unwrap();
     let (few, enough) = (plan(least - 1), plan(least));
     assert_eq!((few.engine(), enough.engine()), (Engine::Particles, Engine::Counts));
-    let said = "162 passive base particles an increment for 25 start nodes";
-    assert!(few.left_out().iter().any(|s| s.sentence("mm").contains(said)), "{:?}", few.left_out());
-    assert!(!enough.left_out().iter().any(|s| s.sentence("mm").contains("so few")));
+    assert!(few.left_out().contains(&Shortcut::FewPassive(162, 25)), "{:?}", few.left_out());
+    assert!(!enough.left_out().iter().any(|part| matches!(part, Shortcut::FewPassive(..))));
     for wanted in [Engine::Counts, Engine::Expected] {
         assert_eq!(RunPlan::new(wanted, &network, &base, &open(&network), 1).engine(), wanted);
     }
@@ -332,7 +333,7 @@ fn nothing_leaves_closed_voids() {
         assert_eq!(state.increment, 10);
     }
     let plan = RunPlan::new(Engine::Auto, &network, &sampler(0.5, 3.0), &open(&network), 600);
-    assert!(plan.left_out()[0].sentence("mm").starts_with("No constriction is open"));
+    assert_eq!(plan.left_out()[0], Shortcut::NothingOpen);
 }
 
 /// Rings without a way out: runs end, and end where those of particles one by one do.

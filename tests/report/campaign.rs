@@ -6,13 +6,13 @@ use std::path::Path;
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made, leaves_out};
 use voidwalk::outcome::record::{
-    Classed, CurveEnd, CurveRange, FindingRecord, ModelLimit, Outcome, Stopping, Verdict,
+    Classed, CurveEnd, CurveRange, ModelLimit, Note, Outcome, Stopping, Verdict,
 };
 use voidwalk::outcome::undecided::UndecidedBy;
 use voidwalk::report;
 use voidwalk::store::format::CAMPAIGN;
 
-use super::folder::finding;
+use super::folder::note;
 use super::{folder, words};
 
 fn line(case: &str, place: &str, outcome: &Outcome) -> LedgerLine {
@@ -61,14 +61,14 @@ fn the_class_comes_first_and_leads_to_the_page_of_its_case() {
     assert_eq!(links, 1, "only to a page that is there, inside the folder");
     assert!(page.contains("<th><a href=\"cases/fine,cu=1.5/report.html\"><b>some erosion</b></a>"), "{page}");
     assert!(page.contains("Two &lt;b&gt;filters&lt;/b&gt;") && !page.contains("<b>filters"));
-    assert!(words(&page).contains("ClassfilterRules not metWarnings"));
+    assert!(words(&page).contains("ClassfilterRules not metNotes"));
 }
 
 #[test]
 fn doubts_are_counted_and_said_once() {
     let root = TempDir::new().unwrap();
     let mut outcome = folder::outcome(3);
-    outcome.findings = vec![finding("the base is <i>odd</i>")];
+    outcome.notes = vec![note("the base is <i>odd</i>")];
     outcome.rules[0].id = "terzaghi".into();
     (outcome.rules[0].applies, outcome.rules[0].met) = (true, Some(false));
     outcome.rules[1].id = "a-rule-of-tomorrow".into();
@@ -125,7 +125,7 @@ fn openings_of_a_case_are_in_its_line() {
     let outcome = folder::outcome(3);
     let closed = line("closed", "cases/closed", &outcome);
     let mut with = outcome.clone();
-    with.findings.push(FindingRecord { id: "openings".into(), ..finding("open") });
+    with.notes.push(Note::Openings {});
     let open = line("open", "cases/open", &with);
     assert_eq!((closed.with_openings, open.with_openings), (false, true));
     let says = |lines: &[LedgerLine]| leaves_out(lines).contains(&ModelLimit::PartialClogging);
@@ -148,7 +148,7 @@ fn what_would_decide_is_said_after_a_target_error_was_met() {
         short_of: None,
     };
     outcome.stopping = Some(met.clone());
-    let says = |outcome: &Outcome| outcome.found().iter().any(|of| of.with_to_do().contains("--decide 99%"));
+    let says = |outcome: &Outcome| outcome.notes_of_results().contains(&Note::ReplicatesLeaveOpen {});
     assert!(says(&outcome));
     outcome.stopping = Some(Stopping { met: false, decide_percent: Some(99.0), ..met });
     assert!(!says(&outcome));

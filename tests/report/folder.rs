@@ -26,16 +26,9 @@ fn statistic(mean: f64, sd: f64, replicates: u64) -> Statistic {
     Statistic { mean, sd: Some(sd), low: Some(mean - half), high: Some(mean + half) }
 }
 
-/// A finding that changes nothing.
-pub fn finding(sentence: &str) -> FindingRecord {
-    FindingRecord {
-        id: String::new(),
-        about: Topic::Walk,
-        label: String::new(),
-        numbers: serde_json::Map::new(),
-        sentence: sentence.to_owned(),
-        to_do: String::new(),
-    }
+/// A note that holds a text.
+pub fn note(text: &str) -> Note {
+    Note::ReadAs { file: text.to_owned(), reading: "a table".to_owned() }
 }
 
 /// The outcome of `replicates` replicates of two runs.
@@ -151,7 +144,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             replicates,
             network: NetworkKind::Cubic,
         },
-        findings: vec![finding("18 % of the base is finer than 0.075 mm: the model was checked up to 15 %.")],
+        notes: vec![Note::CohesiveFines { fines_percent: 18.0 }],
         practice: None,
         constrictions: ConstrictionsRecord { origin: CurveOrigin::Given },
         seed: 2016,
@@ -173,7 +166,7 @@ pub fn outcome(replicates: u64) -> Outcome {
             short_of: None,
         }),
         threshold: 0.075,
-        left_out: vec!["packing: the constriction curve was given".into(), "triangulation".into()],
+        left_out: vec![LeftOut::PackingByCurve, LeftOut::SecondRun],
         model_leaves_out: ModelLimit::ALL.to_vec(),
         inputs: Inputs {
             filter: FilterRecord {
@@ -262,12 +255,11 @@ pub fn outcome(replicates: u64) -> Outcome {
                 at_least: false,
                 limit_at_most: false,
                 met: Some(value <= limit),
-                needs: RuleText::default(),
-                note: RuleText::default(),
+                needs: Vec::new(),
+                notes: Vec::new(),
                 applies_to: "bases in general".into(),
                 formula: String::new(),
                 source,
-                speaks_against: String::new(),
                 filter_curve: String::new(),
                 base_curve: String::new(),
             }

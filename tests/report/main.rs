@@ -11,7 +11,7 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleQuantity, RuleText, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, RuleNote, RuleQuantity, Statistic, Verdict};
 use voidwalk::report::{self, ReportError};
 use voidwalk::store::format::OUTCOME;
 
@@ -50,23 +50,23 @@ fn the_page_says_what_an_engineer_reads_first() {
     let text = words(&page);
     let place = |what: &str| text.find(what).unwrap_or_else(|| panic!("{what:?} is not on the page"));
     let order = [
-        "Model (“the walk”): base particles are moved through voids",
         "Model (research): some erosion; ",
-        "18 % of the base is finer than 0.075 mm",
         "Figure 1.",
-        "Group by ASTM D2487",
         "Rules of practice, in short",
-        "The model leaves out: ",
-        "hydraulics; ",
+        "The model leaves out: hydraulics, ",
+        "Group by ASTM D2487",
+        "18 % of the base is finer than 0.075 mm",
         "What the model found",
+        "Model (“the walk”): base particles are moved through voids",
         "What the model leaves out",
+        "Limits are rounded to the safe side",
         "Figure 2.",
         "Figure 4.",
-        "Filter rules beside the verdict",
         "Largest particle eroded, over D15F",
         "Inputs",
         "21 443 871 (Eq. 2)",
         "Appendix: the two gradations",
+        "Sources",
         "0.1.0 (commit 4f2c43f)",
         "curve = \"shire2016-cu1.5-loose\"".replace('"', "&quot;").as_str(),
         "How to cite",
@@ -115,10 +115,10 @@ fn every_class_has_its_words() {
                 reached.";
     assert!(words(&made(&plan).0).contains(rule));
     assert!(words(&made(&plan).0).contains("Inconclusive: the interval of the second run includes 7.5 %"));
-    let next = "more replicates may decide it";
+    let next = "The replicates do not separate the classes";
     assert!(!words(&made(&plan).0).contains(next), "they were added already");
     plan.outcome.stopping = None;
-    plan.outcome.findings = plan.outcome.found().iter().map(|finding| finding.record()).collect();
+    plan.outcome.notes = plan.outcome.notes_of_results();
     assert!(words(&made(&plan).0).contains(next));
     plan.outcome.summary.truncate(1);
     plan.outcome.replicates.iter_mut().for_each(|replicate| replicate.runs.truncate(1));
@@ -162,6 +162,7 @@ fn hostile_names_are_inert() {
     let mut plan = Plan::usual();
     plan.scene = format!("# </pre>{EVIL}\nseed = 1\n");
     let outcome = &mut plan.outcome;
+    outcome.notes = vec![folder::note(EVIL)];
     let (inputs, rule) = (&mut outcome.inputs, &mut outcome.rules[0]);
     for text in [
         &mut inputs.filter.name,
@@ -172,8 +173,6 @@ fn hostile_names_are_inert() {
         &mut outcome.engine,
         &mut rule.name,
         &mut rule.source,
-        &mut outcome.findings[0].sentence,
-        &mut outcome.left_out[0],
     ] {
         *text = EVIL.to_owned();
     }
@@ -192,7 +191,7 @@ fn hostile_names_are_inert() {
 fn without_a_scale_every_size_says_so() {
     let mut plan = Plan::usual();
     plan.outcome.inputs.scale_free = true;
-    plan.outcome.findings.clear();
+    plan.outcome.notes.clear();
     let (page, figures, _folder) = made(&plan);
     let text = words(&page);
     assert!(text.contains("Size / D0F (–)") && text.contains("296 D0F") && text.contains("largest (D0F)"));
@@ -215,10 +214,10 @@ fn one_replicate_has_no_interval_and_says_so() {
     let mut plan = Plan::usual();
     plan.outcome = folder::outcome(1);
     plan.outcome.sensitivity.clear();
-    plan.outcome.findings.clear();
+    plan.outcome.notes.clear();
     let text = words(&made(&plan).0);
     assert!(text.contains("One replicate: the scatter is unknown"));
-    assert!(!text.contains("Other findings") && !text.contains("more below"));
+    assert!(!text.contains("Notes") && !text.contains("notes below"));
     // Ended before the studies were walked.
     plan.outcome.thickness.clear();
     plan.outcome.studies_to_come = true;
@@ -383,11 +382,11 @@ fn a_rule_says_what_it_is_for_and_what_it_needs() {
     let mut plan = Plan::usual();
     plan.outcome.rules[0].value = None;
     plan.outcome.rules[0].met = None;
-    plan.outcome.rules[0].note = RuleText::Said("needs the filter's <sieve> curve".into());
+    plan.outcome.rules[0].needs = vec![RuleNote::NeedsCurveOfFilter];
     plan.outcome.rules[1].at_least = true;
     plan.outcome.rules[2].limit = None;
     let (page, ..) = made(&plan);
-    assert!(page.contains("needs the filter's &lt;sieve&gt; curve"));
+    assert!(page.contains("needs the filter's sieve curve"));
     let text = words(&page);
     for expected in ["For bases in general.", "no result", "≥ 7", "D15F/D95B = "] {
         assert!(text.contains(expected), "{expected}");

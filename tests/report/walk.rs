@@ -1,27 +1,24 @@
 //! What a page says of the walk: where it can be relied on, and what it was made with.
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::FindingRecord;
+use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::outcome::record::Note;
 use voidwalk::verdict::PairRules;
 
-use super::folder::{Plan, finding};
+use super::folder::Plan;
 use super::{made, words};
-
-fn found(id: &str) -> FindingRecord {
-    FindingRecord { id: id.into(), ..finding("Found.") }
-}
 
 #[test]
 fn a_void_ratio_that_nobody_gave_is_said_to_be_of_the_library() {
-    let said = |id: &str| {
+    let said = |note: Note| {
         let mut plan = Plan::usual();
         plan.outcome.inputs.filter.void_ratio = Some(0.553);
-        plan.outcome.findings = vec![found(id)];
+        plan.outcome.notes = vec![note];
         words(&made(&plan).0)
     };
     let other = "not given; 0.553 is that of the packing of the library";
-    assert!(said("library_of_any_density").contains(other));
-    let given = said("few_replicates");
+    assert!(said(Note::LibraryOfAnyDensity { error_percent: 10.0 }).contains(other));
+    let given = said(Note::FewReplicates { replicates: 3 });
     assert!(given.contains("0.553") && !given.contains(other));
 }
 
@@ -46,8 +43,8 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
     let next = |filter: &[(f64, f64)]| {
         let mut outcome = Plan::usual().outcome;
         outcome.rules = PairRules::of(&base, &soil(filter)).rules;
-        outcome.findings.clear();
-        outcome.next_in_words()
+        outcome.notes.clear();
+        voidwalk::words::next(&outcome, SizeUnit::Mm)
     };
     assert_eq!(next(&[(0.5, 0.0), (1.5, 100.0)]), "nothing by these rules");
     let wide = next(&[(0.5, 0.0), (0.8, 15.0), (1.8, 30.0), (4.0, 50.0), (9.0, 65.0), (20.0, 100.0)]);
@@ -60,6 +57,6 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
     outcome.rules = rockfill;
     outcome.inputs.scale_free = false;
     outcome.inputs.filter.d15_mm = 60.0;
-    outcome.findings.clear();
-    assert_eq!(outcome.next_in_words(), "nothing by these rules");
+    outcome.notes.clear();
+    assert_eq!(voidwalk::words::next(&outcome, SizeUnit::Mm), "nothing by these rules");
 }

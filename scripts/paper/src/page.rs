@@ -9,6 +9,7 @@ use voidwalk::report::numbers::{duration, significant, whole};
 use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
 use voidwalk::report::{ReportError, Written, write_page};
 use voidwalk::store::write_whole;
+use voidwalk::words::left_out::model_limit;
 
 use crate::figures;
 use crate::measured::Measured;
@@ -96,7 +97,7 @@ fn page(study: &Study, judged: &[Judged], sections: &[(&Section, Vec<Drawn>)]) -
             }
             aside.leaves {
                 h2 { "What the model leaves out" }
-                ul { @for limit in leaves_out(Modelled::default()) { li { (limit.to_string()) } } }
+                ul { @for limit in leaves_out(Modelled::default()) { li { (model_limit(limit)) } } }
             }
         }
         (what_differs(judged))

@@ -8,6 +8,7 @@ mod arrays;
 mod command;
 mod grains;
 mod network;
+mod notes;
 mod pages;
 mod problem;
 mod rules;
@@ -32,6 +33,8 @@ mod _voidwalk {
     #[pymodule_export]
     use crate::network::Network;
     #[pymodule_export]
+    use crate::notes::note_sentences;
+    #[pymodule_export]
     use crate::pages::{report, run_brief, run_page, walk_brief, walk_page};
     #[pymodule_export]
     use crate::problem::VoidwalkError;
@@ -42,7 +45,7 @@ mod _voidwalk {
     #[pymodule_export]
     use crate::soil::{Curve, Gradation};
     #[pymodule_export]
-    use crate::studies::{compare, design, percolation, schema, soils, specification, specification_says};
+    use crate::studies::{compare, design, percolation, schema, soils, specification, specification_words};
     #[pymodule_export]
     use crate::walks::{replicate_seed, walk};
     #[pymodule_export]

@@ -16,7 +16,7 @@ create_exception!(
 );
 
 /// Options of the command line that take no value.
-const SWITCHES: [&str; 7] = ["as-given", "as-sampled", "pack", "overwrite", "quick", "dispersive", "inverse"];
+const SWITCHES: [&str; 6] = ["as-given", "as-sampled", "pack", "overwrite", "quick", "dispersive"];
 
 /// The text of an error with the names of Python, without characters that control a terminal.
 fn plain(text: &str) -> String {

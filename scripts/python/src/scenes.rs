@@ -8,10 +8,12 @@ use pyo3::types::PyDict;
 use voidwalk::Outcome;
 use voidwalk::campaign::{self as campaigns, CampaignOptions, CampaignPlan, CasePart};
 use voidwalk::case::{Case, RECORD};
+use voidwalk::outcome::numbers::SizeUnit;
 use voidwalk::run::machine::threads as pool;
-use voidwalk::run::{self as runs, CheckpointInterval, PrepareOptions, RunOptions, results};
+use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;
 use voidwalk::store::format;
+use voidwalk::verdict::ordered;
 
 use crate::problem::{failed, of_run, refused};
 use crate::tables::of_recorded;
@@ -160,7 +162,8 @@ pub fn run_in_memory<'py>(
     let started = SystemTime::now();
     let (outcome, recorded, texts) = at_work(py, progress, |callbacks| {
         let case = runs::prepare(scene, &options.prepare, &callbacks.run)?;
-        case.warnings().iter().for_each(|warning| (callbacks.run.warn)(warning));
+        let unit = SizeUnit::of(case.is_scale_free(), false);
+        (callbacks.run.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
         let pool = pool(options.prepare.threads)?;
         let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
         let threads = pool.current_num_threads() as u64;

@@ -7,12 +7,13 @@ use voidwalk::case::CaseError;
 use voidwalk::gradation::soils_in_file;
 use voidwalk::outcome::design::Specification;
 use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
-use voidwalk::outcome::numbers::{rounded_down, rounded_up};
+use voidwalk::outcome::numbers::SizeUnit;
 use voidwalk::outcome::record::SheetCover;
 use voidwalk::store::format;
 use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
 use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
 use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
+use voidwalk::words::specification::{beside_limits, no_band};
 
 use crate::problem::{failed, of_run, refused};
 use crate::scenes::Manner;
@@ -61,10 +62,11 @@ pub fn compare(
 #[derive(FromPyObject)]
 pub struct Search(Vec<String>, bool, Vec<String>, [f64; 2]);
 
-/// Finds how coarse a filter may be, into a folder: the JSON of `design.json`.
+/// Makes the specification of a filter by practice and finds the boundaries of the model, into a folder: the JSON of
+/// `design.json`.
 #[pyfunction]
 #[pyo3(signature = (
-    base, filter, search, settings, as_sampled, as_given, inverse, out, overwrite, packings, manner, progress
+    base, filter, search, settings, as_sampled, as_given, out, overwrite, packings, manner, progress
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn design(
@@ -75,7 +77,6 @@ pub fn design(
     settings: Vec<String>,
     as_sampled: bool,
     as_given: bool,
-    inverse: bool,
     out: PathBuf,
     overwrite: bool,
     packings: PathBuf,
@@ -93,7 +94,6 @@ pub fn design(
         settings,
         as_sampled,
         as_given,
-        inverse,
         bracket,
         out,
         overwrite,
@@ -127,22 +127,23 @@ pub fn specification(
     format::SPECIFICATION.json(&found).map_err(failed)
 }
 
-/// The answer in short, what a delivery must keep beside the limits, what set the maximum D15F, and whether D15 of
-/// each product fits.
-type Said = (String, Option<String>, Option<String>, Vec<Option<bool>>);
+/// D15F of the band, why there is no band, what a delivery must keep beside the limits, whose rule sets the
+/// maximum D15F, and whether each product fits.
+type Words = (Option<String>, Option<String>, Option<String>, Option<String>, Vec<Option<bool>>);
 
-/// What the record of a specification says besides its numbers.
+/// The words for a specification, from its record.
 #[pyfunction]
-pub fn specification_says(record: &str) -> PyResult<Said> {
-    let of: Specification = serde_json::from_str(record).map_err(refused)?;
-    let answer = match (of.band.as_ref().map(SizeBand::d15_mm), &of.no_band) {
-        (Some([least, most]), _) => {
-            format!("D15F from {} to {} mm", rounded_up(least), rounded_down(most))
-        }
-        (None, why) => format!("No band. {}", why.as_deref().unwrap_or_default()),
-    };
-    let fits = of.products.iter().map(ProductMargin::fits).collect();
-    Ok((answer, of.beside_limits(), of.set_by().map(str::to_owned), fits))
+pub fn specification_words(record: &str) -> PyResult<Words> {
+    let unit = SizeUnit::Mm;
+    let specification: Specification = serde_json::from_str(record).map_err(refused)?;
+    let d15f = specification.band.as_ref().map(SizeBand::d15_mm);
+    Ok((
+        d15f.map(|[least, most]| format!("D15F from {}", unit.limits(least, most))),
+        specification.no_band.as_ref().map(|why| no_band(why, unit)),
+        beside_limits(&specification, unit),
+        specification.set_by().map(str::to_owned),
+        specification.products.iter().map(ProductMargin::fits).collect(),
+    ))
 }
 
 /// Finds percolation thresholds, into a folder: the JSON of `percolation.json`.

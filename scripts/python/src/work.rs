@@ -18,6 +18,7 @@ use voidwalk::report;
 use voidwalk::run::error::AnyError;
 use voidwalk::run::{Callbacks, Event, Exit, FolderKind, RunError};
 
+use crate::notes::with_setting;
 use crate::problem::of_run;
 
 /// Between two looks for signals and news.
@@ -100,6 +101,9 @@ impl<T> Desk<T> {
             }),
             Event::RunDone => self.change(true, |p| p.done += 1),
             Event::MoreRuns { runs } => self.change(false, |p| p.total += runs),
+            Event::Noted { notes, unit } => {
+                notes.iter().for_each(|note| self.warn(&with_setting(note, unit)))
+            }
             Event::PackingElsewhere { .. }
             | Event::PackingEnded
             | Event::Studying(_)

@@ -241,10 +241,11 @@ def test_the_number_of_base_particles_is_never_guessed() -> None:
     assert rows[0] == rows[1] and rows[0]["d15f_mm"] == pytest.approx(vw.Gradation(sizes, percents).d(15))
 
 
-def test_what_a_reader_must_know_of_a_walk_stands_beside_it() -> None:
+def test_a_walk_has_notes_with_a_sentence_each() -> None:
     made, base = vw.Network.cubic([10, 10, 12]), vw.Gradation.linear(1.5, 0.25, 85)
     few = vw.walk(made, base, n_base=1000, replicates=6)
-    assert few.findings and all(finding["id"] and finding["sentence"] for finding in few.findings)
+    assert few.notes and all(note["id"] for note in few.notes)
+    assert len(few.note_sentences) == len(few.notes) and all(few.note_sentences)
     assert few.verdict in repr(few) and few.verdict in few._repr_html_()
 
 

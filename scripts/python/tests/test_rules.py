@@ -34,6 +34,6 @@ def test_exchanged_soils_are_refused_unless_they_are_as_given() -> None:
     base, filter = vw.Gradation(*TILL), vw.Gradation(*SAND)
     with pytest.raises(ValueError, match="are the two files exchanged.*as_given=True"):
         vw.rules(filter, base)
-    assert "exchanged" in vw.rules(filter, base, as_given=True)["warnings"][0]
+    assert vw.rules(filter, base, as_given=True)["notes"][0]["id"] == "files_exchanged"
     with pytest.raises(ValueError, match="joint_mm = -1"):
         vw.rules(base, filter, joint_mm=-1)

@@ -4,19 +4,17 @@
 //! turns into some), or in the second as well (some turns into continuing). One packing a shape and density;
 //! the filter is scaled, which repacks nothing.
 
-pub mod band;
-mod finding;
 pub(crate) mod products;
 mod record;
+pub mod retention;
+mod row_note;
 mod sieves;
-mod size_band;
+pub mod size_band;
 pub mod specification;
 mod spread;
 
-pub use finding::DesignFinding;
-pub use record::{
-    BETWEEN_STEPS, BaseStated, Boundary, Design, DesignAnswer, DesignRow, NetworkBoundaries, Range, WalkRow,
-};
+pub use record::{BETWEEN_STEPS, BaseStated, Boundary, Design, DesignRow, NetworkBoundaries, Range, WalkRow};
+pub use row_note::RowNote;
 pub use sieves::SieveSeries;
 pub use specification::{Specification, SpecificationStep};
-pub use spread::{Beyond, drawn_of_networks, over_networks, share_of_networks, spread};
+pub use spread::{Beyond, are_few, spread};

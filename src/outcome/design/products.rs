@@ -1,14 +1,40 @@
-//! Standard products: which of them keep what a filter is asked for with both their own sides. Their own
-//! shapes are not walked.
+//! Standard products: which of them keep what a filter is asked for with both their own sides.
 //!
 //! Only products whose limits could be read in a public source are here.
 
 use serde::{Deserialize, Serialize};
 
-use super::band::Band;
 use crate::gradation::FINES_MM;
-use crate::outcome::numbers::significant;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
+
+/// What a product does not keep of what a band is asked for beside D15F.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "id", rename_all = "snake_case")]
+pub enum NotKept {
+    /// Cu of its fine side.
+    CuOfFineSide {
+        /// That Cu.
+        cu: f64,
+    },
+    /// Cu of its coarse side.
+    CuOfCoarseSide {
+        /// That Cu.
+        cu: f64,
+    },
+    /// Its sides lie too far apart.
+    Width {
+        /// Coarse over fine side at the same percent finer, at most.
+        ratio: f64,
+    },
+    /// It may have too many fines.
+    Fines {
+        /// Percent finer than 0.075 mm, at most.
+        percent: f64,
+    },
+    /// It may have grains that are too coarse.
+    GreatestSize,
+}
 
 /// Least Cu of a filter that is specified.
 pub const LEAST_CU: f64 = 2.0;
@@ -91,46 +117,9 @@ pub const PRODUCTS: [Product; 5] = [
 /// How the source of a product ends whose limits were read in no text of a named body.
 const TO_BE_CHECKED: &str = "limits to be checked against the standard";
 
-/// That the limits of some products are to be checked, from the name and the source of each; `None` where
-/// none are.
-pub fn to_be_checked<'a>(products: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
-    let named: Vec<&str> =
-        products.filter(|(_, source)| source.ends_with(TO_BE_CHECKED)).map(|(name, _)| name).collect();
-    (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
-}
-
-/// A product beside a band.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Fit {
-    /// Its name.
-    pub name: String,
-    /// D15 (mm) of its fine and of its coarse side.
-    pub d15_mm: [f64; 2],
-    /// Whether its fine side drains.
-    pub drains: bool,
-    /// Whether its fine side drains only if the base's D15 is finer than its sieves tell.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub may_drain: bool,
-    /// Whether its coarse side is within what both walk and practice allow.
-    pub holds: bool,
-    /// Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
-    pub practice: Option<bool>,
-    /// Where its limits were read.
-    pub source: String,
-}
-
-impl Fit {
-    /// Whether the D15 of both its sides lies within the band and practice does not speak against it. D15
-    /// lies between sieves and is interpolated: a delivery within the limits may have another.
-    pub fn fits(&self) -> bool {
-        self.drains && self.holds && self.practice != Some(false)
-    }
-
-    /// Whether it fits if it drains, which is not known.
-    pub fn may_fit(&self) -> bool {
-        self.may_drain && self.holds && self.practice != Some(false)
-    }
+/// Whether the source of a product says that its limits are to be checked against the standard.
+pub fn is_to_be_checked(source: &str) -> bool {
+    source.ends_with(TO_BE_CHECKED)
 }
 
 /// The size (mm) at which a side has this percent finer, straight in percent over log size; its end where it
@@ -155,60 +144,35 @@ impl Product {
 
     /// What its two sides do not keep of what a band is asked for beside D15F; a delivery may lie anywhere
     /// between them.
-    pub fn not_kept(&self) -> Vec<String> {
+    pub fn not_kept(&self) -> Vec<NotKept> {
         let sides: [Vec<[f64; 2]>; 2] = [
             self.limits.iter().map(|row| [row.0, row.2]).collect(),
             self.limits.iter().map(|row| [row.0, row.1]).collect(),
         ];
-        let mut said = Vec::new();
-        for (name, side) in ["fine", "coarse"].into_iter().zip(&sides) {
+        let mut found = Vec::new();
+        let of_sides: [fn(f64) -> NotKept; 2] =
+            [|cu| NotKept::CuOfFineSide { cu }, |cu| NotKept::CuOfCoarseSide { cu }];
+        for (of_side, side) in of_sides.into_iter().zip(&sides) {
             let cu = size_at(side, 60.0) / size_at(side, 10.0);
-            if !(LEAST_CU..=MOST_CU).contains(&cu) {
-                let cu = significant(cu);
-                said.push(format!("Cu of its {name} side is {cu}, and {LEAST_CU} to {MOST_CU} is asked for"));
-            }
+            found.extend((!(LEAST_CU..=MOST_CU).contains(&cu)).then(|| of_side(cu)));
         }
         let from_5_to_60 = sides.iter().flatten().map(|row| row[1]).chain([5.0, 60.0]);
         let ratio = |percent: f64| size_at(&sides[1], percent) / size_at(&sides[0], percent);
         let wide = from_5_to_60.filter(|of| (5.0..=60.0).contains(of)).map(ratio).fold(0.0, f64::max);
-        if wide > WIDEST_BAND {
-            said.push(format!(
-                "its sides are {} to 1 apart, and at most {WIDEST_BAND} is allowed",
-                significant(wide)
-            ));
-        }
+        found.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
         let at_no_200 = self.limits.iter().rev().find(|row| row.0 <= FINES_MM).or(self.limits.first());
-        if let Some((_, _, fines)) = at_no_200.filter(|row| row.2 > MOST_FINES_PERCENT) {
-            said.push(format!("up to {fines} % may be finer than {FINES_MM} mm"));
+        if let Some((_, _, percent)) = at_no_200.copied().filter(|row| row.2 > MOST_FINES_PERCENT) {
+            found.push(NotKept::Fines { percent });
         }
-        if self.limits.last().is_some_and(|row| row.0 > GREATEST_SIZE_MM) {
-            said.push(format!("grains may be coarser than {GREATEST_SIZE_MM} mm"));
-        }
-        said
+        let coarsest = self.limits.last().map(|row| row.0);
+        found.extend(coarsest.filter(|mm| *mm > GREATEST_SIZE_MM).map(|_| NotKept::GreatestSize));
+        found
     }
-}
-
-/// Every product beside a band in mm.
-pub fn fits(band: &Band) -> Vec<Fit> {
-    let one = |product: &Product| {
-        let [fine, coarse] = product.d15_mm();
-        Fit {
-            name: product.name.into(),
-            d15_mm: [fine, coarse],
-            drains: fine >= band.least,
-            may_drain: band.least_at_most && fine < band.least,
-            holds: coarse <= band.greatest,
-            practice: band.practice.map(|practice| coarse <= practice),
-            source: product.source.into(),
-        }
-    };
-    PRODUCTS.iter().map(one).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::design::band::SetBy;
 
     #[test]
     fn limits_rise_and_end_at_all() {
@@ -231,12 +195,9 @@ mod tests {
                 .any(|body| product.source.starts_with(body));
             assert!(is_signed || product.source.ends_with(TO_BE_CHECKED), "{}", product.name);
         }
-        let said = to_be_checked(PRODUCTS.iter().map(|of| (of.name, of.source))).unwrap();
-        assert_eq!(
-            said,
-            "Limits to be checked against the standard: ASTM C33 fine aggregate, ASTM C33/D448 No. 78 stone."
-        );
-        assert_eq!(to_be_checked(PRODUCTS[3..].iter().map(|of| (of.name, of.source))), None);
+        let checked = PRODUCTS.iter().filter(|product| is_to_be_checked(product.source));
+        let names: Vec<&str> = checked.map(|product| product.name).collect();
+        assert_eq!(names, ["ASTM C33 fine aggregate", "ASTM C33/D448 No. 78 stone"]);
     }
 
     #[test]
@@ -252,34 +213,5 @@ mod tests {
         let [fine, coarse] = PRODUCTS[4].d15_mm();
         let step = 12.5 / 4.75;
         assert!(near(fine, 4.75 * libm::pow(step, 0.1)) && near(coarse, 4.75 * libm::pow(step, 0.6)));
-    }
-
-    #[test]
-    fn a_product_fits_where_both_its_sides_do() {
-        let band = |least, greatest| Band {
-            least,
-            least_at_most: false,
-            greatest,
-            set_by: SetBy::Walk,
-            practice: Some(0.4),
-            practice_rule: String::new(),
-            practice_rule_id: None,
-            unit: "mm".into(),
-            is_empty: false,
-            said: String::new(),
-        };
-        let sand = |least, greatest| fits(&band(least, greatest)).remove(0);
-        // Practice allows 0.4 mm.
-        assert!(sand(0.17, 0.4).drains && !sand(0.17, 0.4).holds && !sand(0.17, 0.4).fits());
-        let allowed = Band { practice: Some(0.43), ..band(0.17, 0.43) };
-        assert!(fits(&allowed)[0].fits() && fits(&Band { practice: None, ..allowed })[0].fits());
-        assert!(!sand(0.18, 0.43).drains && !sand(0.17, 0.42).holds);
-        // A least that is one at most neither drains nor refuses what is finer.
-        let open = fits(&Band { least_at_most: true, practice: Some(0.7), ..band(0.375, 0.7) }).remove(0);
-        assert!(!open.drains && open.may_drain && open.may_fit() && !open.fits(), "{open:?}");
-        let coarse = fits(&Band { least_at_most: true, ..band(0.375, 0.3) }).remove(0);
-        assert!(coarse.may_drain && !coarse.may_fit() && !coarse.fits(), "{coarse:?}");
-        let wide = Band { practice: Some(1.0), ..band(0.1, 1.0) };
-        assert_eq!(fits(&wide).iter().filter(|fit| fit.fits()).count(), 1);
     }
 }

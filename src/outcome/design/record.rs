@@ -2,13 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::band::{Band, SetBy};
-use super::finding::DesignFinding;
-use super::products::Fit;
+use super::row_note::RowNote;
 use super::specification::Specification;
 use super::spread::{Beyond, are_few, spread};
 use crate::outcome::BaseSize;
-use crate::outcome::record::{AppliedRule, InputFile, ModelLimit, SheetCover};
+use crate::outcome::record::{InputFile, ModelLimit, Note, SheetCover};
 use crate::walk::Engine;
 
 /// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
@@ -23,20 +21,20 @@ pub struct Design {
     /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked
-    /// out.
-    pub answer: Option<DesignAnswer>,
-    /// One per density and thickness, in the order in which they were asked for.
+    /// The specification of a filter by the rules of practice alone, step by step; `None` of a base without a
+    /// size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specification: Option<Specification>,
+    /// The boundaries of the model, one row per density and thickness, in the order in which they were asked
+    /// for.
     pub boundaries: Vec<DesignRow>,
-    /// Whether the base was scaled against a filter of given size, to find the finest base that it holds.
-    pub inverse: bool,
     /// The base.
     pub base: BaseStated,
     /// The filter's shape in words.
     pub filter: String,
     /// Cu of the filter.
     pub filter_cu: Option<f64>,
-    /// The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
+    /// The filter's own D15F (mm), where its sizes are given.
     pub filter_d15_mm: Option<f64>,
     /// Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
     /// where its sizes are not given.
@@ -45,9 +43,6 @@ pub struct Design {
     /// Every file that was read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
-    /// Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
-    /// own.
-    pub unit: String,
     /// Mass eroded from which a run erodes.
     pub threshold: f64,
     /// Networks of each boundary.
@@ -60,19 +55,9 @@ pub struct Design {
     pub bracket: [f64; 2],
     /// Steps of the search, as a part of D15F/D85B.
     pub step: f64,
-    /// What a reader must know besides, the weightiest first.
+    /// What a reader must know of the model's boundaries, the weightiest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<DesignFinding>,
-    /// Every rule of practice, of the coarsest filter that holds; of another where none is known.
-    pub rules: Vec<AppliedRule>,
-    /// D15F/D85B that the rules are read at.
-    pub rules_at: f64,
-    /// Standard products beside the narrowest band.
-    pub products: Vec<Fit>,
-    /// The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-    /// mm.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub specification: Option<Specification>,
+    pub notes: Vec<RowNote>,
     /// What the model does not contain.
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
@@ -85,41 +70,6 @@ pub struct Design {
     pub inches: bool,
     /// Wall time (s).
     pub seconds: f64,
-}
-
-/// How coarse the filter may be; for the inverse, how fine the base.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct DesignAnswer {
-    /// Maximum D15F (mm) that both walk and practice allow; `None` where none is known, where the base has
-    /// no size, and for the inverse.
-    pub d15f_max_mm: Option<f64>,
-    /// Finest D85B (mm) that both allow, for the inverse.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub d85b_min_mm: Option<f64>,
-    /// The same as D15F/D85B, of the base as it was walked.
-    pub d15f_over_d85b: Option<f64>,
-    /// Which of the two is the stricter.
-    pub set_by: SetBy,
-    /// Name of the rule for programs, where practice set it.
-    pub rule: Option<String>,
-    /// The limit, and what sets it: a sentence without its full stop, as each of the next three.
-    pub limit: String,
-    /// That the filter as given is not internally stable, and too coarse without the finer part that it may
-    /// lose.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub washout: Option<String>,
-    /// That a limit of practice has no margin.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub margin: Option<String>,
-    /// What the walk is worth beside a limit of practice.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub walk: Option<String>,
-    /// What holds if the base is dispersive, and what to do then.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub if_dispersive: Option<String>,
-    /// All of them, without the last full stop.
-    pub said: String,
 }
 
 /// What is known of the base.
@@ -169,8 +119,8 @@ pub struct DesignRow {
     /// Where no erosion turns into some; `None` where that lies beyond what can be walked.
     pub no_erosion: Option<Boundary>,
     /// Why there is none, or what else is to be said of it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub no_erosion_note: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub no_erosion_notes: Vec<Note>,
     /// D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched,
     /// so that there is no boundary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -178,28 +128,21 @@ pub struct DesignRow {
     /// Where some erosion turns into continuing.
     pub continuing: Option<Boundary>,
     /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub continuing_notes: Vec<Note>,
+    /// The note on a boundary that few particles decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub continuing_note: Option<String>,
-    /// Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unsteady: Option<String>,
+    pub unsteady: Option<Note>,
     /// Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
     /// that erodes counts.
     pub not_monotone: u64,
     /// What each network says.
     pub networks: Vec<NetworkBoundaries>,
-    /// The band of a specification, up to what holds over the whole range of its curve; `None` for the
-    /// inverse, where nothing limits it, and where no ratio is known that all but 5 % of networks hold.
-    pub band: Option<Band>,
-    /// Why there is no band, where networks erode at every ratio that was searched.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub band_note: Option<String>,
     /// The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
     /// is searched at its ends only, loose and dense.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub as_end: Option<String>,
-    /// The density of which this is an end of the range in which its constriction curve is known: its band is
-    /// that of the whole range, and this row has none.
+    /// The density of which this is an end of the range in which its constriction curve is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_of: Option<String>,
 }
@@ -256,9 +199,6 @@ pub struct Boundary {
     pub low_beyond: Option<Beyond>,
     /// D15F (mm) of the filter, where the base has a size.
     pub d15f_mm: Option<Range>,
-    /// D85B (mm) of the base, for the inverse, where the filter has a size.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub d85b_mm: Option<Range>,
 }
 
 /// Median and band of a size (mm).
@@ -319,45 +259,12 @@ impl Design {
         self.engine == Engine::Expected.name()
     }
 
-    /// The band of a row, or of the one that it is an end of.
-    pub fn band_of<'a>(&'a self, row: &'a DesignRow) -> Option<&'a Band> {
-        let of = row.end_of.as_ref().unwrap_or(&row.density);
-        let asked = |other: &&DesignRow| other.density == *of && other.thickness == row.thickness;
-        self.boundaries.iter().find(asked)?.band.as_ref()
-    }
-
     /// The row that holds least, and the ratio that nearly all of its networks hold; `None` where no ratio is
     /// known that some row holds.
     pub fn least_held(&self) -> Option<(&DesignRow, f64)> {
         let held = |row| Some((row, DesignRow::held(row)?));
         let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
         all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Whether products fit by practice: it alone set the answer, the walk has one that is no tighter, and no
-    /// rule of practice speaks against the filter there.
-    pub fn fits_by_practice(&self) -> bool {
-        self.answer.as_ref().is_some_and(|answer| answer.set_by == SetBy::Practice)
-            && !self.rules.iter().any(AppliedRule::is_broken)
-            && self.least_held().is_some()
-    }
-
-    /// Whether a standard product is said to fit; `None` where that is in doubt or not known.
-    pub fn says_fit(&self, product: &str) -> Option<bool> {
-        let of = self.products.iter().find(|of| of.name == product)?;
-        let fit = self.fits(of);
-        (!of.may_fit() && (!fit || self.fits_by_practice())).then_some(fit)
-    }
-
-    /// Whether a product fits by walk and practice, with both its sides.
-    pub fn fits(&self, fit: &Fit) -> bool {
-        fit.fits() && self.not_kept(&fit.name).is_empty()
-    }
-
-    /// What the sides of a product do not keep beside D15F; empty where no specification says more.
-    pub fn not_kept(&self, product: &str) -> &str {
-        let mut all = self.specification.iter().flat_map(|of| &of.products);
-        all.find(|of| of.product == product).map_or("", |of| of.not_kept.as_str())
     }
 }
 
@@ -371,17 +278,7 @@ impl Boundary {
         // One network has no percentiles.
         let [low, high] = [low, high].map(|end| end.ok().filter(|_| networks.len() > 1));
         let mm = |d85| Range { median: median * d85, low: low.map(|r| r * d85), high: high.map(|r| r * d85) };
-        Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm), d85b_mm: None })
-    }
-
-    /// The same for a base that is scaled against a filter of this D15F (mm).
-    pub fn inverted(self, d15f_mm: Option<f64>) -> Self {
-        let mm = |d15: f64| Range {
-            median: d15 / self.median,
-            low: self.high.map(|r| d15 / r),
-            high: self.low.map(|r| d15 / r),
-        };
-        Self { d15f_mm: None, d85b_mm: d15f_mm.map(mm), ..self }
+        Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm) })
     }
 
     /// The same with the least and the most of these networks, where they are few. An end that hangs on
@@ -394,16 +291,11 @@ impl Boundary {
             end.map(|end| networks.iter().flatten().copied().fold(end, outer))
         };
         let (low, high) = (end(self.low, f64::min), end(self.high, f64::max));
-        let [d15f_mm, d85b_mm] = [self.d15f_mm, self.d85b_mm];
-        let d15f_mm = d15f_mm.map(|of| {
+        let d15f_mm = self.d15f_mm.map(|of| {
             let d85 = of.median / self.median;
             Range { low: low.map(|ratio| ratio * d85), high: high.map(|ratio| ratio * d85), ..of }
         });
-        let d85b_mm = d85b_mm.map(|of| {
-            let d15 = of.median * self.median;
-            Range { low: high.map(|ratio| d15 / ratio), high: low.map(|ratio| d15 / ratio), ..of }
-        });
-        Self { low, high, d15f_mm, d85b_mm, ..self.clone() }
+        Self { low, high, d15f_mm, ..self.clone() }
     }
 
     /// The ratio that all but a few networks hold: the 5 percentile, or the median where there is one network
@@ -439,14 +331,6 @@ mod tests {
     }
 
     #[test]
-    fn the_finest_base_has_its_ends_exchanged() {
-        let boundary = Boundary::of(&[Ok(4.0), Ok(5.0)], None).unwrap().inverted(Some(1.0));
-        let d85 = boundary.d85b_mm.unwrap();
-        assert!(d85.low.unwrap() < d85.median && d85.median < d85.high.unwrap());
-        assert!((d85.median - 1.0 / 4.5).abs() < 1e-12 && boundary.d15f_mm.is_none());
-    }
-
-    #[test]
     fn of_few_networks_least_and_most_are_shown() {
         let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
         let over =
@@ -460,8 +344,6 @@ mod tests {
         let mm = shown.d15f_mm.unwrap();
         let is = |value: Option<f64>, by_hand: f64| (value.unwrap() - by_hand).abs() < 1e-12;
         assert!(is(mm.low, 2.0) && is(mm.high, 3.0), "{mm:?}");
-        let inverse = boundary.clone().inverted(Some(2.4)).with_shown_ends(&known(&few)).d85b_mm.unwrap();
-        assert!(is(inverse.low, 0.4) && is(inverse.high, 0.6) && inverse.median == 0.5, "{inverse:?}");
         // What the walk holds is still read from the percentile.
         assert!(boundary.cautious().unwrap() > 4.0);
         let many = Boundary::of(&over(20), Some(0.5)).unwrap();

@@ -50,7 +50,15 @@ pub struct SieveLimit {
 /// Percents at which the sizes of a band are shown.
 const SIZES: [f64; 3] = [5.0, 15.0, 60.0];
 
+/// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
+pub const D15_OVER_D10: f64 = 1.2;
+
 impl SizeBand {
+    /// The minimum D10F (mm), by which the maximum D90F is set.
+    pub fn least_d10_mm(&self) -> f64 {
+        (self.d15_mm()[0] / D15_OVER_D10).min(self.least_size(10.0))
+    }
+
     /// From the control points of its sides: least and maximum D15 and D60 (mm).
     ///
     /// Both sides are straight in percent over log size between their points, and end at their D60. The

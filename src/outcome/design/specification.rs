@@ -5,12 +5,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::finding::DesignFinding;
-use super::products::{PRODUCTS, Product};
+use super::products::{NotKept, PRODUCTS, Product};
+use super::row_note::RowNote;
 use super::sieves::SieveSeries;
 pub use super::size_band::{BandSize, SieveLimit, SizeBand};
-use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, significant};
-use crate::outcome::record::{IfDispersive, InputFile, SheetCover};
+use crate::gradation::RegradeReason;
+use crate::outcome::record::{IfDispersive, InputFile, RuleNote, SheetCover};
 
 /// The whole of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,7 +41,7 @@ pub struct Specification {
     /// What a reader must know of the base itself, each of its curve where there are several, and of a side
     /// of the band that is not stable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub findings: Vec<DesignFinding>,
+    pub notes: Vec<RowNote>,
     /// Every step, with its numbers.
     pub steps: Vec<SpecificationStep>,
     /// Minimum D15F (mm) that drains the base; `None` where it is not known.
@@ -62,7 +62,7 @@ pub struct Specification {
     pub band: Option<SizeBand>,
     /// Why there is no band.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub no_band: Option<String>,
+    pub no_band: Option<NoBand>,
     /// Percent finer at each sieve, the coarsest first; empty without a band.
     pub limits: Vec<SieveLimit>,
     /// Standard products beside it; empty where neither limit of D15F is known.
@@ -109,15 +109,103 @@ pub struct SpecificationStep {
     /// Its number, from 1.
     pub step: u64,
     /// What is done.
-    pub does: String,
-    /// The formula, in words; empty where nothing is worked out.
+    pub does: StepName,
+    /// The formula; empty where nothing is worked out.
     pub formula: String,
     /// Its numbers.
     pub values: Vec<StepValue>,
-    /// What else a reader must know; may be empty.
-    pub note: String,
+    /// What else to know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<StepNote>,
     /// Where formula and numbers were read; empty where nothing is worked out.
     pub source: String,
+}
+
+/// A step of the procedure by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum StepName {
+    /// Plot the gradation of the base.
+    Plot,
+    /// Find gravel and gaps of the base.
+    FindGravel,
+    /// Regrade the base.
+    Regrade,
+    /// Place the base in a category.
+    Place,
+    /// Find the maximum D15F that retains the base.
+    Retain,
+    /// Find the minimum D15F that drains the base.
+    Drain,
+    /// Keep the band narrow at 15 % finer.
+    Narrow,
+    /// Keep both sides uniform.
+    KeepUniform,
+    /// Limit the fines and the greatest size.
+    LimitEnds,
+    /// Keep the filter from segregating.
+    KeepFromSegregating,
+    /// Draw both sides of the band.
+    Draw,
+    /// Check both sides for internal stability.
+    CheckStability,
+}
+
+/// What else to know of a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "id", rename_all = "snake_case")]
+pub enum StepNote {
+    /// Curves of the base.
+    Curves {
+        /// How many.
+        curves: u64,
+    },
+    /// Gravel and gaps of a curve.
+    Gravel {
+        /// Its name, where there are several.
+        curve: Option<String>,
+        /// Why it is regraded, or not.
+        why: RegradeReason,
+        /// Size (mm) from which the least mass lies within a factor of 4, and that mass (%); `None` where its
+        /// sieves do not tell.
+        flattest: Option<[f64; 2]>,
+    },
+    /// No curve is regraded.
+    NotRegraded,
+    /// The rule, and of several curves the one, that sets a limit.
+    SetBy {
+        /// The rule; `None` where the step has one alone.
+        rule: Option<String>,
+        /// The curve.
+        curve: Option<String>,
+    },
+    /// The limit of a curve is not known.
+    LimitNotKnown {
+        /// What is missing.
+        needs: Vec<RuleNote>,
+    },
+    /// D15B is finer than the finest sieve, and the minimum D15F at most the one given.
+    DrainageAtMost,
+    /// What the rule says besides.
+    OfRule {
+        /// Its notes.
+        notes: Vec<RuleNote>,
+    },
+    /// The minimum D15F is raised.
+    Raised,
+    /// The maximum D15F is lowered.
+    Lowered,
+    /// Internal stability of a side.
+    Stability {
+        /// `fine` or `coarse`.
+        side: String,
+        /// Whether both indices are known.
+        is_known: bool,
+        /// Whose rules it does not keep.
+        not_kept: Vec<String>,
+    },
 }
 
 /// The size of a band by which a table of the maximum D90F is entered. It is rounded down: a finer D10F
@@ -137,25 +225,52 @@ pub struct StepValue {
 }
 
 impl StepValue {
-    /// The number with its unit, a minimum rounded up, a maximum and [`ENTERED_BY`] rounded down; `None`
-    /// where it is not known.
-    pub fn words(&self) -> Option<String> {
-        self.words_in(SizeUnit::Mm)
+    /// Whether it is a limit: `true` of a minimum, `false` of a maximum and of [`ENTERED_BY`].
+    pub fn role(&self) -> Option<bool> {
+        match self.name.split(' ').next() {
+            _ if self.name == ENTERED_BY => Some(false),
+            Some("minimum") => Some(true),
+            Some("maximum") => Some(false),
+            _ => None,
+        }
     }
+}
 
-    /// The same, with inches behind a size where they are shown.
-    pub fn words_in(&self, unit: SizeUnit) -> Option<String> {
-        let value = self.value?;
-        let (number, beside) = match (self.unit.as_str(), self.name.split(' ').next()) {
-            ("mm", _) if self.name == ENTERED_BY => (rounded_down(value), unit.beside_greatest(value)),
-            ("mm", Some("minimum")) => (rounded_up(value), unit.beside_least(value)),
-            ("mm", Some("maximum")) => (rounded_down(value), unit.beside_greatest(value)),
-            ("mm", _) => (significant(value), unit.beside(value)),
-            ("", _) if value.fract() == 0.0 && value < 100.0 => (format!("{value:.0}"), String::new()),
-            _ => (significant(value), String::new()),
-        };
-        Some(format!("{number} {}", self.unit).trim_end().to_owned() + &beside)
-    }
+/// Why there is no band.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(tag = "id", rename_all = "snake_case")]
+pub enum NoBand {
+    /// Of the minimum D15F only the most is known, and it is above the maximum.
+    DrainageNotKnown {
+        /// The most that the minimum can be (mm).
+        most_drains_mm: f64,
+        /// The maximum (mm).
+        most_mm: f64,
+    },
+    /// The minimum D15F is above the maximum.
+    NoneDrainsAndRetains {
+        /// The minimum (mm).
+        least_mm: f64,
+        /// The maximum (mm).
+        most_mm: f64,
+    },
+    /// The coarse side would have too many fines.
+    TooManyFines,
+    /// The maximum D60F lies beyond the greatest size.
+    TooCoarse {
+        /// The maximum D60F (mm).
+        most_d60f_mm: f64,
+    },
+    /// The maximum D15F of a curve is not known.
+    LimitNotKnown {
+        /// The curve of the base.
+        curve: String,
+        /// What is missing.
+        needs: Vec<RuleNote>,
+    },
+    /// No rule of retention covers the base.
+    NoRule,
 }
 
 /// A standard product beside a specification. A row of `specification_products.csv`.
@@ -175,7 +290,7 @@ pub struct ProductMargin {
     pub holds_by: Option<f64>,
     /// What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
     /// empty where they keep all.
-    pub not_kept: String,
+    pub not_kept: Vec<NotKept>,
     /// Where its limits were read.
     pub source: String,
 }
@@ -205,53 +320,16 @@ impl Specification {
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
-    /// What set the maximum D15F: the name of a rule, or the walk; `None` where it is not known.
-    pub fn set_by(&self) -> Option<&str> {
-        let greatest = self.d15f_max_mm?;
+    /// The curve that sets the maximum D15F, and that D15F (mm); `None` where it is not known.
+    pub fn strictest(&self) -> Option<(&SpecifiedCurve, f64)> {
+        self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
-        let (curve, limit) = limits.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(if greatest < limit { "the walk" } else { &curve.d15f_max_rule })
+        limits.min_by(|a, b| a.1.total_cmp(&b.1))
     }
-}
 
-/// A number of `specification_steps.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepRow {
-    /// Number of the step.
-    pub step: u64,
-    /// What is done.
-    pub does: String,
-    /// What the number is; empty where the step has none.
-    pub quantity: String,
-    /// The number.
-    pub value: Option<f64>,
-    /// Its unit.
-    pub unit: String,
-    /// The formula.
-    pub formula: String,
-    /// What else a reader must know.
-    pub note: String,
-    /// Where formula and numbers were read.
-    pub source: String,
-}
-
-impl SpecificationStep {
-    /// Its numbers as rows; one without a number where it has none.
-    pub fn rows(&self) -> Vec<StepRow> {
-        let row = |value: Option<&StepValue>| StepRow {
-            step: self.step,
-            does: self.does.clone(),
-            quantity: value.map_or_else(String::new, |value| value.name.clone()),
-            value: value.and_then(|value| value.value),
-            unit: value.map_or_else(String::new, |value| value.unit.clone()),
-            formula: self.formula.clone(),
-            note: self.note.clone(),
-            source: self.source.clone(),
-        };
-        match self.values.is_empty() {
-            true => vec![row(None)],
-            false => self.values.iter().map(|value| row(Some(value))).collect(),
-        }
+    /// Whose rule sets the maximum D15F; `None` where it is not known.
+    pub fn set_by(&self) -> Option<&str> {
+        self.strictest().map(|(curve, _)| &*curve.d15f_max_rule)
     }
 }
 
@@ -270,7 +348,7 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
             // The true margin may be any greater.
             drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || fine < certain),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
-            not_kept: product.not_kept().join("; "),
+            not_kept: product.not_kept(),
             source: product.source.into(),
         }
     };
@@ -283,19 +361,6 @@ mod tests {
 
     fn near(found: f64, wanted: f64) -> bool {
         (found / wanted - 1.0).abs() < 1e-9
-    }
-
-    #[test]
-    fn a_minimum_is_rounded_up_and_a_maximum_down() {
-        let of =
-            |name: &str, value, unit: &str| StepValue { name: name.into(), value, unit: unit.into() }.words();
-        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117 mm");
-        // As the sentence has it that asks for D90F.
-        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191 mm");
-        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
-        assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
-        assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
-        assert_eq!(of("minimum D15F", None, "mm"), None);
     }
 
     #[test]

@@ -20,26 +20,8 @@ const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 const ENOUGH: u64 = 20;
 
 /// Whether of so many networks least and most are shown: a percentile would be read between the last two.
-pub(super) fn are_few(networks: u64) -> bool {
+pub fn are_few(networks: u64) -> bool {
     networks < ENOUGH
-}
-
-/// Which share of so many networks is shown: of few the least and the most of them.
-pub fn share_of_networks(networks: u64) -> &'static str {
-    if are_few(networks) { "least and most" } else { "5 to 95 % range" }
-}
-
-/// The ends of a boundary over so many networks, as `4.77 to 4.97`, and what they are the ends of.
-pub fn over_networks(ends: &str, networks: u64) -> String {
-    match are_few(networks) {
-        true => format!("{ends} over {networks} networks"),
-        false => format!("{ends}, {} of {networks} networks", share_of_networks(networks)),
-    }
-}
-
-/// The share of so many networks that figures draw, which is read between two networks where they are few.
-pub fn drawn_of_networks(networks: u64) -> &'static str {
-    if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
 }
 
 /// The 5, 50 and 95 percentile of values of which some are only known to lie above or below all that was
@@ -86,11 +68,7 @@ mod tests {
         let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
         let [low, _, high] = spread(&five).map(Result::unwrap);
         assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");
-        let few = "interpolated 5 to 95 % range";
-        assert_eq!([5, 19, 20].map(drawn_of_networks), [few, few, "5 to 95 % range"]);
-        assert_eq!(over_networks("4.77 to 4.97", 19), "4.77 to 4.97 over 19 networks");
-        assert_eq!(over_networks("4.77 to 4.97", 20), "4.77 to 4.97, 5 to 95 % range of 20 networks");
-        assert_eq!(share_of_networks(5), "least and most");
+        assert_eq!([19, 20].map(are_few), [true, false]);
     }
 
     #[test]

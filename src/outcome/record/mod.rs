@@ -15,7 +15,6 @@
 
 mod answer;
 mod cover;
-mod finding;
 mod inputs;
 mod manifest;
 mod practice;
@@ -27,7 +26,6 @@ use serde::{Deserialize, Serialize};
 
 pub use answer::{Model, ShortOf, Statistic, Stopping, Verdict};
 pub use cover::SheetCover;
-pub use finding::{FindingRecord, Topic};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,
@@ -39,8 +37,10 @@ pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
 pub use super::applied::{AppliedRule, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
+pub use super::left_out::LeftOut;
 pub use super::model_limit::ModelLimit;
-pub use super::rule_note::{RuleNote, RuleText};
+pub use super::note::Note;
+pub use super::rule_note::{RuleNote, d15f_between};
 
 /// The whole of `outcome.json`.
 ///
@@ -66,9 +66,8 @@ pub struct Outcome {
     pub practice: Option<Practice>,
     /// What the walk says, without practice.
     pub model: Model,
-    /// What a reader must know besides, in the order of every face.
-    #[serde(default)]
-    pub findings: Vec<FindingRecord>,
+    /// What else to know, in the order of every face.
+    pub notes: Vec<Note>,
     /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
     /// where it has few fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -98,7 +97,7 @@ pub struct Outcome {
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Parts of the program that this scene did not need.
-    pub left_out: Vec<String>,
+    pub left_out: Vec<LeftOut>,
     /// What the model does not contain, for any scene.
     pub model_leaves_out: Vec<ModelLimit>,
     /// What went in, resolved.

@@ -7,7 +7,6 @@ use super::open::{OpenBase, OpenFilter, judged_over};
 use super::rule::{FilterRule, Judged, Pairing, RuleInputs, RuleUnit};
 use crate::gradation::Gradation;
 use crate::outcome::applied::{AppliedRule, WithoutFiner};
-use crate::outcome::rule_note::RuleText;
 
 /// Applies every rule.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
@@ -168,13 +167,12 @@ fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
         at_least: rule.at_least,
         limit_at_most: judged.limit_at_most,
         met: judged.met,
-        needs: RuleText::Of(judged.needs.into_iter().collect()),
-        note: RuleText::Of(judged.notes),
+        needs: judged.needs.into_iter().collect(),
+        notes: judged.notes,
         applies_to: rule.applies_to.into(),
         formula: rule.formula.into(),
         source: rule.source.into(),
         without_finer: judged.without_finer,
-        speaks_against: rule.role.speaks_against().into(),
         filter_curve: String::new(),
         base_curve: String::new(),
     }

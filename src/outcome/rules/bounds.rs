@@ -4,6 +4,7 @@
 use super::*;
 use crate::gradation::Gradation;
 use crate::outcome::applied::{AppliedRule, ValueBound};
+use crate::outcome::record::RuleNote;
 
 /// Rules of a filter, or of a band of several.
 fn rules(filters: &[&[(f64, f64)]]) -> Vec<AppliedRule> {
@@ -25,7 +26,7 @@ fn fines_below_the_finest_sieve_are_at_most_what_passes_it() {
         (bound.value, bound.value_bound, bound.met),
         (Some(2.0), Some(ValueBound::AtMost), Some(true))
     );
-    assert_eq!(bound.note.to_string(), "the finest sieve is 2.36 mm: at most what passes it");
+    assert_eq!(bound.notes, [RuleNote::FinestSieveOfFilter(2.36)]);
     let open = of(FILTER_FINES, &[&stone(6.0)]);
     assert_eq!((open.value, open.value_bound, open.met), (None, None, None));
     let sieved = of(FILTER_FINES, &[&[(0.075, 2.0), (1.0, 30.0), (4.0, 100.0)]]);
@@ -51,19 +52,24 @@ fn what_the_finest_part_hides_is_not_met() {
     }
     let band = of("filter-band", &[&[(0.5, 8.0), (4.0, 100.0)], &[(0.6, 8.0), (5.0, 100.0)]]);
     assert_eq!((band.value_bound, band.met), (Some(ValueBound::AtLeast), None), "{band:?}");
-    assert!(band.note.to_string().ends_with("compared from 8 % finer, as no finer sieve tells"));
+    let from = band.notes.iter().find_map(|note| match *note {
+        RuleNote::BandFrom(percent) => Some(percent),
+        _ => None,
+    });
+    assert!(from.is_some_and(|percent| (percent - 8.0).abs() < 1e-9), "{band:?}");
 }
 
 #[test]
 fn a_shape_index_says_from_where_it_was_judged() {
     let judged = of("kenney-lau", &[&[(0.5, 2.0), (1.0, 30.0), (4.0, 100.0)]]);
-    let said = judged.note.to_string();
+    assert_eq!(judged.met, Some(true));
     assert!(
-        judged.met == Some(true) && said.contains("judged from F = 2.0 % (finest sieve) up to F = 30 %"),
-        "{said}"
+        matches!(judged.notes[..], [RuleNote::ShapeAbovePan(_, from, most)]
+            if (from - 2.0).abs() < 1e-9 && most == 30.0),
+        "{judged:?}"
     );
     let whole = of("kenney-lau", &[&[(0.5, 0.0), (1.0, 30.0), (4.0, 100.0)]]);
-    assert!(whole.note.to_string().contains("%, judged up to F = "), "{whole:?}");
+    assert!(matches!(whole.notes[..], [RuleNote::ShapeAt(..)]), "{whole:?}");
 }
 
 /// Of a band the curve counts whose rest is the coarsest, whichever has the worst index.

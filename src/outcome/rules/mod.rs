@@ -1,8 +1,7 @@
 //! The rules of filter practice, applied to the same two curves and shown beside the verdict.
 //!
 //! One rule is one entry of [`RULES`]: what it is for, where it applies, its limit and its source. A rule
-//! that lacks an input says what it needs; one that was not made for these soils has no result. Its role says
-//! which verdicts it speaks against where it is not kept: [`RuleRole::speaks_against`].
+//! that lacks an input says what it needs; one that was not made for these soils has no result.
 
 mod all;
 mod apply;
@@ -28,9 +27,6 @@ pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT,
 pub(crate) use open::{OpenBase, sieved_limit};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests, tested_range};
 pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
-
-#[cfg(doc)]
-use super::applied::RuleRole;
 
 #[cfg(test)]
 mod bounds;

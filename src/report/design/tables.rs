@@ -2,43 +2,43 @@
 
 use maud::{Markup, Render, html};
 
-use super::words::{in_band, of_walk, ratio, sentence, shown_in};
-use crate::outcome::design::band::{Band, SetBy};
-use crate::outcome::design::products::to_be_checked;
-use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow, share_of_networks};
-use crate::outcome::record::{AppliedRule, RuleRole};
+use super::words::{in_band, ratio, size_unit};
+use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
+use crate::outcome::record::Note;
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
-use crate::report::numbers::{rounded_down, rounded_up, significant, threshold, trimmed, whole};
-use crate::report::rules;
-use crate::report::shell::{clean, fact, unbroken};
+use crate::report::numbers::{rounded_down, significant, threshold, trimmed, whole};
+use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
-use crate::verdict::fitting::{FITS, MAY_DRAIN};
-use crate::verdict::words::capital;
+use crate::words::base_size;
+use crate::words::design::share_of_networks;
+use crate::words::sentence;
 
-/// The boundaries of the walk alone, a row a density and thickness.
+/// The boundaries of the model, a row a density and thickness.
 pub(super) fn boundaries(design: &Design) -> Markup {
-    let of_base = design.base.size().map_or(String::new(), |base| format!(" ({})", base.words()));
+    let of_base = design
+        .base
+        .size()
+        .map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(design))));
     // A boundary of no erosion is stated as a limit.
-    let unit = shown_in(design, "mm");
-    let within: fn(f64) -> String = if design.inverse { rounded_up } else { rounded_down };
-    let limit = |mm: f64| unit.limit(mm, "mm", design.inverse);
+    let unit = size_unit(design);
+    let limit = |mm: f64| unit.limit(mm, "mm", false);
     let found = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
-    let cell = |boundary: Option<&Boundary>, note: Option<&String>, is_limit: bool| {
-        let end = if is_limit { within } else { significant };
+    let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
+        let end = if is_limit { rounded_down } else { significant };
         html! {
             @match boundary {
                 Some(boundary) => {
-                    (of_walk(design, &ratio(boundary.median)))
+                    (ratio(boundary.median))
                     (in_band(boundary.low, boundary.high, ratio))
-                    @for range in [&boundary.d15f_mm, &boundary.d85b_mm].into_iter().flatten() {
+                    @if let Some(range) = &boundary.d15f_mm {
                         br; (if is_limit { limit(range.median) } else { found(range.median) })
                         (in_band(range.low, range.high, end))
                     }
                 },
                 None => "no number",
             }
-            @if let Some(note) = note { br; span.small { (sentence(note)) } }
+            @for note in notes { br; span.small { (clean(&sentence(note, unit))) } }
         }
     };
     let thick = |row: &DesignRow| {
@@ -52,8 +52,7 @@ pub(super) fn boundaries(design: &Design) -> Markup {
                 ", median of " (whole(design.replicates)) " networks (in brackets "
                 (share_of_networks(design.replicates)) ")"
             }
-            "; below it the "
-            @if design.inverse { "finest D85B" } @else { "D15F" } " in mm where sizes have a unit."
+            "; below it the D15F in mm where sizes have a unit."
         }
         (Table::of(&design.boundaries).class("study")
             .name("Density", |row| clean(&row.name()))
@@ -62,11 +61,11 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             })
             .text("No erosion in the model up to", |row| {
                 let [no_erosion, _] = row.shown();
-                cell(no_erosion.as_ref(), row.no_erosion_note.as_ref(), true)
+                cell(no_erosion.as_ref(), &row.no_erosion_notes, true)
             })
             .text("Continuing erosion from", |row| {
                 let [_, continuing] = row.shown();
-                cell(continuing.as_ref(), row.continuing_note.as_ref(), false)
+                cell(continuing.as_ref(), &row.continuing_notes, false)
             })
             .number("Not monotone", |row| {
                 format!("{} of {}", row.not_monotone, row.networks.len())
@@ -81,119 +80,6 @@ pub(super) fn boundaries(design: &Design) -> Markup {
                  draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
                 " of the base at a smaller D15F than the boundary."
             }
-        }
-    }
-}
-
-/// The band of each row.
-pub(super) fn bands(design: &Design) -> Markup {
-    let rows: Vec<&DesignRow> = design.boundaries.iter().filter(|row| row.band.is_some()).collect();
-    let size = |row: &DesignRow, at_least: bool, of: fn(&Band) -> Option<f64>| {
-        let band = row.band.as_ref().expect("rows without one were left out");
-        let limit = |value| shown_in(design, &band.unit).limit(value, &band.unit, at_least);
-        of(band).map_or_else(|| "–".to_owned(), limit)
-    };
-    let set_by = |row: &DesignRow| match row.band.as_ref().map(|band| band.greatest) {
-        Some(greatest) if row.band.as_ref().and_then(|band| band.practice) == Some(greatest) => "practice",
-        _ => "the walk",
-    };
-    html! {
-        @if !rows.is_empty() {
-            p {
-                "D15F from the least that drains the base to the greatest that both allow: the walk, in \
-                 which \
-                 all but 5 % of networks show no erosion, and the strictest rule of retention. The band to \
-                 specify lies within it and may be narrower. It is empty \
-                 if the least exceeds the greatest. If the constriction curve is known only within a range, \
-                 the whole range must hold."
-            }
-            (Table::of(rows.iter().copied()).class("study")
-                .name("Density, thickness", |row| clean(&format!("{}, {}", row.density, row.thickness)))
-                .number("Least (drains)", |row| {
-                    let is_open = row.band.as_ref().is_some_and(|band| band.least_at_most);
-                    let least = size(row, true, |band| Some(band.least));
-                    if is_open { format!("at most {least}, not known") } else { least }
-                })
-                .number("Greatest", |row| size(row, false, |band| Some(band.greatest)))
-                .text("Set by", |row| set_by(row))
-                .number("Practice allows", |row| size(row, false, |band| band.practice))
-                .text("Result", |row| match row.band.as_ref().is_some_and(|band| band.is_empty) {
-                    true => html! { span.breaks { "✗ empty" } },
-                    false => html! { span.keeps { "✓" } },
-                })
-                .render())
-            @for row in &rows {
-                @if let Some(band) = row.band.as_ref().filter(|band| band.is_empty) {
-                    p { b { (clean(&capital(&band.said))) } "." }
-                }
-            }
-        }
-    }
-}
-
-/// Standard products beside the narrowest band.
-pub(super) fn products(design: &Design) -> Markup {
-    let yes = |holds: bool| match holds {
-        true => html! { span.keeps { "✓" } },
-        false => html! { span.breaks { "✗" } },
-    };
-    let sources = design.products.iter().map(|of| (of.name.as_str(), of.source.as_str()));
-    let to_check = to_be_checked(sources);
-    html! {
-        @if !design.products.is_empty() {
-            p {
-                "A product fits if the D15 of both sides of its specification lies within the narrowest band \
-                 and practice agrees. D15 is interpolated between sieves. The products’ own shapes were not \
-                 walked: another shape holds to another D15."
-                @if design.fits_by_practice() {
-                    " The limit of practice sets the answer: a product fits by practice. "
-                    (design.walk_beside_practice())
-                } @else {
-                    " No product is said to fit here, because the answer is in doubt."
-                }
-            }
-            (Table::of(&design.products)
-                .class("products")
-                .name("Product", |fit| clean(&fit.name))
-                .number("D15, fine to coarse side (mm)", |fit| {
-                    format!("{} to {}", significant(fit.d15_mm[0]), significant(fit.d15_mm[1]))
-                })
-                .text("Drains", |fit| match fit.may_drain {
-                    true => html! { (MAY_DRAIN) },
-                    false => yes(fit.drains),
-                })
-                .text("Holds (walk and practice)", |fit| yes(fit.holds))
-                .text("Practice", |fit| fit.practice.map_or_else(|| html! { "–" }, yes))
-                .number("Result", |fit| match &*design.product_in_words(fit) {
-                    FITS => html! { b { (FITS) } },
-                    said => html! { (said) },
-                })
-                .render())
-            @if let Some(said) = to_check { p.small { (clean(&said)) } }
-        }
-    }
-}
-
-/// Whose answer the rules are read at.
-fn read_at(design: &Design) -> &'static str {
-    match (design.answer().set_by, design.least_held()) {
-        (SetBy::Practice, _) => ", the greatest that practice allows",
-        (SetBy::Walk, Some(_)) => ", the coarsest that holds in the model",
-        (SetBy::Walk, None) => "",
-    }
-}
-
-/// Every rule of practice, at the answer.
-pub(super) fn practice(design: &Design) -> Markup {
-    let rules: Vec<&AppliedRule> = design.rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
-    html! {
-        @if !rules.is_empty() {
-            p {
-                "For a filter with D15F/D85B " (ratio(design.rules_at))
-                (read_at(design)) "."
-                @if let Some(said) = design.judged_filter_in_words() { " " (unbroken(&said)) }
-            }
-            (rules::table(&rules, shown_in(design, &design.unit)))
         }
     }
 }
@@ -228,7 +114,7 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
-            @if let Some(base) = design.base.size() { (fact("D85B", base.words())) }
+            @if let Some(base) = design.base.size() { (fact("D85B", base_size(&base, size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))

@@ -11,7 +11,7 @@ use rust_xlsxwriter::XlsxError;
 
 use super::error::ReportError;
 use super::folder::RunFolder;
-use crate::outcome::design::{Design, Specification};
+use crate::outcome::design::Specification;
 use crate::store::write_whole;
 use sheet::{Sheet, is_before_1970, workbook};
 
@@ -40,20 +40,19 @@ pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
     bytes(&folder.join(VERDICT), "voidwalk: verdict", &verdict::sheets(&RunFolder::read(folder)?))
 }
 
-/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. Of a design, whose
-/// answer it rests on, it says how far that can be relied on. With a clock before 1970 there is none.
+/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. With a clock
+/// before 1970 there is none.
 ///
 /// # Errors
 /// What cannot be written.
 pub(super) fn write_specification_workbook(
     folder: &Path,
     specification: &Specification,
-    design: Option<&Design>,
 ) -> Result<(), ReportError> {
     if is_before_1970() {
         return Ok(());
     }
-    let (path, sheets) = (folder.join(SPECIFICATION), specification::sheets(specification, design));
+    let (path, sheets) = (folder.join(SPECIFICATION), specification::sheets(specification));
     Ok(write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?)
 }
 

@@ -1,8 +1,11 @@
 //! The workbook of a specification.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::design::specification::ProductMargin;
-use crate::outcome::design::{Design, Specification};
+use crate::outcome::design::Specification;
+use crate::outcome::numbers::SizeUnit;
+use crate::words::products::{not_kept, product as product_result};
+use crate::words::specification::{beside_limits, no_band, step_rows, still_to_set, without_margin};
+use crate::words::{dispersive_limit, row_note};
 
 /// What the page says too.
 const CAUTIONS: [(&str, &str); 3] = [
@@ -11,34 +14,29 @@ const CAUTIONS: [(&str, &str); 3] = [
     ("Use", "It does not replace a filter test or a designer’s judgement."),
 ];
 
-/// Its sheets; `design` is the walk whose answer it rests on.
-pub(super) fn sheets(of: &Specification, design: Option<&Design>) -> Vec<Sheet> {
-    vec![summary(of, design), limits(of), band(of), products(of, design), steps(of), base(of)]
+/// Its sheets.
+pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
+    vec![summary(of), limits(of), band(of), products(of), steps(of), base(of)]
 }
 
-fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
+fn summary(of: &Specification) -> Sheet {
     let d15 = of.band.as_ref().map(|band| band.d15_mm());
     let mut sheet = Sheet::new("Specification", &["Item", "Value", "Unit"]);
     sheet.item("Base", &of.base, "");
     sheet.item("Dispersive", of.dispersive, "");
     sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
     sheet.item("Maximum D15F, which retains the base", of.d15f_max_mm, "mm");
-    let dispersive = of.if_dispersive.map(|of| of.words_of_base());
+    let mm = SizeUnit::Mm;
+    let dispersive = of.if_dispersive.map(|limit| format!("D15F {}", dispersive_limit(limit, mm)));
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
     sheet.item("Maximum D15F set by", of.set_by(), "");
-    sheet.item("Filter as given", design.and_then(|design| design.answer().washout), "");
-    sheet.item("Margin", of.without_margin_in_words(), "");
-    sheet.item("Walk", design.and_then(|design| design.answer().walk), "");
+    sheet.item("Margin", without_margin(of, mm), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
-    sheet.item("No band, because", of.no_band.as_deref(), "");
-    of.findings.iter().for_each(|found| sheet.item("Warning", found.words(), ""));
-    sheet.item("Still to be set", of.still_to_set(), "");
-    let basis = match design {
-        Some(_) => "By the rules of practice and a walk.",
-        None => "By the rules of practice alone, without a walk.",
-    };
-    sheet.item("Basis", basis, "");
+    sheet.item("No band, because", of.no_band.as_ref().map(|why| no_band(why, mm)), "");
+    of.notes.iter().for_each(|row| sheet.item("Warning", row_note(row, SizeUnit::Mm), ""));
+    sheet.item("Still to be set", still_to_set(of, mm), "");
+    sheet.item("Basis", "By the rules of practice alone, without a walk.", "");
     CAUTIONS.iter().for_each(|(item, caution)| sheet.item(item, *caution, ""));
     sheet.item("voidwalk", &of.version, "");
     sheet
@@ -47,7 +45,7 @@ fn summary(of: &Specification, design: Option<&Design>) -> Sheet {
 fn limits(of: &Specification) -> Sheet {
     let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)", "Note"];
     // Said once, beside the first sieve.
-    let mut note = of.beside_limits();
+    let mut note = beside_limits(of, SizeUnit::Mm);
     let mut sheet = Sheet::new("Limits", &headings);
     for limit in &of.limits {
         sheet.row([
@@ -69,15 +67,7 @@ fn band(of: &Specification) -> Sheet {
     sheet
 }
 
-fn products(of: &Specification, design: Option<&Design>) -> Sheet {
-    let fits = |of: &ProductMargin| design.map_or_else(|| of.fits(), |design| design.says_fit(&of.product));
-    let result = |margin: &ProductMargin| match design {
-        None => Some(of.product_in_words(margin)),
-        Some(design) => {
-            let fit = design.products.iter().find(|fit| fit.name == margin.product);
-            fit.map(|fit| design.product_in_words(fit))
-        }
-    };
+fn products(of: &Specification) -> Sheet {
     let headings = [
         "Product",
         "D15 of the fine side (mm)",
@@ -97,9 +87,9 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
             product.d15_coarse_mm.into(),
             product.drains_by.into(),
             product.holds_by.into(),
-            fits(product).into(),
-            result(product).into(),
-            (&product.not_kept).into(),
+            product.fits().into(),
+            product_result(of, product).into(),
+            not_kept(&product.not_kept).into(),
             (&product.source).into(),
         ]);
     }
@@ -109,7 +99,7 @@ fn products(of: &Specification, design: Option<&Design>) -> Sheet {
 fn steps(of: &Specification) -> Sheet {
     let headings = ["Step", "What is done", "Quantity", "Value", "Unit", "Formula", "Note", "Source"];
     let mut sheet = Sheet::new("Steps", &headings);
-    for row in of.steps.iter().flat_map(|step| step.rows()) {
+    for row in of.steps.iter().flat_map(step_rows) {
         sheet.row([
             row.step.into(),
             row.does.into(),

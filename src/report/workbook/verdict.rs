@@ -1,10 +1,14 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
+use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
-use crate::verdict::rule_words::result_of;
+use crate::verdict::rule_result::result_of;
+use crate::words::rule::result;
+use crate::words::rule_note::rule_notes;
+use crate::words::{first_lines, sentence};
 
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
@@ -26,7 +30,7 @@ fn unit(outcome: &Outcome) -> &'static str {
 
 fn verdict(outcome: &Outcome) -> Sheet {
     let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
-    for (name, said) in outcome.first_lines() {
+    for (name, said) in first_lines(outcome, SizeUnit::Mm) {
         sheet.item(name, said, "");
     }
     let practice = outcome.practice.as_ref();
@@ -43,8 +47,8 @@ fn verdict(outcome: &Outcome) -> Sheet {
         let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
         statistic(&mut sheet, &of, &run.eroded_mass_fraction);
     }
-    for (index, finding) in outcome.findings.iter().enumerate() {
-        sheet.item(&format!("Finding {}", index + 1), &finding.sentence, "");
+    for (index, note) in outcome.notes.iter().enumerate() {
+        sheet.item(&format!("Note {}", index + 1), sentence(note, SizeUnit::Mm), "");
     }
     sheet
 }
@@ -128,7 +132,7 @@ fn rules(outcome: &Outcome) -> Sheet {
 }
 
 fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
-    let notes: Vec<String> = [&rule.note, &rule.needs].iter().map(ToString::to_string).collect();
+    let notes: Vec<String> = [&rule.notes, &rule.needs].map(|notes| rule_notes(notes, SizeUnit::Mm)).into();
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
     let value_is = match rule.value_bound {
         Some(ValueBound::AtMost) => "the most that it can be",
@@ -153,7 +157,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
         (&rule.unit).into(),
         limit_is.into(),
         rule.applies.into(),
-        result_of(rule).words().into(),
+        result(result_of(rule)).into(),
         // A boundary of continuing erosion that is not reached is no limit that is met.
         rule.met.filter(|met| rule.role != RuleRole::Continuation || !met).into(),
         (&rule.formula).into(),

@@ -7,7 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
-use crate::outcome::record::{FindingRecord, Outcome};
+use crate::outcome::comparison::Comparison;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
@@ -20,6 +22,7 @@ use crate::serve::live::Live;
 use crate::study::batch::{self, BatchPlan};
 use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
+use crate::words::{first_lines, lines_of, sentence};
 
 /// What is done with results that are whole.
 pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
@@ -110,7 +113,7 @@ impl WorkContext {
                     on_cases: &|all, done| live().cases(all, done),
                     on_case: &|case, event| live().tell_case(case, event),
                 };
-                Ok(serde_json::to_value(compare::run(plan, &options, false, &callbacks)?)?)
+                of_comparison(&compare::run(plan, &options, false, &callbacks)?)
             }
             Work::Batch(plan) => {
                 // Outcomes are read before the page is kept waiting.
@@ -158,13 +161,29 @@ fn often() -> CheckpointInterval {
     "1min".parse().unwrap_or_default()
 }
 
+/// What the page shows of a comparison.
+///
+/// # Errors
+/// A number that is none.
+fn of_comparison(comparison: &Comparison) -> Result<Value, RunError> {
+    let mut value = serde_json::to_value(comparison)?;
+    let cases = value["cases"].as_array_mut().into_iter().flatten();
+    for (shown, case) in cases.zip(&comparison.cases) {
+        let unit = SizeUnit::of(case.scale_free, comparison.inches);
+        shown["lines"] = json!(lines_of(case.headline, case.practice.as_ref(), &case.model, unit));
+        shown["notes"] = json!(case.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>());
+    }
+    Ok(value)
+}
+
 /// What the page shows of an outcome.
 pub fn of_run(outcome: &Outcome) -> Value {
+    let unit = SizeUnit::of(outcome.inputs.scale_free, false);
     json!({
-        "lines": outcome.first_lines(),
+        "lines": first_lines(outcome, unit),
         "model": outcome.model.class.words(),
         "colour": colour_of(outcome),
-        "findings": outcome.findings.iter().map(FindingRecord::with_to_do).collect::<Vec<_>>(),
+        "notes": outcome.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),
     })

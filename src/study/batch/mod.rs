@@ -24,6 +24,7 @@ use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, shown};
 use crate::store::Folder;
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
+use crate::words::batch::walked_columns;
 
 /// Folder of the campaign, inside the batch's.
 const WALKS: &str = "pairs";
@@ -47,7 +48,7 @@ pub fn run(
 ) -> Result<WalkedBatch, RunError> {
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, work, walked| {
         let batch = plan.walked(folder, work, walked)?;
-        folder.write(TABLE, &WalkedRow::columns(SizeUnit::Mm).csv(&batch.rows))?;
+        folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
         Ok(batch)
     })
 }

@@ -10,8 +10,9 @@ use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
-use crate::verdict::batch::{EXCHANGED, MAY_GOVERN, NAMED, governing};
+use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
+use crate::words::batch::{EXCHANGED, MAY_GOVERN};
 
 /// Voids across the lattice of a first look, as `voidwalk design` searches.
 const ACROSS: u64 = 20;
@@ -116,7 +117,6 @@ impl BatchPlan {
         let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
         for (at, row) in self.rows.iter_mut().enumerate() {
             row.rules.filter.clone_from(&filters[at / of_filter]);
-            row.rules.note = said(&row.rules.note);
             row.not_walked = said(&row.not_walked);
             let case = self.campaign.cases.iter_mut().find(|case| case.name == self.cases[at]);
             let levels = case.into_iter().flat_map(|case| &mut case.levels);

@@ -15,12 +15,13 @@ use std::path::{Path, PathBuf};
 
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
-use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::comparison::Comparison;
 use crate::outcome::numbers::SizeUnit;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;
 use crate::verdict::practice::counts_as;
+use crate::words::comparison::{case_columns, pair_columns};
 
 /// Folder of the campaign, inside the comparison's.
 const WALKS: &str = "walks";
@@ -48,8 +49,8 @@ pub fn run(
     campaign::check(&plan.campaign, &CampaignOptions { out: options.out.join(WALKS), ..options.clone() })?;
     plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, _, walked| {
         let comparison = plan.compared(folder, walked)?;
-        folder.write(CASES, &ComparedCase::columns(SizeUnit::Mm).csv(&comparison.cases))?;
-        folder.write(PAIRS, &ComparedPair::columns().csv(&comparison.pairs))?;
+        folder.write(CASES, &case_columns(SizeUnit::Mm).csv(&comparison.cases))?;
+        folder.write(PAIRS, &pair_columns().csv(&comparison.pairs))?;
         Ok(comparison)
     })
 }
@@ -107,9 +108,6 @@ impl ComparePlan {
         (comparison.cover, comparison.inches) = (self.cover.clone().dated(day), self.inches);
         for (case, (.., outcome)) in comparison.cases.iter_mut().zip(&outcomes) {
             case.by_practice = counts_as(&outcome.rules);
-            let lines = outcome.first_lines().into_iter();
-            case.first_lines = lines.map(|(name, words)| (name.to_owned(), words)).collect();
-            case.found = outcome.findings.iter().map(|finding| finding.sentence.clone()).collect();
         }
         Ok(comparison)
     }

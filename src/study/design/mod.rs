@@ -1,5 +1,6 @@
-//! How coarse may a filter be? Finds, for a base and a filter's shape, the D15F/D85B at which no erosion
-//! turns into some, and some into continuing; and the band of a specification between drainage and retention.
+//! How coarse may a filter be? Makes the specification of a filter for a base by the rules of practice alone
+//! and, apart from it, finds the D15F/D85B at which, in the model of a filter of some shape, no erosion turns
+//! into some, and some into continuing.
 //!
 //! # Method
 //! One packing a shape and density. Packings are free of scale: a filter s times as large holds a base as it
@@ -13,11 +14,10 @@
 //! multiples of D50F.
 
 #[cfg(test)]
-mod answer_tests;
+mod finding_tests;
 mod judged;
 mod options;
 mod plan;
-mod practice;
 #[cfg(test)]
 mod range_tests;
 mod row;
@@ -150,17 +150,10 @@ impl DraftedRow {
         if has_size && d85 > NO_BASE_MM {
             return refuse(no_base(d85));
         }
-        if matches!(wanted.thickness, Thickness::Mm(_)) && !has_size && !options.inverse {
+        if matches!(wanted.thickness, Thickness::Mm(_)) && !has_size {
             return refuse(
                 "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
                  multiples of D50F"
-                    .into(),
-            );
-        }
-        if matches!(wanted.thickness, Thickness::Mm(_)) && options.inverse && !filter_has_size {
-            return refuse(
-                "a thickness in mm needs a filter in mm for the finest base that it holds: a sieve table, or \
-                 filter.d0_mm"
                     .into(),
             );
         }
@@ -174,7 +167,6 @@ impl DraftedRow {
             base,
             d85_mm: has_size.then_some(d85),
             filter_has_size,
-            inverse: options.inverse,
             limits: limits(options),
             end_of: None,
             ends: Vec::new(),
@@ -225,8 +217,7 @@ fn work(rows: &[Row], bracket: [f64; 2]) -> String {
         let base = row.stated.gradation.points();
         let base: Vec<_> = base.iter().map(|point| (point.size, point.percent)).collect();
         let (thickness, d85) = (row.wanted.thickness, row.d85_mm);
-        let sizes = (row.inverse, row.filter_has_size);
-        format!("{} {thickness:?} {base:?} {d85:?} {sizes:?}", row.case.fingerprint())
+        format!("{} {thickness:?} {base:?} {d85:?} {}", row.case.fingerprint(), row.filter_has_size)
     };
     let rows: Vec<String> = rows.iter().map(of_row).collect();
     kept::hash_of(&format!("{METHOD} {bracket:?} {rows:?}"))

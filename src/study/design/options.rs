@@ -27,12 +27,10 @@ pub struct DesignOptions {
     /// Settings of the built-in scene, as `base.cu=3`.
     pub settings: Vec<String>,
     /// Whether the base is walked as it was sampled. Without it a base with a size of its own is walked as
-    /// filter practice regrades it, where `settings` do not say `base.regrade`; that of the inverse never is.
+    /// filter practice regrades it, where `settings` do not say `base.regrade`.
     pub as_sampled: bool,
     /// Whether base and filter are taken as they are given, though their sizes look exchanged.
     pub as_given: bool,
-    /// Whether the finest base that the filter holds is looked for, the filter being as large as it is.
-    pub inverse: bool,
     /// D15F/D85B between which boundaries are searched.
     pub bracket: [f64; 2],
     /// The sieves at which the limits of the specification are stated.
@@ -56,7 +54,6 @@ impl Default for DesignOptions {
             settings: Vec::new(),
             as_sampled: false,
             as_given: false,
-            inverse: false,
             bracket: BRACKET,
             sieves: SieveSeries::default(),
             out: "voidwalk-design".into(),

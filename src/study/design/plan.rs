@@ -152,13 +152,13 @@ fn one(
         Extent::Copies(_) | Extent::Usual => None,
     });
     let is_lattice = matches!(scene.network.source(), NetworkSource::Cubic(_));
-    if let (Some(Thickness::Mm(_)), false, false) = (thickness, is_lattice, options.inverse) {
+    if matches!(thickness, Some(Thickness::Mm(_))) && !is_lattice {
         return Err(RunError::refused(
             "a thickness in mm goes with a lattice: of a packing's own voids the filter's size says how many \
              copies there are, and it is searched for; give network.copies or a multiple of D50F",
         ));
     }
-    if matches!(thickness, Some(Thickness::Mm(_))) && !options.inverse {
+    if matches!(thickness, Some(Thickness::Mm(_))) {
         // How many layers that is hangs on the ratio.
         scene.network.set_layers(crate::scene::USUAL_LAYERS);
     }
@@ -197,9 +197,7 @@ fn one(
     Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
 }
 
-/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise. A
-/// base that
-/// is scaled has none: practice would regrade each of its sizes elsewhere.
+/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise.
 fn regrade(scene: &mut Scene, options: &DesignOptions) -> Result<(), RunError> {
     if let (Some(said), true) = (scene.base.regrade, options.as_sampled) {
         return Err(RunError::Refused(format!(
@@ -212,7 +210,7 @@ fn regrade(scene: &mut Scene, options: &DesignOptions) -> Result<(), RunError> {
         BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
         BaseGradation::Single(_) => false,
     };
-    if scene.base.regrade.is_none() && has_size && !options.inverse && !options.as_sampled {
+    if scene.base.regrade.is_none() && has_size && !options.as_sampled {
         scene.base.regrade = Some(Regrade::Practice);
     }
     Ok(())

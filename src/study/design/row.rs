@@ -9,12 +9,12 @@ use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, repli
 use crate::gradation::Gradation;
 use crate::network::{Network, Passage};
 use crate::outcome::design::Beyond;
+use crate::outcome::record::Note;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::callbacks::Callbacks;
 use crate::run::erosion::eroded;
 use crate::run::error::RunError;
 use crate::scene::{Amount, LibraryDensity};
-use crate::verdict::{Finding, finding};
 use crate::walk::{Clogged, PlainExits};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
@@ -35,8 +35,6 @@ pub(super) struct Row {
     pub d85_mm: Option<f64>,
     /// Whether the filter has a size of its own.
     pub filter_has_size: bool,
-    /// Whether the base is scaled, and the filter is as large as it is.
-    pub inverse: bool,
     /// What the walks may take.
     pub limits: ResourceLimits,
     /// The density of which this is an end of the range in which its constriction curve is known.
@@ -66,11 +64,6 @@ impl Row {
         self.case.curve_ends.iter().map(of).collect()
     }
 
-    /// Whether filter and base have sizes at a ratio.
-    pub fn has_size(&self) -> bool {
-        if self.inverse { self.filter_has_size } else { self.d85_mm.is_some() }
-    }
-
     /// D15F in the case's own unit.
     pub fn d15f(&self) -> f64 {
         self.case.filter.d(15.0).unwrap_or(f64::NAN)
@@ -85,10 +78,7 @@ impl Row {
 
     /// How much larger the filter is than the case has it at a ratio, where the base has a size.
     pub fn factor(&self, ratio: f64) -> Option<f64> {
-        match self.inverse {
-            true => Some(1.0),
-            false => Some(ratio * self.d85_mm? / self.d15f()),
-        }
+        Some(ratio * self.d85_mm? / self.d15f())
     }
 
     /// Layers at a ratio, where they hang on it.
@@ -101,8 +91,7 @@ impl Row {
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.wanted.thickness else { return None };
         let layer = self.case.filter.d_by_number(50.0).unwrap_or(self.case.unit_mm);
-        let layer = layer * self.factor(ratio)?;
-        (!self.inverse).then_some((mm, layer))
+        Some((mm, layer * self.factor(ratio)?))
     }
 
     /// How thick (mm) the one layer is that is walked at a ratio where less than half of one was asked for.
@@ -111,10 +100,10 @@ impl Row {
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// The same as a finding.
-    pub fn thicker(&self, ratio: f64) -> Option<Finding> {
-        let layer = self.thicker_than_asked(ratio)?;
-        Some(finding::layer_thicker(ratio, layer, &self.wanted.thickness.to_string()))
+    /// The same as a note.
+    pub fn thicker(&self, ratio: f64) -> Option<Note> {
+        let layer_mm = self.thicker_than_asked(ratio)?;
+        Some(Note::LayerThicker { ratio, layer_mm, thickness: self.wanted.thickness.to_string() })
     }
 
     /// The case at a ratio.

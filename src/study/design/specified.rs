@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::gradation::{Gradation, curves_in_file};
-use crate::outcome::design::{SieveSeries, Specification, SpecificationStep};
+use crate::outcome::design::{SieveSeries, Specification};
 use crate::outcome::record::SheetCover;
 use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
@@ -15,6 +15,8 @@ use crate::study::days::today;
 use crate::study::inputs::input_files;
 use crate::study::kept;
 use crate::verdict::SpecificationOptions;
+use crate::words::products::columns;
+use crate::words::specification::step_rows;
 
 /// A base coarser than this (D85, mm) is none: its sizes are in another unit.
 pub(super) const NO_BASE_MM: f64 = 100.0;
@@ -52,7 +54,7 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
     let (dispersive, finer, sieves) = (options.dispersive, options.finer, options.sieves);
     let said = dispersive.then_some(true);
-    let specified = SpecificationOptions { dispersive: said, finer, sieves, walked_mm: None };
+    let specified = SpecificationOptions { dispersive: said, finer, sieves };
     let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
     let cover = options.cover.clone().dated(today());
     let inputs = input_files([options.base.as_path()])?;
@@ -105,8 +107,8 @@ pub(super) fn no_base(d85: f64) -> String {
 /// # Errors
 /// What the system says.
 pub(super) fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
-    let steps: Vec<_> = specification.steps.iter().flat_map(SpecificationStep::rows).collect();
+    let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
     folder.write("specification.csv", &csv_of(&specification.limits))?;
     folder.write("specification_steps.csv", &csv_of(&steps))?;
-    folder.write("specification_products.csv", &csv_of(&specification.products))
+    folder.write("specification_products.csv", &columns().csv(&specification.products))
 }

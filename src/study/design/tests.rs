@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::*;
 use crate::case::Case;
 use crate::gradation::Gradation;
-use crate::outcome::design::DesignFinding;
 use crate::outcome::design::DesignRow;
+use crate::outcome::design::RowNote;
 use crate::run::prepare::PrepareOptions;
 use crate::run::walk_case;
 use crate::scene::Scene;
@@ -84,8 +84,8 @@ fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
     };
     for (cu, across, in_doubt) in [("base.cu=3", 10, true), ("base.cu=1.5", 40, false)] {
         let design = of(cu, across);
-        let is_doubt = design.findings.iter().any(|found| found.finding.id == "unsteady");
-        assert_eq!(is_doubt, in_doubt, "{:?}", design.findings);
+        let is_doubt = design.notes.iter().any(|row| row.note.id() == "unsteady");
+        assert_eq!(is_doubt, in_doubt, "{:?}", design.notes);
     }
 }
 
@@ -108,10 +108,10 @@ fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     // A bracket beside the boundary gives no number.
     let (beside, _) = of("beside", [0.8, 1.2], 2);
     let row = &beside.boundaries[0];
-    assert!(row.no_erosion.is_none() && row.continuing.is_none() && row.band.is_none());
-    assert!(row.no_erosion_note.as_ref().unwrap().contains("Less than 7.5 % of the base erodes up to"));
+    assert!(row.no_erosion.is_none() && row.continuing.is_none());
+    assert_eq!(row.no_erosion_notes[0].id(), "holds_to_end");
     assert!(row.held().is_some_and(|ratio| (1.2..1.3).contains(&ratio)), "{row:?}");
-    assert!(row.band_note.as_ref().unwrap().contains("hold as far as was searched"), "{row:?}");
+    assert!(beside.notes.iter().any(|row| row.note.id() == "holds_everywhere"), "{:?}", beside.notes);
 }
 
 /// Scans with whole runs of scenes, in steps of 0.5 %: another way to make the base, to walk and to look. Of
@@ -197,34 +197,40 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
         (layers.no_erosion.as_ref().unwrap().d15f_mm.unwrap().median, layers.thickness_mm.unwrap());
     let filter = Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap();
     assert!((mm / (9.0 * filter.d_by_number(50.0).unwrap()) - 1.0).abs() < 1e-9);
-    // The band, the rules and the products know millimetres.
-    let band = layers.band.as_ref().unwrap();
-    assert!(band.unit == "mm" && band.greatest <= d15f && band.least > 0.0);
-    assert_eq!((design.unit.as_str(), design.products.is_empty()), ("mm", false));
 }
 
+/// The specification is that of practice alone, whatever was walked, and the boundaries need no practice.
 #[test]
-fn the_finest_base_that_a_filter_holds_has_the_same_ratio() {
+fn practice_and_model_do_not_change_each_other() {
     let folder = tempfile::tempdir().unwrap();
-    let forth = found(&options(&folder.path().join("forth"), &["base.cu=2"]));
-    let back = DesignOptions {
-        inverse: true,
-        ..options(&folder.path().join("back"), &["base.cu=2", "filter.d0_mm=2"])
+    let points = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+    let base = of_base(folder.path(), "base.csv", &points);
+    let of = |name: &str, settings: &[&str]| {
+        let options = tiny(&folder.path().join(name), &[&["replicates=2"], settings].concat());
+        let settings = options.settings.iter().filter(|of| *of != "base.cu=1.5").cloned().collect();
+        found(&DesignOptions { base: Some(base.clone()), settings, bracket: [0.8, 6.0], ..options })
     };
-    let back = found(&back);
-    let (one, other) = (&forth.boundaries[0], &back.boundaries[0]);
-    let off = |a: f64, b: f64| (a / b - 1.0).abs();
-    for (a, b) in one.networks.iter().zip(&other.networks) {
-        assert!(off(a.no_erosion.unwrap(), b.no_erosion.unwrap()) < 0.006, "{a:?} {b:?}");
-    }
-    let boundary = other.no_erosion.as_ref().unwrap();
-    let d15f = 2.0 * libm::pow(1.5, 0.3);
-    assert!(off(boundary.d85b_mm.unwrap().median * boundary.median, d15f) < 1e-12);
-    assert!(boundary.d15f_mm.is_none() && other.band.is_none() && back.inverse);
-    // Without a size of its own a filter holds a base without one.
-    assert!(one.no_erosion.as_ref().unwrap().d15f_mm.is_none() && forth.unit == "D85B");
-    let band = one.band.as_ref().unwrap();
-    assert!(band.unit == "D85B" && off(band.practice.unwrap(), 4.0) < 1e-12, "{band:?}");
+    let [thin, thick] =
+        [("thin", "network.nz=3"), ("thick", "network.nz=9")].map(|(name, nz)| of(name, &[nz]));
+    assert_ne!(thin.boundaries, thick.boundaries);
+    assert_eq!(thin.specification, thick.specification);
+    let specify = SpecifyOptions {
+        base: base.clone(),
+        dispersive: false,
+        finer: false,
+        sieves: crate::outcome::design::SieveSeries::default(),
+        cover: crate::outcome::record::SheetCover::default(),
+        inches: false,
+        out: folder.path().join("steps"),
+        overwrite: false,
+    };
+    let alone = super::specify(&specify, &Callbacks::default()).unwrap();
+    let beside = thin.specification.clone().unwrap();
+    assert_eq!((&alone.steps, &alone.band, &alone.products), (&beside.steps, &beside.band, &beside.products));
+    // A dispersive base has other limits, and the same boundaries.
+    let dispersive = of("dispersive", &["network.nz=3", "base.dispersive=true"]);
+    assert_eq!(dispersive.boundaries, thin.boundaries);
+    assert_ne!(dispersive.specification.unwrap().d15f_max_mm, beside.d15f_max_mm);
 }
 
 #[test]
@@ -359,12 +365,11 @@ fn what_is_found_of_one_row_alone_is_said_with_its_name() {
         let both = of(&order.concat(), &order);
         for (row, alone) in [("3 layers", &thin), ("16 layers", &thick)] {
             let row = format!("loose, {row}");
-            let of_row = alone.findings.iter().filter(|found| found.finding.id != "not_monotone");
-            for DesignFinding { finding, .. } in of_row {
-                let is_there = |other: &DesignFinding| {
-                    other.finding == *finding && other.row.as_ref().is_none_or(|name| *name == row)
+            for RowNote { note, .. } in alone.notes.iter().filter(|row| row.note.id() != "not_monotone") {
+                let is_there = |other: &RowNote| {
+                    other.note == *note && other.row.as_ref().is_none_or(|name| *name == row)
                 };
-                assert!(both.findings.iter().any(is_there), "{finding:?}: {:?}", both.findings);
+                assert!(both.notes.iter().any(is_there), "{note:?}: {:?}", both.notes);
             }
         }
     }
@@ -374,25 +379,22 @@ fn what_is_found_of_one_row_alone_is_said_with_its_name() {
 fn the_base_is_named_as_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
-    assert_eq!(found(&options(&out("forth"), &["base.cu=3"])).base.name, "linear, Cu 3");
-    let back = DesignOptions { inverse: true, ..options(&out("back"), &["base.cu=3"]) };
-    assert_eq!(found(&back).base.name, "linear, Cu 3");
+    assert_eq!(found(&options(&out("linear"), &["base.cu=3"])).base.name, "linear, Cu 3");
     // A millimetre that is stated is a size.
     let base = of_base(folder.path(), "sand.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let sized = DesignOptions {
-        inverse: true,
         base: Some(base),
         thicknesses: vec![Thickness::Mm(12.0)],
         ..options(&out("sized"), &["no layers", "filter.d0_mm=1"])
     };
     let sized = found(&sized);
     assert!(sized.base.name.ends_with("sand.csv"), "{}", sized.base.name);
-    assert!(sized.boundaries[0].no_erosion.as_ref().unwrap().d85b_mm.is_some() && sized.unit == "mm");
+    assert!(sized.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.is_some());
 }
 
 /// Networks that erode at every ratio of a bracket leave no number to build on.
 #[test]
-fn a_boundary_below_the_bracket_is_no_band() {
+fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
     let folder = tempfile::tempdir().unwrap();
     let all = |name: &str, bracket: [f64; 2]| {
         let options = tiny(&folder.path().join(name), &["base.cu=3", "replicates=7", "network.nz=10"]);
@@ -409,11 +411,7 @@ fn a_boundary_below_the_bracket_is_no_band() {
     let beside = beside.expect("the networks lie apart");
     let row = &beside.boundaries[0];
     assert!(row.networks.iter().any(|of| of.no_erosion.is_none()), "{row:?}");
-    assert!(row.band.is_none() && row.no_erosion.as_ref().unwrap().cautious().is_none(), "{row:?}");
-    assert!(beside.products.is_empty(), "{beside:?}");
-    assert!(
-        beside.findings.iter().any(|found| found.finding.id == "erodes_everywhere"),
-        "{:?}",
-        beside.findings
-    );
+    assert!(row.no_erosion.as_ref().unwrap().cautious().is_none(), "{row:?}");
+    assert!(beside.least_held().is_none(), "{beside:?}");
+    assert!(beside.notes.iter().any(|row| row.note.id() == "erodes_everywhere"), "{:?}", beside.notes);
 }

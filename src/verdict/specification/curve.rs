@@ -1,18 +1,15 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
 use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
-use crate::outcome::design::DesignFinding;
-use crate::outcome::design::band::{open_retention, retention};
+use crate::outcome::design::RowNote;
+use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
-use crate::outcome::numbers::{rounded_down, significant};
-use crate::outcome::record::{AppliedRule, IfDispersive};
+use crate::outcome::record::{AppliedRule, IfDispersive, Note, RuleNote};
 use crate::outcome::rules::{
     BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInputs, apply, sieved_limit,
 };
 use crate::verdict::base_cautions::broad_base;
-use crate::verdict::entry::Finding;
-use crate::verdict::finding;
-use crate::verdict::rule_words::{cited_rule, has_no_margin};
+use crate::verdict::rule_result::{cited_rule, has_no_margin};
 
 /// D15F (mm) of the filter at which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
@@ -37,7 +34,7 @@ pub(super) struct ReadCurve {
     /// The mildest minimum D15F (mm) that its sieves leave possible; 0 where none of them tells.
     drains_from: f64,
     /// Why its maximum D15F is not known.
-    pub unknown: Option<String>,
+    pub unknown: Option<Vec<RuleNote>>,
 }
 
 impl ReadCurve {
@@ -48,10 +45,8 @@ impl ReadCurve {
         let open = OpenBase::of(base, false);
         let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.hangs_on);
         // A limit that can only be less may be the strictest.
-        let unknown = open_retention(&rules).map(|rule| rule.needs.to_string());
-        let unknown = over_sieves.map(|note| note.words()).or(unknown);
-        let unknown =
-            unknown.map(|why| if why.is_empty() { "the limit can only be less".into() } else { why });
+        let unknown = open_retention(&rules).map(|rule| rule.needs.clone());
+        let unknown = over_sieves.map(|note| vec![note]).or(unknown);
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
         let drains = sieved_limit(PERMEABILITY, base, &open, dispersive);
@@ -85,35 +80,23 @@ impl ReadCurve {
     }
 
     /// What a reader must know of the base itself.
-    fn findings(&self) -> Vec<Finding> {
+    fn notes(&self) -> Vec<Note> {
         let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
-        let unstable = unstable.map(|of| finding::unstable_base(of.value, of.percent));
+        let unstable = unstable.map(|of| Note::UnstableBase { index: of.value, finer_percent: of.percent });
         let broad = self.of.regraded_at_mm.and_then(|_| broad_base(&self.base));
         unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
 
     /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
-    fn flat(&self) -> Option<Finding> {
+    fn flat(&self) -> Option<Note> {
         let cut = self.of.regraded_at_mm.unwrap_or(f64::INFINITY);
-        let of = self.flattest.filter(|of| of.within < FLAT_PERCENT && of.from_mm <= cut)?;
-        let to = 4.0 * of.from_mm;
-        if of.within < GAP_PERCENT {
-            return Some(finding::gap_of_base(of.within, of.from_mm, to));
-        }
-        let also = self.greatest_regraded_on(of.from_mm).map(|limit| {
-            let (size, said) = (significant(of.from_mm), rounded_down(limit));
-            let is_same = self.of.d15f_max_mm.is_some_and(|most| rounded_down(most) == said);
-            let said = if is_same { "the same".to_owned() } else { format!("{said} mm") };
-            format!("; regraded on {size} mm instead, the maximum D15F by practice would be {said}")
-        });
-        Some(finding::flat_base(of.from_mm, to, of.within, &also.unwrap_or_default()))
-    }
-
-    /// The maximum D15F (mm) by practice of the part that passes an opening (mm); `None` where nothing of
-    /// known size does, or its limit is not known.
-    fn greatest_regraded_on(&self, opening_mm: f64) -> Option<f64> {
-        let part = (self.of.curve.clone(), self.base.passing(opening_mm)?);
-        Self::of(&part, self.dispersive).of.d15f_max_mm
+        let flat = self.flattest.filter(|flat| flat.within < FLAT_PERCENT && flat.from_mm <= cut)?;
+        let (from_mm, to_mm, within_percent) = (flat.from_mm, 4.0 * flat.from_mm, flat.within);
+        Some(if within_percent < GAP_PERCENT {
+            Note::GapOfBase { within_percent, from_mm, to_mm }
+        } else {
+            Note::FlatBase { from_mm, to_mm, within_percent }
+        })
     }
 
     pub fn greatest(&self) -> f64 {
@@ -140,11 +123,10 @@ fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
 }
 
 /// What a reader must know of a base of these curves, with the name of the curve where there are several.
-pub(super) fn findings(read: &[ReadCurve]) -> Vec<DesignFinding> {
+pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
     let of = |curve: &ReadCurve| {
-        let found = curve.findings().into_iter();
-        found.map(|of| DesignFinding { row: row(curve), finding: of.record() }).collect::<Vec<_>>()
+        curve.notes().into_iter().map(|note| RowNote { row: row(curve), note }).collect::<Vec<_>>()
     };
     read.iter().flat_map(of).collect()
 }

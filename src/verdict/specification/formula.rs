@@ -5,8 +5,7 @@ use crate::gradation::FEW_FINES;
 use crate::outcome::numbers::significant;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
-use crate::verdict::rule_words::cited_rule;
-use crate::verdict::words::capital;
+use crate::verdict::rule_result::cited_rule;
 
 /// Percent of fines above which a base is of category 1.
 const MANY_FINES: f64 = 85.0;
@@ -14,7 +13,8 @@ const MANY_FINES: f64 = 85.0;
 /// The formula of a rule for the fines of a base, and the same with the base's numbers; the whole formula of
 /// the rule where its fines or its D85 are not known.
 pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
-    let name = capital(&cited_rule(rule));
+    let name = cited_rule(rule);
+    let name = name.strip_prefix("the ").map_or(name.clone(), |rest| format!("The {rest}"));
     let sizes = curve.of.fines_percent.zip(curve.of.d85_mm);
     let found = sizes.and_then(|(fines, d85b)| Some((item(rule, fines, curve.dispersive)?, fines, d85b)));
     let Some((Item { condition, formula, is_at_most }, fines, d85b)) = found else {

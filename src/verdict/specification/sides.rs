@@ -1,11 +1,9 @@
 //! Internal stability of both sides of a band, as of a filter.
 
 use crate::gradation::{Gradation, ShapeIndex, SoilSplit};
-use crate::outcome::design::DesignFinding;
+use crate::outcome::design::RowNote;
 use crate::outcome::design::specification::SizeBand;
-use crate::outcome::digits::percent;
-use crate::outcome::numbers::significant;
-use crate::verdict::finding;
+use crate::outcome::record::Note;
 
 /// The greatest D'15/d'85 of a stable soil by Kezdi.
 pub(super) const MOST_KEZDI: f64 = 4.0;
@@ -33,15 +31,10 @@ impl Side {
         })
     }
 
-    /// Which rules it does not keep, with their numbers; empty where it keeps both.
-    pub fn broken(&self) -> Vec<String> {
-        let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|of| {
-            format!("by Kézdi (D'15/d'85 {}, and the limit is {MOST_KEZDI})", significant(of.value))
-        });
-        let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|of| {
-            let (value, at) = (significant(of.value), percent(of.percent / 100.0));
-            format!("by Kenney and Lau (H/F {value} at F = {at}, and the limit is {LEAST_SHAPE})")
-        });
+    /// Whose rules it does not keep.
+    pub fn authorities(&self) -> Vec<String> {
+        let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
+        let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
         kezdi.into_iter().chain(shape).collect()
     }
 
@@ -52,11 +45,11 @@ impl Side {
 }
 
 /// What a reader must know of the sides of a band.
-pub(super) fn findings(band: Option<&SizeBand>) -> Vec<DesignFinding> {
+pub(super) fn notes(band: Option<&SizeBand>) -> Vec<RowNote> {
     let of = |side: &Side| {
-        let broken = side.broken().join(" and ");
-        let finding = finding::unstable_side(side.name, &broken).record();
-        (!broken.is_empty()).then_some(DesignFinding { row: None, finding })
+        let authorities = side.authorities();
+        let note = Note::UnstableSide { side: side.name.into(), authorities: authorities.clone() };
+        (!authorities.is_empty()).then_some(RowNote { row: None, note })
     };
     band.map(|band| Side::both(band).iter().filter_map(of).collect()).unwrap_or_default()
 }

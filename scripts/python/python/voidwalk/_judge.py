@@ -82,8 +82,8 @@ def judge(
     Returns
     -------
     Result
-        ``headline`` and ``practice`` (filter practice), ``model`` (the walk), ``findings`` (what else to know),
-        ``summary`` and ``outcome``, which has everything.
+        ``headline`` and ``practice`` (filter practice), ``model`` (the walk), ``notes`` (what else to know; in
+        words ``note_sentences``), ``summary`` and ``outcome``, which has everything.
 
     Raises
     ------

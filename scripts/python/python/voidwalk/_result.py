@@ -7,7 +7,7 @@ import json
 import os
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, List, Literal, Mapping, Optional, Tuple, Union, cast
+from typing import TYPE_CHECKING, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _voidwalk
 from ._plots import Axes, plot_result
 from .columns import Blockings, Column, Flow, Layers, RetainedByVoid, Series, Sizes, Table
-from .records import Finding, Model, Outcome, Practice, Replicate, RunSummary, WalkOutcome
+from .records import Model, Note, Outcome, Practice, Replicate, RowNote, RunSummary, WalkOutcome
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -68,10 +68,14 @@ class _Walked:
         self.blockings = cast(Blockings, tables.get("blockings", {}))
 
     @property
-    def findings(self) -> List[Finding]:
-        """What a reader must know besides, each a dict of id, about, label, numbers (with the unit in the name),
-        sentence and to_do (which setting changes it)."""
-        return self.outcome["findings"]
+    def notes(self) -> List[Note]:
+        """What else to know, in a fixed order: each a dict of id and numbers, with the unit in their names."""
+        return self.outcome["notes"]
+
+    @property
+    def note_sentences(self) -> List[str]:
+        """The sentence of each of the notes, in their order."""
+        return sentences_of(self.notes)
 
     @property
     def summary(self) -> List[RunSummary]:
@@ -214,13 +218,13 @@ class _Walked:
         return {name: getattr(self, name) for name in _TABLES if getattr(self, name)}
 
     def _runs(self) -> str:
-        """Runs and replicates in a line, and how many findings there are."""
+        """Runs and replicates in a line, and the number of notes."""
         means = ((run["run"], 100 * run["eroded_mass_fraction"]["mean"]) for run in self.summary)
         rows = [f"run {run}: {mean:.2f} % of the mass eroded" for run, mean in means]
-        count, found = len(self.replicates), len(self.findings)
+        count = len(self.replicates)
         rows.append(f"{count} {'replicate' if count == 1 else 'replicates'}")
-        if found:
-            rows.append(f"{found} {'finding' if found == 1 else 'findings'}")
+        if self.notes:
+            rows.append(counted_notes(self.notes))
         return "; ".join(rows)
 
 
@@ -280,6 +284,11 @@ class Result(_Walked):
         ``"undecided"``."""
         return self.outcome["model"]
 
+    @property
+    def note_sentences(self) -> List[str]:
+        """The sentence of each of the notes, in their order."""
+        return sentences_of(self.notes, self.outcome["inputs"]["scale_free"])
+
     def report(self, path: Union[None, str, os.PathLike[str]] = None) -> Path:
         if self.folder is None:
             return super().report(path)
@@ -315,7 +324,7 @@ class WalkResult(_Walked):
     Attributes
     ----------
     outcome : dict
-        The verdict with its findings, the summary, every replicate, what was walked with what, and what Eq. (2) asks
+        The verdict with its notes, the summary, every replicate, what was walked with what, and what Eq. (2) asks
         for (:class:`voidwalk.records.WalkOutcome`).
     series, layers, retained, eroded : dict of ndarray
         As of a :class:`Result`.
@@ -348,6 +357,16 @@ class WalkResult(_Walked):
 
     def _repr_html_(self) -> str:
         return _voidwalk.walk_brief(json.dumps(self.outcome))
+
+
+def sentences_of(notes: Sequence[Union[Note, RowNote]], scale_free: bool = False) -> List[str]:
+    """The sentence of each note; sizes are in mm, or multiples of D0F."""
+    return _voidwalk.note_sentences(json.dumps(notes), scale_free)
+
+
+def counted_notes(notes: Sequence[object]) -> str:
+    """The number of notes."""
+    return f"{len(notes)} {'note' if len(notes) == 1 else 'notes'}"
 
 
 def page_of(folder: Optional[Path]) -> Path:

@@ -37,7 +37,8 @@ def rules(
     -------
     dict
         ``"base"`` and ``"filter"`` (their sizes), ``"rules"``, each with ``id``, ``name``, ``value``, ``limit``,
-        ``met`` and ``source``, and ``"warnings"``; see :class:`voidwalk.records.PairRules`.
+        ``met`` and ``source``, ``"headline"`` and ``"practice"`` (``None`` where the limit of design was not
+        applied), and ``"notes"``; see :class:`voidwalk.records.PairRules`.
 
     Raises
     ------

@@ -57,16 +57,17 @@ class Specification:
         self, outcome: SpecificationRecord, tables: Dict[str, Table], folder: Optional[Path] = None
     ) -> None:
         self.outcome, self.tables, self.folder = outcome, tables, folder
-        self._answer, self._note, self._set_by, self._fits = _voidwalk.specification_says(json.dumps(outcome))
+        words = _voidwalk.specification_words(json.dumps(outcome))
+        self._d15f, self._no_band, self._note, self._set_by, self._fits = words
 
     @property
     def answer(self) -> str:
         """D15F of the band, or why there is none, in short."""
-        return self._answer
+        return self._d15f or f"No band. {self._no_band or ''}".rstrip()
 
     @property
     def steps(self) -> List[SpecificationStep]:
-        """Every step: what is done, its formula, numbers and source."""
+        """Every step: its name (``does``), formula, numbers, notes and source; ``tables["steps"]`` has it in words."""
         return self.outcome["steps"]
 
     @property
@@ -91,8 +92,8 @@ class Specification:
 
     @property
     def no_band(self) -> Optional[str]:
-        """Why there is no band; ``None`` where there is one."""
-        return self.outcome.get("no_band")
+        """Why there is no band, in words; ``None`` where there is one."""
+        return self._no_band
 
     @property
     def limits(self) -> List[SieveLimit]:

@@ -31,12 +31,12 @@ from .records import (
     ComparedPair,
     Comparison as ComparisonRecord,
     Design as DesignRecord,
-    DesignFinding,
     DesignRow,
     PercolationStudy,
+    RowNote,
 )
 from ._boxes import box
-from ._result import Result, Row, WalkResult, page_of, read_csv
+from ._result import Result, Row, WalkResult, counted_notes, page_of, read_csv, sentences_of
 from ._scene import Scene, Settings, Stated
 from ._soil import Gradation
 from ._tables import Soil, changes, gradation, told, workplace
@@ -74,7 +74,8 @@ class Comparison:
     @property
     def cases(self) -> List[ComparedCase]:
         """The cases, in the order in which they were named, each a dict: name, verdict (the model's class),
-        headline (the answer of practice), first_lines, and in runs the eroded mass (:class:`voidwalk.records.ComparedCase`)."""
+        headline and practice (the answer of practice), model, notes, and in runs the eroded mass
+        (:class:`voidwalk.records.ComparedCase`)."""
         return self.outcome["cases"]
 
     @property
@@ -127,7 +128,7 @@ class Comparison:
 
 
 class Design:
-    """How coarse a filter may be for a base; or, inversely, how fine a base may be.
+    """How coarse a filter may be for a base: the specification by practice and, apart from it, the boundaries of the model.
 
     Attributes
     ----------
@@ -147,21 +148,20 @@ class Design:
         self.outcome, self.walks, self.folder = outcome, walks, folder
 
     @property
-    def answer(self) -> str:
-        """How coarse the filter may be, or how fine the base, in a sentence."""
-        answer = self.outcome.get("answer")
-        return "" if answer is None else answer["said"]
-
-    @property
     def d15f_max_mm(self) -> Optional[float]:
-        """Maximum D15F (mm) that walk and practice both allow; ``None`` where none is known."""
-        answer = self.outcome.get("answer")
-        return None if answer is None else answer["d15f_max_mm"]
+        """Maximum D15F (mm) by the rules of practice alone; ``None`` where it is not known, or the base has no size."""
+        specification = self.outcome.get("specification")
+        return None if specification is None else specification["d15f_max_mm"]
 
     @property
-    def findings(self) -> List[DesignFinding]:
-        """What a reader must know besides, as :attr:`Result.findings`, each with the row that it is of."""
-        return self.outcome["findings"]
+    def notes(self) -> List[RowNote]:
+        """What else to know of the model, as :attr:`Result.notes`: of a part alone each has its name as ``row``."""
+        return self.outcome.get("notes", [])
+
+    @property
+    def note_sentences(self) -> List[str]:
+        """The sentence of each of the notes, in their order."""
+        return sentences_of(self.notes)
 
     @property
     def boundaries(self) -> List[DesignRow]:
@@ -192,8 +192,7 @@ class Design:
         return page_of(self.folder)
 
     def __repr__(self) -> str:
-        count = len(self.findings)
-        return f"Design({self.answer}; {count} {'finding' if count == 1 else 'findings'})"
+        return f"Design({self.outcome['base']['name']}; {counted_notes(self.notes)})"
 
     def _repr_html_(self) -> str:
         def ratio(row: DesignRow, name: Literal["no_erosion", "continuing"]) -> str:
@@ -201,17 +200,15 @@ class Design:
             return "" if boundary is None else f"{boundary['median']:.2f}"
 
         facts: Dict[str, str] = {}
-        for finding in self.findings:
-            name = ", ".join(filter(None, [finding["label"], finding.get("row")]))
-            facts[name] = " ".join(filter(None, [facts.get(name), finding["sentence"]]))
+        for note, words in zip(self.notes, self.note_sentences):
+            name = note.get("row") or "Notes"
+            facts[name] = f"{facts[name]} {words}" if name in facts else words
         heading = ("Density", "Thickness", "No erosion up to D15F/D85B", "Continuing erosion from D15F/D85B")
-        if self.outcome["inverse"]:
-            heading = ("Density", "Thickness", "No erosion down to D15F/D85B", "Continuing erosion below D15F/D85B")
         rows = [
             (row["density"], row["thickness"], ratio(row, "no_erosion"), ratio(row, "continuing"))
             for row in self.boundaries
         ]
-        return box(self.answer or "Design", facts, heading, rows)
+        return box("Design", facts, heading, rows)
 
 
 def compare(
@@ -340,7 +337,6 @@ def design(
     density: Union[None, str, Sequence[str]] = None,
     pack: bool = False,
     thickness: Union[None, str, float, Sequence[Union[str, float]]] = None,
-    inverse: bool = False,
     bracket: Tuple[float, float] = (0.5, 100.0),
     as_sampled: bool = False,
     as_given: bool = False,
@@ -352,7 +348,8 @@ def design(
     memory: Optional[int] = None,
     progress: Follower = None,
 ) -> Design:
-    """Finds how coarse a filter may be for a base, as ``voidwalk design`` does, to the same bits.
+    """Makes the specification of a filter for a base by practice and finds the boundaries of the model, as ``voidwalk
+    design`` does, to the same bits.
 
     Parameters
     ----------
@@ -371,8 +368,6 @@ def design(
         Pack the grains of this very filter and measure its constrictions.
     thickness : str, float or sequence of them, optional
         "60layers", "75D50F", "500mm", "24in" or a number of mm; 60 layers without it.
-    inverse : bool
-        Find the finest base that the filter holds instead.
     bracket : (float, float)
         D15F/D85B between which boundaries are searched.
     as_sampled, as_given, seed, replicates, settings
@@ -418,7 +413,6 @@ def design(
             stated,
             bool(as_sampled),
             bool(as_given),
-            bool(inverse),
             place_of_results,
             bool(overwrite),
             os.fspath(packings),

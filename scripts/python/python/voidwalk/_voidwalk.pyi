@@ -31,6 +31,7 @@ __all__ = [
     "pack",
     "read_packing",
     "Network",
+    "note_sentences",
     "report",
     "run_brief",
     "run_page",
@@ -52,7 +53,7 @@ __all__ = [
     "schema",
     "soils",
     "specification",
-    "specification_says",
+    "specification_words",
     "replicate_seed",
     "walk",
     "Progress",
@@ -269,7 +270,6 @@ def design(
     settings: List[str],
     as_sampled: bool,
     as_given: bool,
-    inverse: bool,
     out: _Path,
     overwrite: bool,
     packings: _Path,
@@ -285,7 +285,10 @@ def specification(
     overwrite: bool,
     progress: _Callback,
 ) -> str: ...
-def specification_says(record: str) -> Tuple[str, Optional[str], Optional[str], List[Optional[bool]]]: ...
+def specification_words(
+    record: str,
+) -> Tuple[Optional[str], Optional[str], Optional[str], Optional[str], List[Optional[bool]]]: ...
+def note_sentences(notes: str, scale_free: bool = False) -> List[str]: ...
 def percolation(
     shapes: List[Tuple[int, int, int]],
     realisations: int,

@@ -11,7 +11,6 @@ __all__ = [
     "AppliedRule",
     "ArchingByVoidRecord",
     "ArchingRecord",
-    "Band",
     "BandSize",
     "BaseRecord",
     "BaseSize",
@@ -28,19 +27,16 @@ __all__ = [
     "CurveEnd",
     "CurveRange",
     "Design",
-    "DesignAnswer",
-    "DesignFinding",
     "DesignRow",
     "FilterRecord",
     "FilterSizes",
-    "Finding",
-    "Fit",
     "GivenNetwork",
     "IfDispersive",
     "Infiltration",
     "InfiltrationSize",
     "InputFile",
     "Inputs",
+    "LeftOut",
     "Manifest",
     "ManyStarts",
     "Measure",
@@ -48,6 +44,10 @@ __all__ = [
     "NetworkBoundaries",
     "NetworkRecord",
     "NetworkSummary",
+    "NoBand",
+    "NotKept",
+    "Note",
+    "NoteId",
     "OfThickness",
     "OneLength",
     "Outcome",
@@ -59,7 +59,12 @@ __all__ = [
     "ProductMargin",
     "Range",
     "Ratios",
+    "RegradeCause",
+    "RegradeReason",
     "Replicate",
+    "RowNote",
+    "RuleNote",
+    "RuleNoteId",
     "Run",
     "RunSummary",
     "SameShape",
@@ -75,6 +80,7 @@ __all__ = [
     "SpecificationStep",
     "SpecifiedCurve",
     "Statistic",
+    "StepNote",
     "StepValue",
     "Stopping",
     "WalkOutcome",
@@ -130,34 +136,118 @@ Model = TypedDict(
 )
 
 
-class _Finding(TypedDict):
-    id: str
-    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
-    label: str
-    sentence: str
+#: The name of a note.
+NoteId = Literal[
+    "replicates_leave_open",
+    "second_run_missing",
+    "level_missed",
+    "loses_fines",
+    "too_fine_to_drain",
+    "fines_of_filter",
+    "may_segregate",
+    "dispersion_not_known",
+    "dispersive_limit_not_known",
+    "layer_thicker",
+    "unsteady",
+    "nothing_walked",
+    "erodes_everywhere",
+    "holds_everywhere",
+    "median_beyond",
+    "erodes_to_end",
+    "erodes_to",
+    "holds_to_end",
+    "not_walked",
+    "spared_end",
+    "pan_erodes",
+    "decided_below95",
+    "clogged_before",
+    "clogged",
+    "trapped_could_turn",
+    "second_run_erodes",
+    "coarse_base",
+    "cohesive_fines",
+    "fines_not_sieved",
+    "not_regraded",
+    "broadly_graded",
+    "dispersive_base",
+    "open_joint",
+    "thickness_without_unit",
+    "thickness_of_file",
+    "layers_thicker",
+    "copies_thicker",
+    "capped_base",
+    "few_particles",
+    "more_particles",
+    "low_mass_ratio",
+    "amount_unknown",
+    "amount_held",
+    "given_network",
+    "no_filter",
+    "narrow_lattice",
+    "all_on_its_way",
+    "cu_unchecked",
+    "cu_at_least",
+    "cu_unknown",
+    "gap_graded",
+    "other_curve",
+    "library_of_any_density",
+    "library_of_density",
+    "like_none_of_the_library",
+    "guessed_constrictions",
+    "guessed_grains",
+    "part_packed",
+    "floating_part_packed",
+    "loose_part_packed",
+    "skeleton",
+    "one_replicate",
+    "few_replicates",
+    "few_networks",
+    "pan_passive",
+    "pan_counts_as_passing",
+    "arches",
+    "openings",
+    "curve_range",
+    "unit_doubtful",
+    "files_exchanged",
+    "filter_of_boulders",
+    "unstable_base",
+    "unstable_side",
+    "broad_base",
+    "broad_base_at_least",
+    "gap_of_base",
+    "flat_base",
+    "target_missed",
+    "regraded",
+    "regrading_not_needed",
+    "read_as",
+    "envelope",
+    "pan_of_filter",
+    "loose_grains",
+    "narrow_cell",
+    "one_network",
+    "one_packing",
+    "long_way_out",
+    "not_monotone",
+    "trapped",
+    "permeability",
+    "overfull",
+    "no_room",
+]
 
 
-class Finding(_Finding, total=False):
-    """A finding: what it is about, and its sentence.
+class Note(TypedDict):
+    """A note with its numbers, in the order of every face.
 
     Keys
     ----
     id
-        Its name for programs, as `cohesive_fines`.
-    about
-        What it is about.
-    label
-        Its name in a word or two.
+        Its name.
     numbers
         Its numbers by name, with the unit in the name.
-    sentence
-        What it says.
-    to_do
-        Which setting changes it; may be empty.
     """
 
+    id: NoteId
     numbers: Dict[str, object]
-    to_do: str
 
 
 class _IfDispersive(TypedDict):
@@ -433,6 +523,24 @@ class Stopping(_Stopping, total=False):
     short_of: Optional[Union[Literal["second_run"], Dict[str, Dict[str, Union[int, float, Optional[int]]]], Dict[str, Dict[str, Union[float, int]]]]]
 
 
+class _LeftOut(TypedDict):
+    id: str
+
+
+class LeftOut(_LeftOut, total=False):
+    """A part of the program that a scene does not need, or a study of which nothing is walked.
+
+    Keys
+    ----
+    id
+        Its name.
+    numbers
+        Its numbers; missing without any.
+    """
+
+    numbers: object
+
+
 class FilterRecord(TypedDict):
     """The filter: its gradation by mass and its constrictions by number.
 
@@ -680,6 +788,87 @@ class Ratios(TypedDict):
     d15f_over_d95b: float
 
 
+#: The name of what a rule says.
+RuleNoteId = Literal[
+    "needs_fines_of_base",
+    "needs_d85_b",
+    "needs_d95_b",
+    "needs_d15_b",
+    "needs_d15_f",
+    "needs_d15_f_sieved",
+    "needs_d10_f",
+    "needs_fines_of_filter",
+    "needs_sieves_of_filter",
+    "needs_finest_part_of_filter",
+    "needs_curve_of_filter",
+    "needs_curve_of_filter_in_mm",
+    "needs_test_of_dispersive",
+    "needs_erosion",
+    "d15_f_between",
+    "d15_b_between",
+    "d85_b_between",
+    "d95_b_between",
+    "filter_between",
+    "base_between",
+    "flat_base",
+    "dispersive",
+    "category",
+    "regraded_on",
+    "before_regrading",
+    "taken_as_sand",
+    "result_of_model",
+    "beyond_any_limit",
+    "no_clear_boundary",
+    "beyond_unclear_boundary",
+    "excessive_not_judged",
+    "by_fines",
+    "floor_governs",
+    "least_governs",
+    "d15_f_at_most",
+    "limit_at_most",
+    "limit_at_least",
+    "cu_at_least",
+    "finest_sieve_of_filter",
+    "at_percent_finer",
+    "band_from",
+    "joint",
+    "less_than_source",
+    "checks_walk",
+    "far_finer_than_tests",
+    "kezdi_at",
+    "kezdi_splits",
+    "kezdi_hidden",
+    "shape_at",
+    "shape_above_pan",
+    "burenkova_range",
+    "wan_fell_sand",
+    "wan_fell_silt",
+    "wan_fell_contours",
+    "limits_by_fines",
+    "burenkova_soils",
+    "burenkova_third_zone",
+    "uniform_filter",
+]
+
+
+class _RuleNote(TypedDict):
+    id: RuleNoteId
+
+
+class RuleNote(_RuleNote, total=False):
+    """What a rule says beside its result.
+
+    Keys
+    ----
+    id
+        Its name.
+    numbers
+        Its number, or its numbers in order; missing without any.
+    """
+
+    numbers: object
+
+
 class WithoutFiner(TypedDict):
     """What is left of a filter without its finer part.
 
@@ -706,12 +895,11 @@ class _AppliedRule(TypedDict):
     unit: str
     at_least: bool
     met: Optional[bool]
-    needs: str
-    note: str
+    needs: List[RuleNote]
+    notes: List[RuleNote]
     applies_to: str
     formula: str
     source: str
-    speaks_against: str
 
 
 class AppliedRule(_AppliedRule, total=False):
@@ -752,7 +940,7 @@ class AppliedRule(_AppliedRule, total=False):
         `true` says only that this is not reached: some or excessive erosion is not excluded.
     needs
         What is missing for a result; may be empty.
-    note
+    notes
         Where the value is, why the rule was not made for these soils; may be empty.
     applies_to
         What the rule was made for.
@@ -763,8 +951,6 @@ class AppliedRule(_AppliedRule, total=False):
     without_finer
         What is left of the filter without the greatest part that it may lose by a rule of internal stability;
         `None` of other rules.
-    speaks_against
-        Which verdicts it speaks against where it is not kept.
     filter_curve
         Which curve of the filter it read, where that is an envelope of several.
     base_curve
@@ -1014,7 +1200,7 @@ class _Outcome(TypedDict):
     format: Literal["voidwalk-outcome/1"]
     voidwalk: str
     model: Model
-    findings: List[Finding]
+    notes: List[Note]
     constrictions: ConstrictionsRecord
     seed: int
     n_base: int
@@ -1025,8 +1211,8 @@ class _Outcome(TypedDict):
     replicates: List[Replicate]
     summary: List[RunSummary]
     threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
+    left_out: List[LeftOut]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     inputs: Inputs
     ratios: Ratios
     rules: List[AppliedRule]
@@ -1050,8 +1236,8 @@ class Outcome(_Outcome, total=False):
         What filter practice says of the pair, without the walk; `None` likewise.
     model
         What the walk says, without practice.
-    findings
-        What a reader must know besides, in the order of every face.
+    notes
+        What else to know, in the order of every face.
     if_dispersive
         What practice allows if the base is dispersive; `None` where somebody has said whether it is, and where
         it has few fines.
@@ -1158,8 +1344,8 @@ class WalkOutcome(TypedDict):
     ----
     verdict
         The class that the replicates together support.
-    findings
-        What a reader must know besides, in the order of every face.
+    notes
+        What else to know, in the order of every face.
     seed
         The user's seed.
     n_base
@@ -1195,7 +1381,7 @@ class WalkOutcome(TypedDict):
     """
 
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
-    findings: List[Finding]
+    notes: List[Note]
     seed: int
     n_base: int
     n_base_eq2: Optional[int]
@@ -1206,360 +1392,12 @@ class WalkOutcome(TypedDict):
     replicates: List[Replicate]
     summary: List[RunSummary]
     threshold: float
-    left_out: List[str]
-    model_leaves_out: List[str]
+    left_out: List[LeftOut]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     base: BaseRecord
     d15f_mm: Optional[float]
     network: GivenNetwork
     version: str
-
-
-class _DesignAnswer(TypedDict):
-    d15f_max_mm: Optional[float]
-    d15f_over_d85b: Optional[float]
-    set_by: Literal["practice", "walk"]
-    rule: Optional[str]
-    limit: str
-    said: str
-
-
-class DesignAnswer(_DesignAnswer, total=False):
-    """How coarse the filter may be; for the inverse, how fine the base.
-
-    Keys
-    ----
-    d15f_max_mm
-        Maximum D15F (mm) that both walk and practice allow; `None` where none is known, where the base has no
-        size, and for the inverse.
-    d85b_min_mm
-        Finest D85B (mm) that both allow, for the inverse.
-    d15f_over_d85b
-        The same as D15F/D85B, of the base as it was walked.
-    set_by
-        Which of the two is the stricter.
-    rule
-        Name of the rule for programs, where practice set it.
-    limit
-        The limit, and what sets it: a sentence without its full stop, as each of the next three.
-    washout
-        That the filter as given is not internally stable, and too coarse without the finer part that it may
-        lose.
-    margin
-        That a limit of practice has no margin.
-    walk
-        What the walk is worth beside a limit of practice.
-    if_dispersive
-        What holds if the base is dispersive, and what to do then.
-    said
-        All of them, without the last full stop.
-    """
-
-    d85b_min_mm: Optional[float]
-    washout: Optional[str]
-    margin: Optional[str]
-    walk: Optional[str]
-    if_dispersive: Optional[str]
-
-
-class Range(TypedDict):
-    """Median and band of a size (mm).
-
-    Keys
-    ----
-    median
-        Median over networks.
-    low
-        5 percentile.
-    high
-        95 percentile.
-    """
-
-    median: float
-    low: Optional[float]
-    high: Optional[float]
-
-
-class _Boundary(TypedDict):
-    median: float
-    low: Optional[float]
-    high: Optional[float]
-    d15f_mm: Optional[Range]
-
-
-class Boundary(_Boundary, total=False):
-    """A boundary over networks: D15F/D85B, and the same in mm.
-
-    Keys
-    ----
-    median
-        Median over networks.
-    low
-        5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
-    high
-        5 % of networks lie above; `None` likewise.
-    low_beyond
-        On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at every
-        ratio that was searched.
-    d15f_mm
-        D15F (mm) of the filter, where the base has a size.
-    d85b_mm
-        D85B (mm) of the base, for the inverse, where the filter has a size.
-    """
-
-    low_beyond: Optional[Literal["below", "above"]]
-    d85b_mm: Optional[Range]
-
-
-class NetworkBoundaries(TypedDict):
-    """What one network says; `None` where its boundary lies beyond the search.
-
-    Keys
-    ----
-    network
-        Network, counted from 1.
-    no_erosion
-        D15F/D85B from which its first run erodes.
-    continuing
-        D15F/D85B from which its second run does.
-    """
-
-    network: int
-    no_erosion: Optional[float]
-    continuing: Optional[float]
-
-
-class _Band(TypedDict):
-    least: float
-    greatest: float
-    set_by: Literal["practice", "walk"]
-    practice: Optional[float]
-    practice_rule: str
-    unit: str
-    is_empty: bool
-    said: str
-
-
-class Band(_Band, total=False):
-    """Between which D15F a filter both drains and holds.
-
-    Keys
-    ----
-    least
-        Minimum D15F, of the rule of permeability.
-    least_at_most
-        Whether the true least is not known, and is at most that.
-    greatest
-        Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 % of
-        networks, and practice.
-    set_by
-        Which of the two set it.
-    practice
-        Maximum D15F that the strictest rule of retention allows, which was made for this base.
-    practice_rule
-        Name of that rule.
-    practice_rule_id
-        Its name for programs; `None` without one.
-    unit
-        Unit: `mm`, or `D85B`.
-    is_empty
-        Whether nothing lies between the least and what both the walk and practice allow.
-    said
-        The same in a sentence; of an empty one why it is.
-    """
-
-    least_at_most: bool
-    practice_rule_id: Optional[str]
-
-
-class _DesignRow(TypedDict):
-    density: str
-    thickness: str
-    layers: int
-    thickness_mm: Optional[float]
-    grains_per_void: Optional[float]
-    no_erosion: Optional[Boundary]
-    continuing: Optional[Boundary]
-    not_monotone: int
-    networks: List[NetworkBoundaries]
-    band: Optional[Band]
-
-
-class DesignRow(_DesignRow, total=False):
-    """The boundaries of one density and thickness.
-
-    Keys
-    ----
-    density
-        How densely the filter is packed.
-    thickness
-        The thickness that was asked for, in words.
-    layers
-        Layers of voids, at the no-erosion boundary where the thickness is in mm.
-    thickness_mm
-        Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
-    grains_per_void
-        Filter grains per void, Eq. (2).
-    no_erosion
-        Where no erosion turns into some; `None` where that lies beyond what can be walked.
-    no_erosion_note
-        Why there is none, or what else is to be said of it.
-    holds_to
-        D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched, so
-        that there is no boundary.
-    continuing
-        Where some erosion turns into continuing.
-    continuing_note
-        Why there is none, or what else is to be said of it.
-    unsteady
-        Why the walks themselves put the boundary of no erosion in doubt: a few particles decide.
-    not_monotone
-        Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
-        that erodes counts.
-    networks
-        What each network says.
-    band
-        The band of a specification, up to what holds over the whole range of its curve; `None` for the inverse,
-        where nothing limits it, and where no ratio is known that all but 5 % of networks hold.
-    band_note
-        Why there is no band, where networks erode at every ratio that was searched.
-    as_end
-        The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
-        is searched at its ends only, loose and dense.
-    end_of
-        The density of which this is an end of the range in which its constriction curve is known: its band is
-        that of the whole range, and this row has none.
-    """
-
-    no_erosion_note: Optional[str]
-    holds_to: Optional[float]
-    continuing_note: Optional[str]
-    unsteady: Optional[str]
-    band_note: Optional[str]
-    as_end: Optional[str]
-    end_of: Optional[str]
-
-
-class _BaseStated(TypedDict):
-    name: str
-    cu: Optional[float]
-    d15_mm: Optional[float]
-    d85_mm: Optional[float]
-    d95_over_d85: Optional[float]
-    tail_mass_fraction: float
-
-
-class BaseStated(_BaseStated, total=False):
-    """What is known of the base.
-
-    Keys
-    ----
-    name
-        Its name.
-    cu
-        D60/D10.
-    d15_mm
-        D15 (mm) before regrading; `None` without a size of its own.
-    d85_mm
-        D85 (mm) as walked; `None` without a size of its own.
-    d95_over_d85
-        D95/D85.
-    regraded_at_mm
-        The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
-    tail_mass_fraction
-        The part of its mass that is finer than its finest sieve, as it was walked.
-    d85_as_sampled_mm
-        D85 (mm) before regrading, where it was regraded.
-    gradation
-        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
-    regraded
-        The same as it was walked after regrading; empty where it was walked as sampled.
-    """
-
-    regraded_at_mm: Optional[float]
-    d85_as_sampled_mm: Optional[float]
-    gradation: List[List[float]]
-    regraded: List[List[float]]
-
-
-class InputFile(TypedDict):
-    """A file that was read.
-
-    Keys
-    ----
-    name
-        Its name as given.
-    xxh3
-        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
-    """
-
-    name: str
-    xxh3: str
-
-
-class _DesignFinding(TypedDict):
-    id: str
-    about: Literal["base", "filter", "constrictions", "network", "amount", "walk", "flow", "practice", "thickness", "study", "files"]
-    label: str
-    sentence: str
-
-
-class DesignFinding(_DesignFinding, total=False):
-    """A finding about the rows of a design, or about the curves of a base for which a filter is specified.
-
-    Keys
-    ----
-    row
-        The row or the curve that it is of, in words; `None` where it is of all.
-    id
-        Its name for programs, as `cohesive_fines`.
-    about
-        What it is about.
-    label
-        Its name in a word or two.
-    numbers
-        Its numbers by name, with the unit in the name.
-    sentence
-        What it says.
-    to_do
-        Which setting changes it; may be empty.
-    """
-
-    row: Optional[str]
-    numbers: Dict[str, object]
-    to_do: str
-
-
-class _Fit(TypedDict):
-    name: str
-    d15_mm: List[float]
-    drains: bool
-    holds: bool
-    practice: Optional[bool]
-    source: str
-
-
-class Fit(_Fit, total=False):
-    """A product beside a band.
-
-    Keys
-    ----
-    name
-        Its name.
-    d15_mm
-        D15 (mm) of its fine and of its coarse side.
-    drains
-        Whether its fine side drains.
-    may_drain
-        Whether its fine side drains only if the base's D15 is finer than its sieves tell.
-    holds
-        Whether its coarse side is within what both walk and practice allow.
-    practice
-        Whether its coarse side keeps the strictest rule of retention; `None` where there is none.
-    source
-        Where its limits were read.
-    """
-
-    may_drain: bool
 
 
 class SheetCover(TypedDict, total=False):
@@ -1593,6 +1431,21 @@ class SheetCover(TypedDict, total=False):
     checker: Optional[str]
     revision: Optional[str]
     date: Optional[str]
+
+
+class InputFile(TypedDict):
+    """A file that was read.
+
+    Keys
+    ----
+    name
+        Its name as given.
+    xxh3
+        XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    """
+
+    name: str
+    xxh3: str
 
 
 class _SpecifiedCurve(TypedDict):
@@ -1644,6 +1497,27 @@ class SpecifiedCurve(_SpecifiedCurve, total=False):
     without_margin: bool
 
 
+class _RowNote(TypedDict):
+    id: NoteId
+    numbers: Dict[str, object]
+
+
+class RowNote(_RowNote, total=False):
+    """A note on a row of a design, or on a curve of the base for which a filter is specified.
+
+    Keys
+    ----
+    row
+        The row or the curve that it is of, in words; `None` where it is of all.
+    id
+        Its name.
+    numbers
+        Its numbers by name, with the unit in the name.
+    """
+
+    row: Optional[str]
+
+
 class StepValue(TypedDict):
     """A number of a step.
 
@@ -1662,7 +1536,91 @@ class StepValue(TypedDict):
     unit: str
 
 
-class SpecificationStep(TypedDict):
+class _RegradeCause(TypedDict):
+    id: Literal["gap", "gap_among_gravel", "gravel_and_fines", "broad_gravel", "gravel_of_unknown_cu", "narrow_gravel", "no_gravel", "no_unit"]
+
+
+class RegradeCause(_RegradeCause, total=False):
+    """What of a soil has it regraded, or not.
+
+    Keys
+    ----
+    id
+    from_mm
+    """
+
+    from_mm: float
+
+
+class RegradeReason(TypedDict):
+    """Why practice regrades a base, or leaves it as it is.
+
+    Keys
+    ----
+    cause
+        What practice asks of the soil.
+    nothing_passes
+        Whether it was to be regraded and is left as it is, as none of its known sizes passes the sieve.
+    """
+
+    cause: RegradeCause
+    nothing_passes: bool
+
+
+class _StepNote(TypedDict):
+    id: Literal["curves", "gravel", "not_regraded", "set_by", "limit_not_known", "drainage_at_most", "of_rule", "raised", "lowered", "stability"]
+
+
+class StepNote(_StepNote, total=False):
+    """What else to know of a step.
+
+    Keys
+    ----
+    id
+    curves
+        How many.
+    curve
+        Its name, where there are several.
+    why
+        Why it is regraded, or not.
+    flattest
+        Size (mm) from which the least mass lies within a factor of 4, and that mass (%); `None` where its
+        sieves do not tell.
+    rule
+        The rule; `None` where the step has one alone.
+    needs
+        What is missing.
+    notes
+        Its notes.
+    side
+        `fine` or `coarse`.
+    is_known
+        Whether both indices are known.
+    not_kept
+        Whose rules it does not keep.
+    """
+
+    curves: int
+    curve: Optional[str]
+    why: RegradeReason
+    flattest: Optional[List[float]]
+    rule: Optional[str]
+    needs: List[RuleNote]
+    notes: List[RuleNote]
+    side: str
+    is_known: bool
+    not_kept: List[str]
+
+
+class _SpecificationStep(TypedDict):
+    step: int
+    does: Literal["plot", "find_gravel", "regrade", "place", "retain", "drain", "narrow", "keep_uniform", "limit_ends", "keep_from_segregating", "draw", "check_stability"]
+    formula: str
+    values: List[StepValue]
+    source: str
+
+
+class SpecificationStep(_SpecificationStep, total=False):
     """A step of the procedure.
 
     Keys
@@ -1672,21 +1630,16 @@ class SpecificationStep(TypedDict):
     does
         What is done.
     formula
-        The formula, in words; empty where nothing is worked out.
+        The formula; empty where nothing is worked out.
     values
         Its numbers.
-    note
-        What else a reader must know; may be empty.
+    notes
+        What else to know.
     source
         Where formula and numbers were read; empty where nothing is worked out.
     """
 
-    step: int
-    does: str
-    formula: str
-    values: List[StepValue]
-    note: str
-    source: str
+    notes: List[StepNote]
 
 
 class BandSize(TypedDict):
@@ -1725,6 +1678,38 @@ class SizeBand(TypedDict):
     coarse_side: List[List[float]]
 
 
+class _NoBand(TypedDict):
+    id: Literal["drainage_not_known", "none_drains_and_retains", "too_many_fines", "too_coarse", "limit_not_known", "no_rule"]
+
+
+class NoBand(_NoBand, total=False):
+    """Why there is no band.
+
+    Keys
+    ----
+    id
+    most_drains_mm
+        The most that the minimum can be (mm).
+    most_mm
+        The maximum (mm).
+    least_mm
+        The minimum (mm).
+    most_d60f_mm
+        The maximum D60F (mm).
+    curve
+        The curve of the base.
+    needs
+        What is missing.
+    """
+
+    most_drains_mm: float
+    most_mm: float
+    least_mm: float
+    most_d60f_mm: float
+    curve: str
+    needs: List[RuleNote]
+
+
 class SieveLimit(TypedDict):
     """What a delivery may have finer than a sieve. A row of `specification.csv`.
 
@@ -1745,6 +1730,29 @@ class SieveLimit(TypedDict):
     opening_mm: float
     min_percent_finer: float
     max_percent_finer: Optional[float]
+
+
+class _NotKept(TypedDict):
+    id: Literal["cu_of_fine_side", "cu_of_coarse_side", "width", "fines", "greatest_size"]
+
+
+class NotKept(_NotKept, total=False):
+    """What a product does not keep of what a band is asked for beside D15F.
+
+    Keys
+    ----
+    id
+    cu
+        That Cu.
+    ratio
+        Coarse over fine side at the same percent finer, at most.
+    percent
+        Percent finer than 0.075 mm, at most.
+    """
+
+    cu: float
+    ratio: float
+    percent: float
 
 
 class ProductMargin(TypedDict):
@@ -1775,7 +1783,7 @@ class ProductMargin(TypedDict):
     d15_coarse_mm: float
     drains_by: Optional[float]
     holds_by: Optional[float]
-    not_kept: str
+    not_kept: List[NotKept]
     source: str
 
 
@@ -1816,7 +1824,7 @@ class Specification(_Specification, total=False):
         Every file that was read; empty as a part of a design, which has them itself.
     curves
         The curves of the base, in the order of the file.
-    findings
+    notes
         What a reader must know of the base itself, each of its curve where there are several, and of a side of
         the band that is not stable.
     steps
@@ -1846,35 +1854,195 @@ class Specification(_Specification, total=False):
     cover: SheetCover
     inches: bool
     inputs: List[InputFile]
-    findings: List[DesignFinding]
+    notes: List[RowNote]
     d15f_min_at_most: bool
     finer: bool
     if_dispersive: Optional[IfDispersive]
-    no_band: Optional[str]
+    no_band: Optional[NoBand]
+
+
+class Range(TypedDict):
+    """Median and band of a size (mm).
+
+    Keys
+    ----
+    median
+        Median over networks.
+    low
+        5 percentile.
+    high
+        95 percentile.
+    """
+
+    median: float
+    low: Optional[float]
+    high: Optional[float]
+
+
+class _Boundary(TypedDict):
+    median: float
+    low: Optional[float]
+    high: Optional[float]
+    d15f_mm: Optional[Range]
+
+
+class Boundary(_Boundary, total=False):
+    """A boundary over networks: D15F/D85B, and the same in mm.
+
+    Keys
+    ----
+    median
+        Median over networks.
+    low
+        5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
+    high
+        5 % of networks lie above; `None` likewise.
+    low_beyond
+        On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at every
+        ratio that was searched.
+    d15f_mm
+        D15F (mm) of the filter, where the base has a size.
+    """
+
+    low_beyond: Optional[Literal["below", "above"]]
+
+
+class NetworkBoundaries(TypedDict):
+    """What one network says; `None` where its boundary lies beyond the search.
+
+    Keys
+    ----
+    network
+        Network, counted from 1.
+    no_erosion
+        D15F/D85B from which its first run erodes.
+    continuing
+        D15F/D85B from which its second run does.
+    """
+
+    network: int
+    no_erosion: Optional[float]
+    continuing: Optional[float]
+
+
+class _DesignRow(TypedDict):
+    density: str
+    thickness: str
+    layers: int
+    thickness_mm: Optional[float]
+    grains_per_void: Optional[float]
+    no_erosion: Optional[Boundary]
+    continuing: Optional[Boundary]
+    not_monotone: int
+    networks: List[NetworkBoundaries]
+
+
+class DesignRow(_DesignRow, total=False):
+    """The boundaries of one density and thickness.
+
+    Keys
+    ----
+    density
+        How densely the filter is packed.
+    thickness
+        The thickness that was asked for, in words.
+    layers
+        Layers of voids, at the no-erosion boundary where the thickness is in mm.
+    thickness_mm
+        Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
+    grains_per_void
+        Filter grains per void, Eq. (2).
+    no_erosion
+        Where no erosion turns into some; `None` where that lies beyond what can be walked.
+    no_erosion_notes
+        Why there is none, or what else is to be said of it.
+    holds_to
+        D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched, so
+        that there is no boundary.
+    continuing
+        Where some erosion turns into continuing.
+    continuing_notes
+        Why there is none, or what else is to be said of it.
+    unsteady
+        The note on a boundary that few particles decide.
+    not_monotone
+        Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
+        that erodes counts.
+    networks
+        What each network says.
+    as_end
+        The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
+        is searched at its ends only, loose and dense.
+    end_of
+        The density of which this is an end of the range in which its constriction curve is known.
+    """
+
+    no_erosion_notes: List[Note]
+    holds_to: Optional[float]
+    continuing_notes: List[Note]
+    unsteady: Optional[Note]
+    as_end: Optional[str]
+    end_of: Optional[str]
+
+
+class _BaseStated(TypedDict):
+    name: str
+    cu: Optional[float]
+    d15_mm: Optional[float]
+    d85_mm: Optional[float]
+    d95_over_d85: Optional[float]
+    tail_mass_fraction: float
+
+
+class BaseStated(_BaseStated, total=False):
+    """What is known of the base.
+
+    Keys
+    ----
+    name
+        Its name.
+    cu
+        D60/D10.
+    d15_mm
+        D15 (mm) before regrading; `None` without a size of its own.
+    d85_mm
+        D85 (mm) as walked; `None` without a size of its own.
+    d95_over_d85
+        D95/D85.
+    regraded_at_mm
+        The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
+    tail_mass_fraction
+        The part of its mass that is finer than its finest sieve, as it was walked.
+    d85_as_sampled_mm
+        D85 (mm) before regrading, where it was regraded.
+    gradation
+        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
+    regraded
+        The same as it was walked after regrading; empty where it was walked as sampled.
+    """
+
+    regraded_at_mm: Optional[float]
+    d85_as_sampled_mm: Optional[float]
+    gradation: List[List[float]]
+    regraded: List[List[float]]
 
 
 class _Design(TypedDict):
     format: Literal["voidwalk-design/1"]
     voidwalk: str
     version: str
-    answer: Optional[DesignAnswer]
     boundaries: List[DesignRow]
-    inverse: bool
     base: BaseStated
     filter: str
     filter_cu: Optional[float]
     filter_d15_mm: Optional[float]
-    unit: str
     threshold: float
     replicates: int
     seed: int
     engine: str
     bracket: List[float]
     step: float
-    rules: List[AppliedRule]
-    rules_at: float
-    products: List[Fit]
-    model_leaves_out: List[str]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
     settings: List[str]
     seconds: float
 
@@ -1892,12 +2060,12 @@ class Design(_Design, total=False):
         Version of voidwalk.
     commit
         The commit that it was built from; `None` where that is not known.
-    answer
-        How coarse the filter may be: the least of what walk and practice allow; `None` until it is worked out.
+    specification
+        The specification of a filter by the rules of practice alone, step by step; `None` of a base without a
+        size.
     boundaries
-        One per density and thickness, in the order in which they were asked for.
-    inverse
-        Whether the base was scaled against a filter of given size, to find the finest base that it holds.
+        The boundaries of the model, one row per density and thickness, in the order in which they were asked
+        for.
     base
         The base.
     filter
@@ -1905,15 +2073,12 @@ class Design(_Design, total=False):
     filter_cu
         Cu of the filter.
     filter_d15_mm
-        The filter's own D15F (mm), where its sizes are given; only the inverse hangs on it.
+        The filter's own D15F (mm), where its sizes are given.
     filter_gradation
         Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
         where its sizes are not given.
     inputs
         Every file that was read.
-    unit
-        Unit of the sizes in `rules`, `band` and `products`: `mm`, or `D85B` where the base has no size of its
-        own.
     threshold
         Mass eroded from which a run erodes.
     replicates
@@ -1926,17 +2091,8 @@ class Design(_Design, total=False):
         D15F/D85B between which boundaries were searched.
     step
         Steps of the search, as a part of D15F/D85B.
-    findings
-        What a reader must know besides, the weightiest first.
-    rules
-        Every rule of practice, of the coarsest filter that holds; of another where none is known.
-    rules_at
-        D15F/D85B that the rules are read at.
-    products
-        Standard products beside the narrowest band.
-    specification
-        The specification of a filter that walk and practice allow, step by step; `None` without an answer in
-        mm.
+    notes
+        What a reader must know of the model's boundaries, the weightiest first.
     model_leaves_out
         What the model does not contain.
     settings
@@ -1950,10 +2106,10 @@ class Design(_Design, total=False):
     """
 
     commit: Optional[str]
+    specification: Optional[Specification]
     filter_gradation: List[List[float]]
     inputs: List[InputFile]
-    findings: List[DesignFinding]
-    specification: Optional[Specification]
+    notes: List[RowNote]
     cover: SheetCover
     inches: bool
 
@@ -1984,6 +2140,7 @@ class _ComparedCase(TypedDict):
     folder: str
     verdict: Literal["no erosion", "some erosion", "continuing erosion", "undecided"]
     rules_not_kept: List[str]
+    model: Model
     replicates: int
     thickness_mm: Optional[float]
     scale_free: bool
@@ -2010,10 +2167,12 @@ class ComparedCase(_ComparedCase, total=False):
         The class as which practice counts.
     headline
         The answer of practice; `None` without two sieve curves in mm.
-    first_lines
-        The lines of practice and model, each with its name.
-    found
-        What a reader must know besides, the weightiest first.
+    practice
+        What filter practice says of the pair; `None` likewise.
+    model
+        What the walk says.
+    notes
+        What else to know, in the order of every face.
     replicates
         Replicates.
     thickness_mm
@@ -2037,8 +2196,8 @@ class ComparedCase(_ComparedCase, total=False):
 
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
     headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
-    first_lines: List[List[object]]
-    found: List[str]
+    practice: Optional[Practice]
+    notes: List[Note]
     base: Optional[BaseSize]
     curve_range: List[List[float]]
 
@@ -2084,7 +2243,7 @@ class _Comparison(TypedDict):
     cases: List[ComparedCase]
     pairs: List[ComparedPair]
     threshold: float
-    model_leaves_out: List[str]
+    model_leaves_out: List[Literal["hydraulics", "hydraulics_elsewhere", "gradient", "gradient_there", "bridging", "partial_clogging", "supply", "excessive", "cohesion"]]
 
 
 class Comparison(_Comparison, total=False):
@@ -2304,7 +2463,7 @@ class _BaseSizes(TypedDict):
     fines_percent: Optional[float]
     regraded: bool
     regraded_at_mm: Optional[float]
-    why: str
+    why: RegradeReason
     d15_mm: Optional[float]
     d85_mm: Optional[float]
     d85_as_sampled_mm: Optional[float]
@@ -2358,9 +2517,9 @@ class _PairRules(TypedDict):
     filter: FilterSizes
     base: BaseSizes
     rules: List[AppliedRule]
-    practice: str
-    practice_class: Literal["meets", "does not meet", "not known"]
-    warnings: List[str]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    practice: Optional[Practice]
+    notes: List[Note]
 
 
 class PairRules(_PairRules, total=False):
@@ -2378,13 +2537,13 @@ class PairRules(_PairRules, total=False):
         The base after regrading.
     rules
         Every rule.
+    headline
+        The answer of practice; `None` where the limit of design was not applied.
     practice
-        What they say together, in a line, as it stands on every page: whether practice is met, and why.
-    practice_class
-        The same for programs.
+        What practice says of the pair; `None` likewise.
     if_dispersive
         The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
-    warnings
+    notes
         What may be wrong with the two tables, and what was taken for what.
     """
 

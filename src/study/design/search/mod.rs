@@ -37,9 +37,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::design::{BETWEEN_STEPS, Beyond};
+use crate::outcome::record::Note;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::verdict::{Finding, finding};
 pub(super) use trials::USUAL_ACROSS;
 use trials::{Pair, STOP, Search, between, ratio_at, smallest_seen, tried_below};
 pub(super) use trials::{Trial, Walker};
@@ -67,14 +67,15 @@ pub(super) enum Ended {
 }
 
 impl Ended {
-    /// The same as a finding; `of` says of how many networks.
-    pub fn finding(&self, of: &str) -> Finding {
+    /// The same as a note on this many networks.
+    pub fn note(&self, networks: u64) -> Note {
         match self {
-            Self::Erodes(ratio) => finding::erodes_to_end(*ratio, of),
-            Self::ErodesTo(ratio, why) => finding::erodes_to(*ratio, of, why),
-            Self::Holds(1, ratio) => finding::holds_to_end("", *ratio, of),
-            Self::Holds(_, ratio) => finding::holds_to_end(" in the second run", *ratio, of),
-            Self::NotWalked(why) => finding::not_walked(of, why),
+            Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
+            Self::ErodesTo(ratio, reason) => {
+                Note::ErodesTo { ratio: *ratio, networks, reason: reason.clone() }
+            }
+            Self::Holds(run, ratio) => Note::HoldsToEnd { run: *run, ratio: *ratio, networks },
+            Self::NotWalked(reason) => Note::NotWalked { networks, reason: reason.clone() },
         }
     }
 }

@@ -1,19 +1,19 @@
-//! What a class means.
+//! The classes of the model.
 
 use crate::outcome::record::{RunSummary, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 
-impl UndecidedBy {
-    /// Why, in a sentence without its end.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Curve => {
-                "the constriction curve is known within a range only, and its ends do not give one class"
-            }
-            Self::SecondRun => {
-                "some and continuing erosion differ by the second run, and only a first was asked for"
-            }
-            Self::Replicates => "the replicates do not separate the classes; more replicates may decide it",
+/// Why a class is undecided, in a sentence without its end.
+pub fn undecided_by(cause: UndecidedBy) -> &'static str {
+    match cause {
+        UndecidedBy::Curve => {
+            "the constriction curve is known within a range only, and its ends do not give one class"
+        }
+        UndecidedBy::SecondRun => {
+            "some and continuing erosion differ by the second run, and only a first was asked for"
+        }
+        UndecidedBy::Replicates => {
+            "the replicates do not separate the classes; more replicates may decide it"
         }
     }
 }
@@ -22,12 +22,6 @@ impl UndecidedBy {
 pub fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
-}
-
-/// A sentence as it stands within another.
-pub fn within(sentence: &str) -> String {
-    let mut chars = sentence.trim_end_matches('.').chars();
-    chars.next().map_or(String::new(), |c| c.to_lowercase().chain(chars).collect())
 }
 
 /// What a class means, in a sentence, of runs whose means these are.
@@ -61,7 +55,7 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
         return format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "));
     }
     let by = match summary {
-        [first] if first.eroded_mass_fraction.mean >= threshold => UndecidedBy::SecondRun.words(),
+        [first] if first.eroded_mass_fraction.mean >= threshold => undecided_by(UndecidedBy::SecondRun),
         _ => "these replicates do not separate the classes",
     };
     format!("Inconclusive: {by}.")

@@ -1,61 +1,8 @@
-//! The band of a specification, and the limits of D15F that rules set. `verdict` has what it is worth, in
-//! words.
-
-use serde::{Deserialize, Serialize};
+//! The limits of D15F by which the rules of practice retain a base.
 
 use crate::gradation::TIE;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleQuantity, RuleRole};
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
-
-/// What set the answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-pub enum SetBy {
-    /// A rule of practice.
-    Practice,
-    /// The walk.
-    Walk,
-}
-
-/// Between which D15F a filter both drains and holds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Band {
-    /// Minimum D15F, of the rule of permeability.
-    pub least: f64,
-    /// Whether the true least is not known, and is at most that.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub least_at_most: bool,
-    /// Maximum D15F that both allow: the walk, which erodes less than 7.5 % in the first run on all but 5 %
-    /// of networks, and practice.
-    pub greatest: f64,
-    /// Which of the two set it.
-    pub set_by: SetBy,
-    /// Maximum D15F that the strictest rule of retention allows, which was made for this base.
-    pub practice: Option<f64>,
-    /// Name of that rule.
-    pub practice_rule: String,
-    /// Its name for programs; `None` without one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub practice_rule_id: Option<String>,
-    /// Unit: `mm`, or `D85B`.
-    pub unit: String,
-    /// Whether nothing lies between the least and what both the walk and practice allow.
-    pub is_empty: bool,
-    /// The same in a sentence; of an empty one why it is.
-    pub said: String,
-}
-
-/// Limits of D15F that rules set for a base, in the unit of the rules: name and limit.
-///
-/// Only rules that were made for it. `d15f` is that of the filter that they judge: a limit of a ratio to a
-/// size of the base (Terzaghi) is as many times it as the limit is times the value. Which size that is, of
-/// the base as it is walked or as practice regrades it, the rule alone knows.
-pub fn limits(rules: &[AppliedRule], d15f: f64) -> Vec<(&AppliedRule, f64)> {
-    let d15f = judged_d15f(rules, d15f);
-    rules.iter().filter_map(|rule| limit(rule, d15f)).collect()
-}
 
 /// D15F by which the filter was judged, the unsafe end where its curve is flat or its sieves stand apart.
 fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
@@ -63,6 +10,11 @@ fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
     design.and_then(|rule| rule.value).unwrap_or(d15f)
 }
 
+/// The limit of D15F that a rule sets for a base it was made for, in the unit of the rules.
+///
+/// `d15f` is that of the filter that the rule judges: a limit of a ratio to a size of the base (Terzaghi) is
+/// as many times it as the limit is times the value. Which size that is, of the base as it is walked or as
+/// practice regrades it, the rule alone knows.
 fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
     match rule.quantity {
@@ -81,7 +33,7 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
 pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
-    let is_dispersive = design.is_some_and(|of| of.note.says(RuleNote::Dispersive));
+    let is_dispersive = design.is_some_and(|of| of.notes.contains(&RuleNote::Dispersive));
     let counts = move |tests: &AppliedRule| is_dispersive || !(is_known || tests.limit_at_most);
     let retains = move |of: &&AppliedRule| of.role == RuleRole::Retention;
     rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))
@@ -128,7 +80,8 @@ mod tests {
     }
 
     fn limit_of(rules: &[AppliedRule], id: &str) -> Option<f64> {
-        limits(rules, D15F).iter().find(|(rule, _)| rule.id == id).map(|(_, limit)| *limit)
+        let rule = rules.iter().find(|rule| rule.id == id)?;
+        limit(rule, judged_d15f(rules, D15F)).map(|(_, limit)| limit)
     }
 
     #[test]

@@ -1,12 +1,8 @@
-//! Single rules of practice in words: what one found, its value beside its limit, and how a sentence cites
-//! it.
+//! What single rules of practice found.
 
-use crate::outcome::apart::{digits_of, value_and_limit};
-use crate::outcome::design::band::retaining;
-use crate::outcome::record::{AppliedRule, RuleNote, RuleRole, ValueBound};
-use crate::outcome::rules::{
-    DESIGN, DESIGN_FLOOR_MM, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
-};
+use crate::outcome::design::retention::retaining;
+use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
+use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// What a rule of practice found. Every face shows this, and none works it out by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,90 +28,32 @@ pub enum RuleResult {
 impl RuleResult {
     /// Those of rules that neither are kept nor broken, in the order of a reader.
     pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
-
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Met => "met",
-            Self::NotMet => "not met",
-            Self::NotReached => "not reached",
-            Self::ExcessiveNotJudged => "not reached; excessive erosion not judged",
-            Self::NotALimit => "not a limit",
-            Self::NoLimit => "no limit",
-            Self::NoResult => "no result",
-            Self::DoesNotApply => "does not apply",
-        }
-    }
 }
 
 /// What a rule found.
 pub fn result_of(rule: &AppliedRule) -> RuleResult {
     match rule.met.filter(|_| rule.applies) {
         Some(true) if rule.role == RuleRole::Continuation => {
-            match rule.note.says(RuleNote::ExcessiveNotJudged) {
+            match rule.notes.contains(&RuleNote::ExcessiveNotJudged) {
                 true => RuleResult::ExcessiveNotJudged,
                 false => RuleResult::NotReached,
             }
         }
         Some(true) => RuleResult::Met,
         Some(false) => RuleResult::NotMet,
-        None if !rule.applies && rule.note.says(RuleNote::NoClearBoundary) => RuleResult::NotALimit,
+        None if !rule.applies && rule.notes.contains(&RuleNote::NoClearBoundary) => RuleResult::NotALimit,
         None if !rule.applies && rule.needs.is_empty() => RuleResult::DoesNotApply,
         None if rule.limit.is_none() && rule.needs.is_empty() => RuleResult::NoLimit,
         None => RuleResult::NoResult,
     }
 }
 
-/// What stands before its limit: a least, a most, or a boundary beyond which erosion continues.
-pub fn limit_begins(rule: &AppliedRule) -> &'static str {
-    match (rule.role, rule.at_least, rule.limit_at_most) {
-        (RuleRole::Continuation, ..) => "continuing beyond",
-        // The least follows from a size in the base's finest part, and what is enough for it is known.
-        (_, true, true) if rule.id == PERMEABILITY_LEAST => "≥ 3 D15B;",
-        (_, true, true) => "≥ 5 D15B;",
-        (_, true, false) => "≥",
-        (_, false, _) => "≤",
-    }
-}
-
-/// Said once where limits are listed: with the digits that are shown a reader finds others a little larger.
-pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
-
-/// What stands behind its limit, where that is not known itself.
-pub fn limit_ends(rule: &AppliedRule) -> &'static str {
-    match (rule.limit_at_most, rule.at_least) {
-        (true, true) => " is enough",
-        (true, false) => " or less",
-        (false, _) => "",
-    }
-}
-
-/// What stands before its value: a bound of it, where sieves tell no more.
-pub fn value_begins(rule: &AppliedRule) -> &'static str {
-    match rule.value_bound {
-        None => "=",
-        Some(ValueBound::AtMost) => "at most",
-        Some(ValueBound::AtLeast) => "at least",
-    }
-}
-
-/// A value, shown behind its quantity in a sentence: "Cu of the filter is at least 7.1".
-pub(super) fn bounded(rule: &AppliedRule, value: &str) -> String {
-    match rule.value_bound {
-        None => value.to_owned(),
-        Some(_) => format!("{} {value}", value_begins(rule)),
-    }
-}
-
-/// Who gives the limit of a dispersive base, which is one number for design and for no erosion.
-const NOTE_B: &str = "Fell et al., Table 9.2, note b";
-
 /// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
 /// of its own, and so no margin.
-pub(super) fn is_of_dispersive(rule: &AppliedRule) -> bool {
+pub(crate) fn is_of_dispersive(rule: &AppliedRule) -> bool {
     [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
         && rule.applies
-        && rule.note.says(RuleNote::Dispersive)
+        && rule.notes.contains(&RuleNote::Dispersive)
         && !rule.limit_at_most
         && rule.limit != Some(DESIGN_FLOOR_MM)
 }
@@ -129,7 +67,7 @@ pub(crate) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
 
 /// Whether the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
 /// the lower end of the range in which erosion began in tests, or within that range.
-pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
+pub(crate) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     let limit = |id: &str| {
         let rule = rules.iter().find(|rule| rule.id == id && rule.applies && !rule.limit_at_most)?;
         rule.limit
@@ -138,38 +76,20 @@ pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
 }
 
 /// The boundary of no erosion of tests, where a filter within the limit of design lies beyond it.
-pub(super) fn tests_are_stricter(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+pub(crate) fn tests_are_stricter(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let tests = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.is_broken())?;
     let counts = retaining(rules).any(|rule| rule.id == TESTS_NO_EROSION);
     (met_of(rules, DESIGN) == Some(true) && !counts).then_some(tests)
 }
 
 /// Who gives the limit of a rule, as a sentence cites it.
-pub(super) fn credit(rule: &AppliedRule) -> &str {
-    if is_of_dispersive(rule) { NOTE_B } else { authority(rule) }
+pub fn credit(rule: &AppliedRule) -> &str {
+    // One number for design and for no erosion.
+    if is_of_dispersive(rule) { "Fell et al., Table 9.2, note b" } else { authority(rule) }
 }
 
-/// Whether a rule that was made for these soils is kept; `None` where it has no result.
-pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
-    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
-}
-
-/// What a rule needs, without why.
-pub(super) fn first_clause(needs: &str) -> String {
-    needs.split([':', ';']).next().unwrap_or_default().to_owned()
-}
-
-/// `a`, `a and b`, `a, b and c`.
-pub(super) fn listed(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [all @ .., last] => format!("{} and {last}", all.join(", ")),
-    }
-}
-
-/// A rule of retention, as a sentence cites it: whose it is, and which of theirs.
-pub(super) fn cited(id: &str, authority: &str) -> String {
+/// A rule of retention, as it is cited: whose it is, and which of theirs.
+pub fn cited(id: &str, authority: &str) -> String {
     let which = match id {
         DESIGN => "limit of design",
         TESTS_NO_EROSION => "boundary of no erosion",
@@ -180,7 +100,7 @@ pub(super) fn cited(id: &str, authority: &str) -> String {
 }
 
 /// The same of a rule that was applied.
-pub(super) fn cited_rule(rule: &AppliedRule) -> String {
+pub fn cited_rule(rule: &AppliedRule) -> String {
     match authority(rule) {
         name if *name == rule.name => name.into(),
         _ if is_of_dispersive(rule) => "the limit of Fell et al. for dispersive bases".into(),
@@ -188,27 +108,9 @@ pub(super) fn cited_rule(rule: &AppliedRule) -> String {
     }
 }
 
-/// A value and its limit, with as many digits as tell them apart, and this many at the least.
-pub(super) fn against(rule: &AppliedRule, digits: i32) -> [String; 2] {
-    let (Some(value), Some(limit)) = (rule.value, rule.limit) else {
-        return [size(rule.value, &rule.unit), size(rule.limit, &rule.unit)];
-    };
-    let shown = value_and_limit(value, limit, rule.at_least, digits);
-    shown.map(|number| with_unit(number, &rule.unit))
-}
-
-/// A value with its unit.
-pub(super) fn size(value: Option<f64>, unit: &str) -> String {
-    value.map_or("unknown".into(), |value| with_unit(short(value), unit))
-}
-
-pub(super) fn with_unit(number: String, unit: &str) -> String {
-    if unit.is_empty() { number } else { format!("{number} {unit}") }
-}
-
-/// Two digits that mean something, or three from 100 on.
-fn short(value: f64) -> String {
-    digits_of(value, 2)
+/// Whether a rule that was made for these soils is kept; `None` where it has no result.
+pub(crate) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
 
 #[cfg(test)]
@@ -258,8 +160,6 @@ mod tests {
             let rule = rules(base, d15f).into_iter().find(|rule| rule.id == TESTS_CONTINUING).unwrap();
             let read: AppliedRule = serde_json::from_str(&serde_json::to_string(&rule).unwrap()).unwrap();
             assert_eq!([result_of(&rule), result_of(&read)], [result; 2], "{rule:?}");
-            let words = result.words();
-            assert!(words == "not met" || !words.contains("met"), "{words}");
         }
         let drains = rules(&sand, 3.0).into_iter().find(|rule| rule.id == PERMEABILITY).unwrap();
         assert_eq!(result_of(&drains), RuleResult::Met);

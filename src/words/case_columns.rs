@@ -1,9 +1,10 @@
 //! The columns that the tables of campaigns and of comparisons share.
 
-use super::BaseSize;
-use super::numbers::{SizeUnit, percent, significant, whole};
-use super::record::{Ratios, Statistic};
-use super::table::{Columns, TableCell};
+use super::base_size::{base_size, grading};
+use crate::outcome::BaseSize;
+use crate::outcome::numbers::{SizeUnit, percent, significant, whole};
+use crate::outcome::record::{Ratios, Statistic};
+use crate::outcome::table::{Columns, TableCell};
 
 /// Mass eroded in a run, and its range where the constriction curve is a range.
 type Eroded = (Option<Statistic>, Option<[f64; 2]>);
@@ -27,12 +28,12 @@ impl<'a, T: 'a> Columns<'a, T> {
     ) -> Self {
         let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
         self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
-            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base.words_in(unit))))
+            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base_size(&base, unit))))
             .place(1)
             .digits("d15f_over_d95b", decimals, move |row| Some(of(row).0.d15f_over_d95b))
             .headed("D15F/ D95B")
             .place(1)
-            .column("d85b_of", move |row| of(row).1.map(|base| base.grading()))
+            .column("d85b_of", move |row| of(row).1.map(|base| grading(&base)))
     }
 
     /// Mass eroded in the first run and in the second, with its interval and, on a page, its range where the

@@ -1,0 +1,21 @@
+//! Notes in words.
+
+use pyo3::prelude::*;
+use voidwalk::outcome::note::Note;
+use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::words::{sentence, setting};
+
+use crate::problem::refused;
+
+/// The sentences of a JSON list of notes, in its order; sizes are in mm, or multiples of D0F.
+#[pyfunction]
+#[pyo3(signature = (notes, scale_free=false))]
+pub fn note_sentences(notes: &str, scale_free: bool) -> PyResult<Vec<String>> {
+    let notes: Vec<Note> = serde_json::from_str(notes).map_err(refused)?;
+    Ok(notes.iter().map(|note| sentence(note, SizeUnit::of(scale_free, false))).collect())
+}
+
+/// A note as a warning: its sentence, and the setting that changes it.
+pub fn with_setting(note: &Note, unit: SizeUnit) -> String {
+    format!("{} {}", sentence(note, unit), setting(note)).trim_end().to_owned()
+}

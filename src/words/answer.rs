@@ -1,0 +1,51 @@
+//! The lines that every face begins with: practice, the model, and what to do next.
+
+use super::next::next;
+use super::practice::practice;
+use crate::outcome::digits::percent_span;
+use crate::outcome::numbers::SizeUnit;
+use crate::outcome::record::{Headline, Model, Note, Outcome, Practice};
+
+/// Notes that stand on the first page and on a terminal; the rest stand further down the page.
+pub const FOREMOST: usize = 3;
+
+/// The lines that every face begins with, each under its name: without two sieve curves in mm the model's
+/// alone.
+pub fn first_lines(outcome: &Outcome, unit: SizeUnit) -> Vec<(&'static str, String)> {
+    let line = ("Model (research)", model(&outcome.model));
+    match outcome.headline {
+        Some(_) => vec![("Practice", practice(outcome, unit)), line, ("Next", next(outcome, unit))],
+        None => vec![line],
+    }
+}
+
+/// The same of a record that has no rules: without the next step.
+pub fn lines_of(
+    headline: Option<Headline>,
+    practice: Option<&Practice>,
+    walk: &Model,
+    unit: SizeUnit,
+) -> Vec<(&'static str, String)> {
+    let line = ("Model (research)", model(walk));
+    let Some((headline, practice)) = headline.zip(practice) else { return vec![line] };
+    let [d15f, limit] = unit.within([practice.d15f_mm.map(|[_, high]| high), practice.limit_mm], " mm");
+    let at_most = if practice.limit_at_most { "at most " } else { "" };
+    let d15f = d15f.map(|d15f| format!("D15F {d15f}"));
+    let limit = limit.map(|limit| format!("limit {at_most}{limit}"));
+    let numbers: Vec<String> = d15f.into_iter().chain(limit).collect();
+    vec![("Practice", format!("{}: {}", headline.words(), numbers.join(", "))), line]
+}
+
+/// The notes that matter most, at most [`FOREMOST`], and the number of the others.
+pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
+    let (first, rest) = outcome.notes.split_at(outcome.notes.len().min(FOREMOST));
+    (first, rest.len())
+}
+
+/// The class of a walk, and what eroded in each run.
+pub fn model(model: &Model) -> String {
+    let spans = model.eroded_percent.iter();
+    let spans: Vec<String> =
+        spans.map(|ends| percent_span(ends.map(|percent| (percent / 100.0).max(0.0)))).collect();
+    format!("{}; {} eroded", model.class.words(), spans.join(" then "))
+}

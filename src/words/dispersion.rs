@@ -1,0 +1,54 @@
+//! The limit of a base of which nobody has said whether it is dispersive.
+
+use crate::outcome::numbers::{SizeUnit, fixed};
+use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
+
+/// A filter that is too coarse for a dispersive base alone, in a clause; `None` where it keeps the limit, or
+/// is too coarse in any case.
+pub fn beyond_dispersive(
+    limit: IfDispersive,
+    rules: &[AppliedRule],
+    d15f_mm: Option<f64>,
+    unit: SizeUnit,
+) -> Option<String> {
+    let beyond = limit.broken_by(rules, d15f_mm)?;
+    let at_most = if limit.at_most { "at most " } else { "" };
+    let [value, most] =
+        unit.within([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], " mm").map(Option::unwrap_or_default);
+    let without =
+        beyond.without_percent.map(|part| format!(" (without the filter's finest {} %)", fixed(part, 1)));
+    let without = without.unwrap_or_default();
+    Some(format!(
+        "if the base is dispersive, the limit is {at_most}{most}, and {value}{without} is beyond it"
+    ))
+}
+
+/// The limit behind a D15F (mm) that is recommended; `None` where that holds for a dispersive base too.
+pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> Option<String> {
+    const IF: &str = "if the base is dispersive, which is not stated";
+    if limit.at_most {
+        Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
+    } else {
+        (limit.d15f_max_mm < d15f_mm).then(|| format!("{} {IF}", unit.limit(limit.d15f_max_mm, "mm", false)))
+    }
+}
+
+/// The limit of D15F. One that no source gives is never called that of other bases.
+pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
+    let most = unit.limit(limit.d15f_max_mm, "mm", false);
+    match limit.lacks.filter(|_| limit.at_most) {
+        Some(DispersiveLack::AnyLimit) => {
+            format!("less than {most}, by how much no source that was read says")
+        }
+        Some(DispersiveLack::D85B) => format!("at most {most}, as D85B is not known"),
+        Some(DispersiveLack::LimitOfDesign) | None => format!("at most {most}"),
+    }
+}
+
+/// The test that tells a limit which is not known: this one, where no text has the limit.
+pub fn test(limit: IfDispersive, of_the_pair: &'static str) -> &'static str {
+    match limit.lacks {
+        Some(DispersiveLack::D85B) => "have the base tested with a hydrometer",
+        Some(DispersiveLack::LimitOfDesign | DispersiveLack::AnyLimit) | None => of_the_pair,
+    }
+}

@@ -1,0 +1,35 @@
+//! English: the sentences in which faces say what records hold.
+//!
+//! - [`first_lines()`] are the lines of practice and model that every face begins with.
+//! - [`sentence()`] fills a note's sentence with its numbers, [`setting()`] says which setting changes it.
+//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: what an answer
+//!   leaves out.
+
+mod answer;
+mod base_size;
+pub mod batch;
+mod case_columns;
+mod class;
+pub mod comparison;
+pub mod design;
+pub mod designed;
+mod dispersion;
+pub mod ledger;
+pub mod left_out;
+mod next;
+mod note;
+mod practice;
+pub mod products;
+pub mod rule;
+pub mod rule_note;
+mod so_far;
+pub mod specification;
+
+pub use answer::{FOREMOST, first_lines, foremost, lines_of, model};
+pub use base_size::{base_size, grading};
+pub use class::{capital, meaning, undecided_by};
+pub use dispersion::{beside_dispersive, beyond_dispersive, dispersive_limit, test};
+pub use next::next;
+pub use note::{row_note, sentence, setting};
+pub use practice::{judged_alone, practice, practice_line, tested_class};
+pub use so_far::so_far;

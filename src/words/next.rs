@@ -1,0 +1,179 @@
+//! The next step by practice: which D15F a filter is to have, what to test, what to find out.
+
+use super::dispersion::{beside_dispersive, beyond_dispersive};
+use super::rule_note::missing;
+use crate::gradation::FINES_MM;
+use crate::outcome::design::retention::{open_retention, retention};
+use crate::outcome::numbers::{SizeUnit, in_digits, rounded_down, rounded_up};
+use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole};
+use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
+use crate::verdict::practice::{Standing, broken, standing};
+
+/// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault of it.
+const DRAIN_D15F_MM: f64 = 5.0;
+
+/// The next step by practice for a pair in mm, in a sentence without its end.
+pub fn next(outcome: &Outcome, unit: SizeUnit) -> String {
+    let (rules, d15f_mm) = (&outcome.rules[..], outcome.inputs.filter.d15_mm);
+    Pair { rules, d15f_mm, if_dispersive: outcome.if_dispersive, unit }.step()
+}
+
+/// A pair as practice sees it.
+struct Pair<'a> {
+    rules: &'a [AppliedRule],
+    d15f_mm: f64,
+    if_dispersive: Option<IfDispersive>,
+    unit: SizeUnit,
+}
+
+impl Pair<'_> {
+    fn step(&self) -> String {
+        match standing(self.rules) {
+            Standing::Fails | Standing::NoMargin => self.retention(),
+            // As placed it is too coarse already.
+            Standing::WashedOut if !broken(self.rules, RuleRole::Retention).is_empty() => {
+                self.retention() + "; it must be internally stable"
+            }
+            Standing::WashedOut | Standing::Unstable => self.stability(),
+            Standing::Unknown(need) => {
+                format!("get {}", need.and_then(missing).unwrap_or("the limit of design"))
+            }
+            Standing::Open(_) => "test the sieves between".into(),
+            Standing::Met | Standing::NoRules => self
+                .dispersion()
+                .or_else(|| self.drainage())
+                .or_else(|| self.placing())
+                .or_else(|| self.fines())
+                .or_else(|| self.missing_drainage())
+                .unwrap_or_else(|| "nothing by these rules".into()),
+        }
+    }
+
+    /// A test of the base, where the filter is too coarse for a dispersive one alone.
+    fn dispersion(&self) -> Option<String> {
+        beyond_dispersive(self.if_dispersive?, self.rules, Some(self.d15f_mm), self.unit)?;
+        Some("have the base tested for dispersion by a pinhole or crumb test".into())
+    }
+
+    /// The filter to take in the place of one that may lose its finer part.
+    fn stability(&self) -> String {
+        let filter = match self.greatest() {
+            Some((limit, false)) => self.sized(limit) + " that is internally stable",
+            _ => "take a filter that is internally stable".into(),
+        };
+        format!("{filter}, or have its internal stability tested")
+    }
+
+    /// The D15F that retains the base, and what to do with a filter that exists.
+    fn retention(&self) -> String {
+        let exists = self.existing_filter();
+        match self.greatest() {
+            Some((limit, true)) => format!(
+                "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
+                self.unit.limit(limit, "mm", false)
+            ),
+            None => format!("take a finer filter; {exists}"),
+            Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
+        }
+    }
+
+    /// Beyond the boundary of continuing erosion no test of the pair is to be waited for.
+    fn existing_filter(&self) -> String {
+        let boundary = self.rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.met == Some(false));
+        match boundary.and_then(|rule| Some(rule.value? / rule.limit?)) {
+            Some(times) => format!(
+                "for a filter that exists, assume continuing erosion (its D15F is {} times that boundary)",
+                in_digits(times, 2)
+            ),
+            None => "for a filter that exists, have this pair tested".into(),
+        }
+    }
+
+    /// A filter with a D15F of at most this (mm), and of at least what drains the base.
+    fn sized(&self, most: f64) -> String {
+        let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
+        let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
+            Some(least) if least <= most => {
+                (format!(" and at least {}", self.unit.limit(least, "mm", true)), None)
+            }
+            // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
+            Some(least) if drainage.is_some() => {
+                let least = self.unit.limit(least, "mm", true);
+                let compare = "compare the permeabilities of filter and base";
+                (String::new(), Some(format!("to drain the base it would be at least {least}: {compare}")))
+            }
+            Some(_) | None => (String::new(), None),
+        };
+        let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
+        let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
+        format!("take a filter with a D15F of at most {}{beside}{drains}", self.unit.limit(most, "mm", false))
+    }
+
+    /// The limit of a dispersive base beside a D15F (mm) that is recommended.
+    fn beside_dispersive(&self, most: f64) -> Option<String> {
+        beside_dispersive(self.if_dispersive?, most, self.unit)
+    }
+
+    /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
+    /// not known.
+    fn greatest(&self) -> Option<(f64, bool)> {
+        let (_, limit) = retention(self.rules, self.d15f_mm)?;
+        Some((limit, open_retention(self.rules).is_some()))
+    }
+
+    fn drainage_rule(&self) -> Option<&AppliedRule> {
+        self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies)
+    }
+
+    fn drainage(&self) -> Option<String> {
+        let broken = broken(self.rules, RuleRole::Drainage);
+        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+            broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
+        let fines = of_fines.iter().find_map(|rule| rule.limit);
+        let least = of_size.iter().find_map(|rule| rule.limit);
+        let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
+        match (least, self.greatest()) {
+            (Some(least), Some((most, false))) if most >= least => {
+                let range = format!("{} to {} mm", rounded_up(least), rounded_down(most));
+                let inches = self.unit.beside_range(least, most);
+                let dispersive =
+                    self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
+                Some(format!("take a coarser filter, D15F {range}{inches}{dispersive}{clean}"))
+            }
+            (Some(_), _) => {
+                Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
+            }
+            (None, _) => fines.map(|most| format!("wash the filter: {}", few_fines(most))),
+        }
+    }
+
+    /// What to ask of a filter whose fines nobody sieved.
+    fn fines(&self) -> Option<String> {
+        let is_open = |rule: &&AppliedRule| rule.id == FILTER_FINES && rule.applies && rule.met.is_none();
+        let most = self.rules.iter().find(is_open)?.limit?;
+        Some(format!("have the fines of the filter tested, and wash it where needed: {}", few_fines(most)))
+    }
+
+    /// What to do about a filter that may segregate.
+    fn placing(&self) -> Option<String> {
+        let step = |rule: &AppliedRule| {
+            if rule.id != FILTER_GREATEST_SIZE {
+                return Some("narrow the filter's range of sizes, or specify how it is placed".into());
+            }
+            let limit = rule.limit.filter(|_| self.d15f_mm <= DRAIN_D15F_MM)?;
+            Some(format!("take out the grains coarser than {} mm", in_digits(limit, 3)))
+        };
+        broken(self.rules, RuleRole::Placing).into_iter().find_map(step)
+    }
+
+    /// What is missing to judge drainage.
+    fn missing_drainage(&self) -> Option<String> {
+        let need = self.drainage_rule().filter(|rule| rule.met.is_none())?.needs.first()?;
+        missing(*need).map(|need| format!("get {need}: drainage is not known"))
+    }
+}
+
+/// How few fines a filter is to have once it is placed.
+fn few_fines(most: f64) -> String {
+    format!("at most {most} % finer than {FINES_MM} mm in place")
+}
