@@ -148,8 +148,15 @@ class Types:
 def merged(schema: Any) -> Any:
     """One dict in place of several, which are told apart by a word: with the fields of all."""
     fields: Dict[str, List[Any]] = {}
+    # What a field without a description is: of a word that tells them apart each word, of another field its first case.
+    told: Dict[str, List[str]] = {}
     for one in schema["oneOf"]:
+        about = one.get("description", "")
         for field, of in one["properties"].items():
+            if "const" in of:
+                told.setdefault(field, []).append(f"`{of['const']}`: {about}" if about else f"`{of['const']}`.")
+            else:
+                told.setdefault(field, [about])
             if of not in fields.setdefault(field, []):
                 fields[field].append(of)
     always = [set(one.get("required", [])) for one in schema["oneOf"]]
@@ -157,7 +164,10 @@ def merged(schema: Any) -> Any:
         "type": "object",
         "description": schema.get("description", ""),
         "properties": {
-            field: of[0] if len(of) == 1 else {"description": of[0].get("description", ""), "anyOf": of}
+            field: {
+                **(of[0] if len(of) == 1 else {"anyOf": of}),
+                "description": of[0].get("description") or " ".join(told[field]),
+            }
             for field, of in fields.items()
         },
         "required": [field for field in fields if all(field in one for one in always)],

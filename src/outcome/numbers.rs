@@ -243,13 +243,14 @@ impl SizeUnit {
         let [low, high] = [rounded_up(least), rounded_down(most)];
         let [shown_low, shown_high] = [shown(&low, least), shown(&high, most)];
         let inches = format!("{} to {}", rounded_up(shown_low / INCH_MM), rounded_down(shown_high / INCH_MM));
-        format!("{low} to {high} mm{}", self.bracket(inches))
+        format!("{low} to {high} {}{}", size_unit(self == Self::D0f), self.bracket(inches))
     }
 
     /// A range of sizes in mm that tests left, with ends rounded outward.
     pub fn range_of_tests(self, low: f64, high: f64) -> String {
         let inches = format!("{} to {}", rounded_down(low / INCH_MM), rounded_up(high / INCH_MM));
-        format!("{} to {} mm{}", rounded_down(low), rounded_up(high), self.bracket(inches))
+        let unit = size_unit(self == Self::D0f);
+        format!("{} to {} {unit}{}", rounded_down(low), rounded_up(high), self.bracket(inches))
     }
 
     /// What stands behind a range of sizes in mm, where inches are shown.
@@ -272,8 +273,9 @@ impl SizeUnit {
         rounded_up(mm) + &self.beside_least(mm)
     }
 
-    /// A limit with the name of its unit, a least or a greatest, and its inches.
-    pub fn limit(self, value: f64, name: &str, at_least: bool) -> String {
+    /// A limit with its unit, a least or a greatest, and its inches.
+    pub fn limit(self, value: f64, at_least: bool) -> String {
+        let name = size_unit(self == Self::D0f);
         match at_least {
             true => format!("{} {name}{}", rounded_up(value), self.beside_least(value)),
             false => format!("{} {name}{}", rounded_down(value), self.beside_greatest(value)),
@@ -353,7 +355,7 @@ mod tests {
         assert_eq!(unit.greatest(0.7), "0.700 (0.0275\u{202f}in)");
         assert_eq!(unit.least(0.14), "0.140 (0.00552\u{202f}in)");
         assert_eq!(SizeUnit::Mm.greatest(0.7), "0.700");
-        assert_eq!(unit.limit(0.7, "mm", false), "0.700 mm (0.0275\u{202f}in)");
+        assert_eq!(unit.limit(0.7, false), "0.700 mm (0.0275\u{202f}in)");
     }
 
     #[test]

@@ -47,9 +47,11 @@ pub fn outcome(
     found.extend(case.notes());
     found.extend(other.range.as_ref().map(|_| Note::CurveRange {}));
     let inputs_record = case.record();
+    // Multiples of D0F are the sizes of a study, not of two soils.
+    let in_mm = !case.is_scale_free();
     let mut outcome = Outcome {
         headline: None,
-        practice: practice::record(&rules, rules::tested_range(&inputs)),
+        practice: in_mm.then(|| practice::record(&rules, rules::tested_range(&inputs))).flatten(),
         model: Model {
             class: verdict,
             eroded_percent: eroded_percent(&summary, other.range.as_ref()),
@@ -97,7 +99,7 @@ pub fn outcome(
         .if_dispersive
         .and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
     let is_beyond = is_beyond.is_some();
-    outcome.headline = practice::headline(&outcome.rules, is_beyond);
+    outcome.headline = in_mm.then(|| practice::headline(&outcome.rules, is_beyond)).flatten();
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
 }

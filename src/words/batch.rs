@@ -210,8 +210,8 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     let limits = undrained.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let limit = match row.d15f_min_at_most {
-        true => format!("the minimum D15F is not known, and at most {}", unit.limit(least, "mm", true)),
-        false => format!("D15F {} or more", unit.limit(least, "mm", true)),
+        true => format!("the minimum D15F is not known, and at most {}", unit.limit(least, true)),
+        false => format!("D15F {} or more", unit.limit(least, true)),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }

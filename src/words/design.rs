@@ -34,7 +34,7 @@ pub fn design_model(design: &Design, unit: SizeUnit) -> String {
     let Some((row, ratio)) = design.least_held() else {
         return "no D15F/D85B is known that nearly all networks hold".into();
     };
-    let size = design.base.d85_mm.map(|d85| format!(", D15F {}", unit.limit(ratio * d85, "mm", false)));
+    let size = design.base.d85_mm.map(|d85| format!(", D15F {}", unit.limit(ratio * d85, false)));
     let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
     format!(
         "nearly all networks hold D15F/D85B {}{}{}",
@@ -56,7 +56,7 @@ fn specification_lines(specification: &Specification, unit: SizeUnit) -> [(&'sta
 /// The maximum D15F and whose rule sets it.
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
-        Some((curve, limit)) => format!("D15F {} ({})", unit.limit(limit, "mm", false), curve.d15f_max_rule),
+        Some((curve, limit)) => format!("D15F {} ({})", unit.limit(limit, false), curve.d15f_max_rule),
         None => "not known".into(),
     }
 }

@@ -51,7 +51,7 @@ fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     row.d15f_max_mm.map_or_else(
         || "no maximum D15F is known".into(),
-        |mm| format!("D15F up to {} (practice: {})", unit.limit(mm, "mm", false), row.rule),
+        |mm| format!("D15F up to {} (practice: {})", unit.limit(mm, false), row.rule),
     )
 }
 
@@ -64,7 +64,7 @@ fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
 ///
 /// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
 pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
-    let [most, least_of] = [false, true].map(|at_least| move |mm: f64| unit.limit(mm, "mm", at_least));
+    let [most, least_of] = [false, true].map(|at_least| move |mm: f64| unit.limit(mm, at_least));
     let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
     let cap = strictest(others.iter().copied());
     let Some((first, own)) = strictest(settled.iter().copied()) else {
@@ -143,7 +143,7 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     if let Some((row, least)) = drainage(&all.rows) {
         let at_most = if row.d15f_min_at_most { "at most " } else { "" };
         let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
-        let limit = unit.limit(least, "mm", true);
+        let limit = unit.limit(least, true);
         said.push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
     }
     said.extend(still_to_set(all));

@@ -29,13 +29,13 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
     if limit.at_most {
         Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
     } else {
-        (limit.d15f_max_mm < d15f_mm).then(|| format!("{} {IF}", unit.limit(limit.d15f_max_mm, "mm", false)))
+        (limit.d15f_max_mm < d15f_mm).then(|| format!("{} {IF}", unit.limit(limit.d15f_max_mm, false)))
     }
 }
 
 /// The limit of D15F. One that no source gives is never called that of other bases.
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
-    let most = unit.limit(limit.d15f_max_mm, "mm", false);
+    let most = unit.limit(limit.d15f_max_mm, false);
     match limit.lacks.filter(|_| limit.at_most) {
         Some(DispersiveLack::AnyLimit) => {
             format!("less than {most}, by how much no source that was read says")

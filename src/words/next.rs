@@ -4,7 +4,7 @@ use super::dispersion::{beside_dispersive, beyond_dispersive};
 use super::rule_note::missing;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::retention::{open_retention, retention};
-use crate::outcome::numbers::{SizeUnit, in_digits, rounded_down, rounded_up};
+use crate::outcome::numbers::{SizeUnit, in_digits};
 use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole};
 use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
 use crate::verdict::practice::{Standing, broken, standing};
@@ -70,7 +70,7 @@ impl Pair<'_> {
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
-                self.unit.limit(limit, "mm", false)
+                self.unit.limit(limit, false)
             ),
             None => format!("take a finer filter; {exists}"),
             Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
@@ -93,12 +93,10 @@ impl Pair<'_> {
     fn sized(&self, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
-            Some(least) if least <= most => {
-                (format!(" and at least {}", self.unit.limit(least, "mm", true)), None)
-            }
+            Some(least) if least <= most => (format!(" and at least {}", self.unit.limit(least, true)), None),
             // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
             Some(least) if drainage.is_some() => {
-                let least = self.unit.limit(least, "mm", true);
+                let least = self.unit.limit(least, true);
                 let compare = "compare the permeabilities of filter and base";
                 (String::new(), Some(format!("to drain the base it would be at least {least}: {compare}")))
             }
@@ -106,7 +104,7 @@ impl Pair<'_> {
         };
         let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
-        format!("take a filter with a D15F of at most {}{beside}{drains}", self.unit.limit(most, "mm", false))
+        format!("take a filter with a D15F of at most {}{beside}{drains}", self.unit.limit(most, false))
     }
 
     /// The limit of a dispersive base beside a D15F (mm) that is recommended.
@@ -134,11 +132,10 @@ impl Pair<'_> {
         let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
         match (least, self.greatest()) {
             (Some(least), Some((most, false))) if most >= least => {
-                let range = format!("{} to {} mm", rounded_up(least), rounded_down(most));
-                let inches = self.unit.beside_range(least, most);
+                let range = self.unit.limits(least, most);
                 let dispersive =
                     self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
-                Some(format!("take a coarser filter, D15F {range}{inches}{dispersive}{clean}"))
+                Some(format!("take a coarser filter, D15F {range}{dispersive}{clean}"))
             }
             (Some(_), _) => {
                 Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())

@@ -21,7 +21,7 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::BaseBetween(from, to) => return between(unit, "sizes of the base are not known", from, to),
         RuleNote::FlatBase(limit) => {
-            let limit = unit.limit(limit, "mm", false);
+            let limit = unit.limit(limit, false);
             return format!("the base may be gap-graded: the stricter limit; the other is {limit}");
         }
         RuleNote::Dispersive => "dispersive",
@@ -49,10 +49,10 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
             return format!("{times}{by_fines} mm for {fines} % fines");
         }
         RuleNote::FloorGoverns(times, size) => {
-            return format!("its floor: {} D85B would be {}", given(times), unit.limit(size, "mm", false));
+            return format!("its floor: {} D85B would be {}", given(times), unit.limit(size, false));
         }
         RuleNote::LeastGoverns(times, size) => {
-            return format!("its floor: {} D15B is below {}", given(times), unit.limit(size, "mm", true));
+            return format!("its floor: {} D15B is below {}", given(times), unit.limit(size, true));
         }
         RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",
         RuleNote::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed",

@@ -47,7 +47,7 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] = [retains, most].map(|mm| unit.limit(mm, "mm", false));
+        let [retains, most] = [retains, most].map(|mm| unit.limit(mm, false));
         return Some(format!(
             "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
              the band is no wider than {WIDEST_BAND} to 1"
@@ -55,7 +55,7 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     }
     let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
     let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| unit.limit(mm, "mm", true));
+    let [drains, least] = [drains, least].map(|mm| unit.limit(mm, true));
     Some(format!(
         "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
          that the band is no wider than {WIDEST_BAND} to 1"
@@ -71,7 +71,7 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
         // Where a table is entered: a finer D10F allows no coarser D90F.
-        unit.limit(least, "mm", false)
+        unit.limit(least, false)
     ))
 }
 
@@ -143,15 +143,15 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
             "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
              {} to retain the base: D15B must be tested.",
-            unit.limit(*most_drains_mm, "mm", true),
-            unit.limit(*most_mm, "mm", false)
+            unit.limit(*most_drains_mm, true),
+            unit.limit(*most_mm, false)
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
             "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
              {} \
              to retain it. {}",
-            unit.limit(*least_mm, "mm", true),
-            unit.limit(*most_mm, "mm", false),
+            unit.limit(*least_mm, true),
+            unit.limit(*most_mm, false),
             // So fine a base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
@@ -164,7 +164,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         }
         NoBand::TooCoarse { most_d60f_mm } => format!(
             "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            unit.limit(*most_d60f_mm, "mm", false)
+            unit.limit(*most_d60f_mm, false)
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
@@ -180,7 +180,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
 pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
     Some(match (value.unit.as_str(), value.role()) {
-        ("mm", Some(at_least)) => unit.limit(number, "mm", at_least),
+        ("mm", Some(at_least)) => unit.limit(number, at_least),
         ("mm", None) => format!("{} mm{}", significant(number), unit.beside(number)),
         ("", _) if number.fract() == 0.0 && number < 100.0 => format!("{number:.0}"),
         (name, _) => format!("{} {name}", significant(number)).trim_end().to_owned(),

@@ -69,9 +69,15 @@ fn of_a_broad_filter_the_finer_part_is_packed_and_its_error_is_in_the_verdict() 
 #[test]
 fn what_is_packed_can_be_said_and_what_cannot_be_is_refused_with_its_time() {
     let (_root, at) = with_scene(&format!("[filter]\ncu = 2\ndensity = \"loose\"\n{FEW}coarsest = 50\n"));
-    let check = call(&at, &["check", "s.toml"]);
+    let check = call(&at, &["check", "s.toml", "--json"]);
     done(&check);
-    assert!(String::from_utf8_lossy(&check.stdout).contains("50 % of its mass, up to 2 mm"));
+    let check: serde_json::Value = serde_json::from_slice(&check.stdout).unwrap();
+    let part = |note: &serde_json::Value| note["id"].as_str().unwrap().ends_with("part_packed");
+    let note = check["notes"].as_array().unwrap().iter().find(|note| part(note)).unwrap();
+    assert_eq!(
+        (&note["numbers"]["part_percent"], &note["numbers"]["largest_mm"]),
+        (&50.0.into(), &2.0.into())
+    );
     let wide = ["pack", "s.toml", "--set", "filter.cu=30", "--set", "packing.coarsest=100", "--out", "p"];
     let output = call(&at, &wide);
     refused(&output, "grains would do, in about");

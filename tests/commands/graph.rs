@@ -76,9 +76,8 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
     done(&call(root.path(), &["check", "scene.toml"]));
     let run = call(root.path(), &["run", "scene.toml", "--out", "one", "--threads", "1"]);
     done(&run);
-    let page = fs::read_to_string(root.path().join("one/report.html")).unwrap();
-    assert!(page.contains("The permeability at the end of the first and second run is "));
     let outcome = json(&root.path().join("one/outcome.json"));
+    assert!(outcome["notes"].to_string().contains("\"permeability\""), "{}", outcome["notes"]);
     let network = &outcome["network"];
     assert_eq!((&network["kind"], &network["exit"]), (&"graph".into(), &"flux".into()));
     assert_eq!((&network["copies"], &network["thickness_mm"]), (&2.into(), &12.0.into()));
@@ -200,7 +199,6 @@ fn thickness_is_layers_or_copies() {
     let outcome = of(&args);
     let reasons = outcome["notes"].to_string();
     assert!(reasons.contains("copies_thicker"), "{reasons}");
-    assert!(reasons.contains("network.copies") && !reasons.contains("network.nz"), "{reasons}");
     let flowing = of(&["--set", "walk.exit=flux", "--set", "network.nx=5", "--set", "network.ny=5"]);
     assert_eq!(flowing["network"]["kind"], "lattice");
     assert!(flowing["replicates"][0]["runs"][0]["k_over_k0"].as_f64().unwrap() <= 1.0);

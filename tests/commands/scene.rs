@@ -354,7 +354,7 @@ fn filter_rules_and_equation_one_stand_in_the_outcome() {
     let linear = root.path().join("linear");
     assert!(run_small(&linear, &["--quiet"]).status.success());
     let text = fs::read_to_string(linear.join("outcome.json")).unwrap();
-    assert_eq!(text.matches("needs the filter's sieve curve").count(), 8);
+    assert_eq!(text.matches("\"needs_curve_of_filter").count(), 8);
 }
 
 /// The packing's time stands beside that of the walks.

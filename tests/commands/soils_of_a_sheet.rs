@@ -179,7 +179,7 @@ fn a_specification_has_every_curve_of_its_base() {
     // The size that is named is that of the step.
     let found = record(&root.path().join("one/specification.json"));
     let step = found["steps"][9].as_object().unwrap();
-    assert_eq!(step["does"], "Keep the filter from segregating");
+    assert_eq!(step["does"], "keep_from_segregating");
     let least = step["values"][0]["value"].as_f64().unwrap();
     let said = format!("minimum D10F of {}\u{202f}mm", voidwalk::report::numbers::rounded_down(least));
     assert!(page.contains(&said), "{said}");

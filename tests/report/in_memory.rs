@@ -94,7 +94,7 @@ fn walks_on_a_given_network_have_a_page() {
     let (brief, at) = (words(&brief), words(&brief).find("In the model the filter ").unwrap());
     for doubt in [
         "The filter was not given, so no rule of practice was applied.",
-        "are enough is not known. The class follows from their number, and without the filter and its grains per void",
+        "Whether 20 000 base particles are enough is not known",
         "All replicates walk one network",
     ] {
         assert!(brief.contains(doubt) && said.contains(doubt), "{doubt}: {brief}");

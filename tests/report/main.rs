@@ -55,7 +55,6 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Rules of practice, in short",
         "The model leaves out: hydraulics, ",
         "Group by ASTM D2487",
-        "18 % of the base is finer than 0.075 mm",
         "What the model found",
         "Model (“the walk”): base particles are moved through voids",
         "What the model leaves out",

@@ -22,7 +22,7 @@ pub(super) fn boundaries(design: &Design) -> Markup {
         .map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(design))));
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(design);
-    let limit = |mm: f64| unit.limit(mm, "mm", false);
+    let limit = |mm: f64| unit.limit(mm, false);
     let found = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
     let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
         let end = if is_limit { rounded_down } else { significant };

@@ -1546,7 +1546,13 @@ class RegradeCause(_RegradeCause, total=False):
     Keys
     ----
     id
+        `gap`: It has a gap that begins at this size (mm). `gap_among_gravel`: It has a gap that begins at this
+        size (mm), and what is finer would be regraded for its gravel. `gravel_and_fines`: It has gravel and
+        many fines. `broad_gravel`: It has gravel and is broadly graded. `gravel_of_unknown_cu`: It has gravel,
+        and Cu is not known. `narrow_gravel`: It has gravel, few fines, and is not broadly graded. `no_gravel`:
+        It has no gravel. `no_unit`: Its sizes have no unit.
     from_mm
+        It has a gap that begins at this size (mm).
     """
 
     from_mm: float
@@ -1577,6 +1583,11 @@ class StepNote(_StepNote, total=False):
     Keys
     ----
     id
+        `curves`: Curves of the base. `gravel`: Gravel and gaps of a curve. `not_regraded`: No curve is
+        regraded. `set_by`: The rule, and of several curves the one, that sets a limit. `limit_not_known`: The
+        limit of a curve is not known. `drainage_at_most`: D15B is finer than the finest sieve, and the minimum
+        D15F at most the one given. `of_rule`: What the rule says besides. `raised`: The minimum D15F is raised.
+        `lowered`: The maximum D15F is lowered. `stability`: Internal stability of a side.
     curves
         How many.
     curve
@@ -1688,6 +1699,11 @@ class NoBand(_NoBand, total=False):
     Keys
     ----
     id
+        `drainage_not_known`: Of the minimum D15F only the most is known, and it is above the maximum.
+        `none_drains_and_retains`: The minimum D15F is above the maximum. `too_many_fines`: The coarse side
+        would have too many fines. `too_coarse`: The maximum D60F lies beyond the greatest size.
+        `limit_not_known`: The maximum D15F of a curve is not known. `no_rule`: No rule of retention covers the
+        base.
     most_drains_mm
         The most that the minimum can be (mm).
     most_mm
@@ -1742,6 +1758,9 @@ class NotKept(_NotKept, total=False):
     Keys
     ----
     id
+        `cu_of_fine_side`: Cu of its fine side. `cu_of_coarse_side`: Cu of its coarse side. `width`: Its sides
+        lie too far apart. `fines`: It may have too many fines. `greatest_size`: It may have grains that are too
+        coarse.
     cu
         That Cu.
     ratio
