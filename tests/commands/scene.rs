@@ -13,10 +13,8 @@ fn a_run_folder_holds_what_is_promised() {
     let output = run_small(&folder, &[]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let stdout = String::from_utf8_lossy(&output.stdout);
-    assert!(
-        stdout.starts_with("Practice: ") && stdout.contains("The model leaves out: hydraulics"),
-        "{stdout}"
-    );
+    let starts = stdout.starts_with("Model (research): ");
+    assert!(starts && stdout.contains("The model leaves out: hydraulics"), "{stdout}");
     let outcome = outcome(&folder);
     for key in [
         "model",
