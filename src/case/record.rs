@@ -3,7 +3,7 @@
 use super::{Case, Input};
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::ExitRule;
-use crate::outcome::numbers::significant;
+use crate::outcome::quantity::significant;
 use crate::outcome::record::{self, InputFile};
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 

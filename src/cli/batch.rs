@@ -10,7 +10,7 @@ use super::run::command_line;
 use super::values::{of_soils, with_options};
 use crate::campaign::CampaignOptions;
 use crate::outcome::comparison::Comparison;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
 use crate::run::{PrepareOptions, RunError, write_new};
 use crate::scene::TableOptions;

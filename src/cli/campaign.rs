@@ -87,7 +87,7 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
     }
     for line in lines.iter().filter(|_| lines.len() <= SHOWN) {
         let eroded: Vec<String> =
-            line.runs.iter().map(|run| percent(run.eroded_mass_fraction.mean)).collect();
+            line.runs.iter().map(|run| percent(run.eroded_mass_fraction.mean).to_string()).collect();
         let eroded = eroded.join(" then ");
         let (case, verdict) = (plain(&line.case), line.verdict.words());
         let _ = writeln!(text, "{case}: {verdict}, {eroded} of the mass eroded");

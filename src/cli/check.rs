@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use super::args::{SceneArgs, SettingArgs};
 use super::check_plan::check_plan;
-use super::print::{count, json, plain, to_stdout};
+use super::print::{as_it_is, count, json, plain, to_stdout};
 use super::values::with_options;
 use crate::campaign::CampaignPlan;
 use crate::constrictions::shipped;
-use crate::outcome::numbers::{SizeUnit, size_unit};
+use crate::outcome::quantity::{SizeUnit, whole};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
@@ -54,7 +54,11 @@ pub fn check(args: &SceneArgs) -> Result<(), RunError> {
         return check_plan(plan, &args.set);
     }
     let check = run::check(args.scene()?, &args.set.prepare(None))?;
-    to_stdout(&if args.set.json { json(format::CHECK, &check)? } else { words(&check) });
+    if args.set.json {
+        as_it_is(&json(format::CHECK, &check)?);
+    } else {
+        to_stdout(&words(&check));
+    }
     check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))
 }
 
@@ -97,13 +101,13 @@ fn words(check: &Check) -> String {
     );
     line("mass ratio", format!("{} (base over filter)", given(check.mass_ratio)));
     let capped = match check.capped {
-        true => format!(", capped from {} by Eq. (2)", count(check.n_base_eq2.unwrap_or(0))),
+        true => format!(", capped from {} by Eq. (2)", whole(check.n_base_eq2.unwrap_or(0))),
         false => String::new(),
     };
-    line("base particles", format!("{} a run{capped}", count(check.n_base)));
+    line("base particles", format!("{} a run{capped}", whole(check.n_base)));
     let one_by_one = match check.one_by_one {
         all if all == check.n_base => "all".into(),
-        some => format!("at most about {}; the others are passive: their numbers are followed", count(some)),
+        some => format!("at most about {}; the others are passive: their numbers are followed", whole(some)),
     };
     line("  one by one", one_by_one);
     let [voids, constrictions, starts] =
@@ -118,7 +122,7 @@ fn words(check: &Check) -> String {
     }
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
     for part in &check.left_out {
-        line("left out", left_out(part, size_unit(check.inputs.scale_free)));
+        line("left out", left_out(part, SizeUnit::of(check.inputs.scale_free, false).short()));
     }
     let unit = SizeUnit::of(check.inputs.scale_free, false);
     for note in &check.notes {
@@ -130,7 +134,7 @@ fn words(check: &Check) -> String {
 }
 
 fn packing_words(packing: &PackingCheck) -> String {
-    let (grains, folder) = (count(packing.grains), packing.folder.display());
+    let (grains, folder) = (whole(packing.grains), packing.folder.display());
     match packing.is_made {
         true => format!("{grains} grains, made already: {folder}"),
         false => format!(
@@ -141,7 +145,7 @@ fn packing_words(packing: &PackingCheck) -> String {
 }
 
 fn packing_time(packing: &PackingCheck) -> String {
-    let (time, steps) = (duration(packing.core_seconds), count(packing.steps));
+    let (time, steps) = (duration(packing.core_seconds), whole(packing.steps));
     match packing.is_made {
         true => "none: the packing is made already".into(),
         false => format!("about {time} of one core, a rough guess: some {steps} steps, once"),

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::args::SettingArgs;
-use super::print::{count, counted, json, plain, to_copy, to_stdout};
+use super::print::{as_it_is, count, counted, json, plain, to_copy, to_stdout};
 use crate::campaign::{self, CampaignOptions, CampaignPlan, PlanCheck};
 use crate::case::in_words;
 use crate::run::cost::duration;
@@ -31,7 +31,11 @@ pub(super) fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError>
     let packings = is_named.then(|| set.packings.clone());
     let options = CampaignOptions { packings, memory: set.memory, ..CampaignOptions::default() };
     let check = campaign::check_plan(&plan, &options)?;
-    to_stdout(&if set.json { json(format::PLAN_CHECK, &check)? } else { words(&check) });
+    if set.json {
+        as_it_is(&json(format::PLAN_CHECK, &check)?);
+    } else {
+        to_stdout(&words(&check));
+    }
     check.refusal().map_or(Ok(()), Err)
 }
 

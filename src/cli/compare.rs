@@ -6,11 +6,11 @@ use std::path::Path;
 use super::args::{CompareArgs, SettingArgs, WalkArgs};
 use super::case_progress::CaseProgress;
 use super::exit::{JudgedAnswer, accept};
-use super::print::{grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
+use super::print::{as_it_is, grains_per_void, json, of_base, percent, plain, shown, to_stderr, to_stdout};
 use super::run::command_line;
 use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::comparison::{ComparedCase, Comparison};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::compare::{self, ComparePlan, Compared};
@@ -36,7 +36,7 @@ pub fn compare(args: &CompareArgs) -> Result<(), RunError> {
     let options = campaign_options(&args.out, &args.tables.set, &args.walk);
     let comparison = walked(&plan, &options, args.overwrite, quiet)?;
     if args.tables.set.json {
-        to_stdout(&json(format::COMPARISON, &comparison)?);
+        as_it_is(&json(format::COMPARISON, &comparison)?);
     } else if !quiet {
         show(&plan, &comparison, &args.out);
     }

@@ -1,7 +1,7 @@
 //! `voidwalk constrictions`: from a packing to its constriction curve.
 
 use super::args::ConstrictionsArgs;
-use super::print::{count, json, plain, to_stdout};
+use super::print::{as_it_is, count, json, plain, to_stdout};
 use super::progress::unfollowed;
 use crate::packing::ReadOptions;
 use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
@@ -18,7 +18,7 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     };
     let summary = measure_constrictions(&args.packing, &options, &unfollowed())?;
     if args.json {
-        to_stdout(&json(format::CONSTRICTIONS, &summary)?);
+        as_it_is(&json(format::CONSTRICTIONS, &summary)?);
         return Ok(());
     }
     let mut lines = vec![

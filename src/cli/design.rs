@@ -2,13 +2,12 @@
 
 use super::args::DesignArgs;
 use super::design_each::design_each;
-use super::print::{counted, json, plain, shown, to_stdout};
+use super::print::{as_it_is, counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
-use crate::outcome::numbers::SizeUnit;
-use crate::outcome::numbers::rounded_down;
+use crate::outcome::quantity::{Role, SizeUnit, significant};
 use crate::outcome::record::Note;
 use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
@@ -65,7 +64,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     }
     let found = followed(args.quiet, |callbacks| design::run(&options, callbacks))?;
     if args.json {
-        to_stdout(&json(format::DESIGN, &found)?);
+        as_it_is(&json(format::DESIGN, &found)?);
     } else if !args.quiet {
         let page = shown(&out.join("design.html"));
         to_stdout(&format!("{}report: {page}\n", words(&found)));
@@ -111,7 +110,8 @@ fn of_row(row: &DesignRow, unit: SizeUnit) -> Vec<String> {
     let networks = row.networks.len() as u64;
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     // The boundary of no erosion is stated as a limit.
-    let sizes: [fn(f64) -> String; 2] = [rounded_down, |mm| format!("{mm:.3}")];
+    let sizes: [fn(f64) -> String; 2] =
+        [|mm| significant(mm).role(Role::Greatest).number(), |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
         let said = boundary.map(|boundary| ratio(&boundary, networks, size));
         lines.push(match (said, &*note) {

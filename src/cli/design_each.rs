@@ -5,10 +5,10 @@ use std::path::Path;
 
 use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
-use super::print::{counted, json, plain, shown, to_stdout};
+use super::print::{as_it_is, counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::specification::by_option;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::design::DesignOptions;
@@ -31,7 +31,7 @@ pub(super) fn design_each(args: &DesignArgs, samples: &Path, design: DesignOptio
     };
     let found = followed(args.quiet, |callbacks| each(&options, callbacks))?;
     if args.json {
-        to_stdout(&json(format::DESIGNS, &found)?);
+        as_it_is(&json(format::DESIGNS, &found)?);
     } else if !args.quiet {
         to_stdout(&words(&found, &out));
     }

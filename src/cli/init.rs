@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::print::{json, shown, to_stdout};
+use super::print::{as_it_is, json, shown, to_stdout};
 use crate::campaign::CampaignPlan;
 use crate::run::{RunError, write_built_in, write_new};
 use crate::scene::Scene;
@@ -15,7 +15,7 @@ pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<Forma
         return Ok(());
     }
     if as_json {
-        to_stdout(&json(format::SETTINGS, &Scene::reference())?);
+        as_it_is(&json(format::SETTINGS, &Scene::reference())?);
         return Ok(());
     }
     let Some(path) = path else {

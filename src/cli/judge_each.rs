@@ -8,8 +8,8 @@ use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
 use super::compare::{campaign_options, of_earlier_cover};
 use super::exit::{JudgedAnswer, accept_walked};
-use super::print::{json, plain, shown, to_stdout};
-use crate::outcome::numbers::SizeUnit;
+use super::print::{as_it_is, json, plain, shown, to_stdout};
+use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::batch::{self, BatchPlan, BatchWalks};
@@ -44,7 +44,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         }
     };
     if tables.set.json {
-        to_stdout(&json(format::BATCH, &batch)?);
+        as_it_is(&json(format::BATCH, &batch)?);
     } else if !quiet {
         to_stdout(&words(&batch, &plan.constrictions_in_words(), out));
         to_stdout(&of_earlier_cover(plan.with_other_cover(out)));

@@ -1,10 +1,10 @@
 //! `voidwalk pack`: grains from a gradation, and their constrictions.
 
 use super::args::PackArgs;
-use super::print::{count, plain, to_stdout};
+use super::print::{as_it_is, plain, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::{SizeUnit, whole};
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
 use crate::verdict::beside::packed_part;
@@ -24,7 +24,7 @@ pub fn pack(args: &PackArgs) -> Result<(), RunError> {
     };
     let packing = followed(args.quiet, |callbacks| run::pack(&spec, &options, callbacks))?;
     if args.json {
-        to_stdout(&packing.json);
+        as_it_is(&packing.json);
     } else if !args.quiet {
         to_stdout(&summary(&packing));
     }
@@ -43,11 +43,11 @@ fn summary(packing: &FinishedPacking) -> String {
         format!("Void ratio {:.4}{change} at {:.2} kPa", record.after.void_ratio, record.after.pressure_kpa),
         format!(
             "  {} grains, mean coordination number {:.2} ({:.2} without the {:.1} % rattlers), {} steps",
-            count(record.grains),
+            whole(record.grains),
             record.after.coordination,
             record.after.coordination_held,
             100.0 * record.after.rattlers,
-            count(record.steps)
+            whole(record.steps)
         ),
         format!(
             "  Cu_CSD {:.3}, Dc5 {:.4} mm, Dc50 {:.4} mm, {:.3} grains per void (Eq. 2)",

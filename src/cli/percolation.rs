@@ -1,7 +1,7 @@
 //! `voidwalk percolation`: the percolation threshold against the size of the lattice.
 
 use super::args::PercolationArgs;
-use super::print::{json, shown, to_stdout};
+use super::print::{as_it_is, json, shown, to_stdout};
 use super::progress::unfollowed;
 use crate::outcome::percolation::PercolationStudy;
 use crate::run::RunError;
@@ -22,7 +22,7 @@ pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
     };
     let study = percolation::run(&options, &unfollowed())?;
     if args.json {
-        to_stdout(&json(format::PERCOLATION, &study)?);
+        as_it_is(&json(format::PERCOLATION, &study)?);
     } else if !args.quiet {
         to_stdout(&format!("{}{}\n", words(&study), shown(&args.out.join("report.html"))));
     }

@@ -1,7 +1,7 @@
 //! `voidwalk precision`: error against run time.
 
 use super::args::PrecisionArgs;
-use super::print::{json, shown, to_stdout};
+use super::print::{as_it_is, json, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::precision::Precision;
 use crate::report::precision_judgements;
@@ -21,7 +21,7 @@ pub fn precision(args: &PrecisionArgs) -> Result<(), RunError> {
     };
     let precision = followed(args.quiet, |callbacks| precision::run(scene, &options, callbacks))?;
     if args.scene.set.json {
-        to_stdout(&json(format::PRECISION, &precision)?);
+        as_it_is(&json(format::PRECISION, &precision)?);
     } else if !args.quiet {
         let page = shown(&args.out.join("precision.html"));
         to_stdout(&format!("{}{page}\n", words(&precision)));

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use serde::Serialize;
 
 use crate::outcome::BaseSize;
-pub use crate::outcome::digits::{count, percent};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::{SizeUnit, THIN, whole};
+pub use crate::outcome::quantity::{percent, whole as count};
 use crate::run::RunError;
 use crate::store::format::Format;
 pub use crate::text::plain;
@@ -18,9 +18,19 @@ use crate::words::base_size;
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Prints to stdout; [`whole_stdout`] tells of a failure.
+/// Prints words to stdout; [`whole_stdout`] tells of a failure.
 pub fn to_stdout(text: &str) {
+    as_it_is(&on_a_terminal(text));
+}
+
+/// Prints a record to stdout, likewise.
+pub fn as_it_is(text: &str) {
     by_stdout(|| io::stdout().write_all(text.as_bytes()));
+}
+
+/// Words with spaces that every terminal has and every search finds.
+fn on_a_terminal(text: &str) -> String {
+    text.replace(THIN, " ")
 }
 
 /// Prints to stdout by a function, likewise.
@@ -42,7 +52,7 @@ pub fn whole_stdout() -> Result<(), RunError> {
 
 /// Prints to stderr, where nothing can tell of a failure.
 pub fn to_stderr(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
 }
 
 /// A word of a command that is shown to be copied.
@@ -67,7 +77,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError>
 
 /// A count and what is counted, one or many: `1 replicate`.
 pub fn counted(n: u64, one: &str, many: &str) -> String {
-    format!("{} {}", count(n), if n == 1 { one } else { many })
+    format!("{} {}", whole(n), if n == 1 { one } else { many })
 }
 
 /// Grains per void, or that they are not given.

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::print::{count, plain, shown, to_stderr};
+use super::print::{plain, shown, to_stderr};
 use super::report::page;
 use crate::case::PackingPlan;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::{SizeUnit, whole};
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
@@ -262,16 +262,16 @@ impl Shown {
 }
 
 fn increment_line(replicate: u64, run: u64, increment: u64, moving: u64) -> String {
-    format!("replicate {replicate}, run {run}, increment {}: {} moving", count(increment), count(moving))
+    format!("replicate {replicate}, run {run}, increment {}: {} moving", whole(increment), whole(moving))
 }
 
 fn packing_begun(plan: &PackingPlan) -> String {
     format!(
         "packing {} grains ({}), friction {}: about {} steps\n",
-        count(plan.compression.grains as u64),
+        whole(plan.compression.grains as u64),
         plain(&plan.name),
         plan.compression.friction,
-        count(plan.usual_steps())
+        whole(plan.usual_steps())
     )
 }
 
@@ -293,7 +293,7 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
     format!(
         "{stage}: {} steps, void ratio {:.4}, pressure {:.3} of the target, coordination {:.2}, \
          unbalanced {:.3}, {seconds:.0} s gone, {left}",
-        count(progress.steps),
+        whole(progress.steps),
         progress.void_ratio,
         progress.pressure,
         progress.coordination,

@@ -2,9 +2,9 @@
 
 use super::args::RulesArgs;
 use super::batch::{SEVERAL_FILTERS, each};
-use super::print::{json, plain, shown, to_stdout, wrapped};
+use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
-use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::quantity::{SizeUnit, significant};
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::run::RunError;
 use crate::store::format;
@@ -38,11 +38,11 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
-    to_stdout(&if args.json {
-        json(format::RULES, &pair)?
+    if args.json {
+        as_it_is(&json(format::RULES, &pair)?);
     } else {
-        words(&pair, (&args.base, filter), &notes)
-    });
+        to_stdout(&words(&pair, (&args.base, filter), &notes));
+    }
     Ok(())
 }
 
@@ -97,7 +97,8 @@ fn words(
     let practice = practice_line(&pair.rules, pair.if_dispersive, pair.filter.d15_mm, SizeUnit::Mm);
     line(format!("practice {practice}"));
     for note in &pair.notes {
-        line(format!("note    {}", sentence(note, SizeUnit::Mm)));
+        let word = if note.is_of_a_mistake() { "warning" } else { "note   " };
+        line(format!("{word} {}", sentence(note, SizeUnit::Mm)));
     }
     for (whose, notes) in notes {
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
@@ -164,7 +165,7 @@ fn sizes(of: &[(&str, Option<f64>)]) -> String {
 
 /// Three digits that mean something.
 fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "not known".into(), significant)
+    value.map_or_else(|| "not known".into(), |value| significant(value).to_string())
 }
 
 #[cfg(test)]

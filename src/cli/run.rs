@@ -4,10 +4,10 @@ use std::fmt::Write;
 
 use super::args::{AcceptArgs, ResultArgs, ResumeArgs, RunArgs, SettingArgs};
 use super::exit::{JudgedAnswer, accept};
-use super::print::{counted, json, plain, shown, to_stdout};
+use super::print::{as_it_is, counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 #[cfg(feature = "xlsx")]
 use crate::report::write_verdict_workbook;
 #[cfg(feature = "xlsx")]
@@ -19,7 +19,7 @@ use crate::store::format;
 use crate::text::shell_word;
 use crate::verdict::counts_as;
 use crate::words::first_lines;
-use crate::words::left_out::left_out_line;
+use crate::words::left_out::{NOT_COVERED, left_out_line};
 
 /// Walks a scene and writes its folder.
 pub fn run(args: &RunArgs) -> Result<(), RunError> {
@@ -88,7 +88,7 @@ pub fn command_line() -> String {
 /// Prints what came of a run.
 pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
-        to_stdout(&json(format::OUTCOME, &run.outcome)?);
+        as_it_is(&json(format::OUTCOME, &run.outcome)?);
     } else if !quiet {
         to_stdout(&summary(run));
     }
@@ -107,6 +107,9 @@ fn summary(run: &FinishedRun) -> String {
         line(format!("{name}: {}", plain(&said)));
     }
     line(left_out_line(&outcome.model_leaves_out));
+    if outcome.headline.is_some() {
+        line(NOT_COVERED.into());
+    }
     let page = shown(&run.folder.join("report.html"));
     let mut labels: Vec<&str> = Vec::new();
     for note in &outcome.notes {

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::args::SoilArgs;
-use super::print::{json, plain, shown, to_stdout};
+use super::print::{as_it_is, json, plain, shown, to_stdout};
 use crate::case::CaseError;
 use crate::gradation::{Gradation, SoilSummary, named_soils_in, soils_in_file};
 #[cfg(feature = "xlsx")]
@@ -43,7 +43,11 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     }
     let soils = Soils { soils };
     let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));
-    to_stdout(&if args.json { json(format::SOILS, &soils)? } else { words(&soils.soils) + &drawn });
+    if args.json {
+        as_it_is(&json(format::SOILS, &soils)?);
+    } else {
+        to_stdout(&(words(&soils.soils) + &drawn));
+    }
     Ok(())
 }
 

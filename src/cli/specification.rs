@@ -4,11 +4,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::args::DesignArgs;
-use super::print::{json, plain, shown, to_stdout, wrapped};
+use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
 use super::progress::followed;
 use crate::outcome::design::specification::{ProductMargin, Specification};
-use crate::outcome::numbers::SizeUnit;
-use crate::outcome::numbers::{significant, trimmed};
+use crate::outcome::quantity::{SizeUnit, length, significant};
 use crate::run::RunError;
 use crate::scene::Scene;
 use crate::store::format;
@@ -39,7 +38,7 @@ pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String])
     };
     let found = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
     if args.json {
-        to_stdout(&json(format::SPECIFICATION, &found)?);
+        as_it_is(&json(format::SPECIFICATION, &found)?);
     } else if !args.quiet {
         to_stdout(&format!("{}report: {}\n", words(&found), shown(&out.join("specification.html"))));
     }
@@ -99,8 +98,12 @@ fn words(of: &Specification) -> String {
                 limit.sieve,
                 significant(limit.opening_mm),
                 match limit.max_percent_finer {
-                    Some(most) => format!("{} to {}", trimmed(limit.min_percent_finer), trimmed(most)),
-                    None => format!("{} or more", trimmed(limit.min_percent_finer)),
+                    Some(most) => format!(
+                        "{} to {}",
+                        significant(limit.min_percent_finer).in_digits(4),
+                        significant(most).in_digits(4)
+                    ),
+                    None => format!("{} or more", significant(limit.min_percent_finer).in_digits(4)),
                 }
             ));
         }
@@ -110,11 +113,9 @@ fn words(of: &Specification) -> String {
     }
     for product in &of.products {
         line(&format!(
-            "{}, D15 {} to {} mm{}: {}",
+            "{}, D15 {}: {}",
             product.product,
-            significant(product.d15_fine_mm),
-            significant(product.d15_coarse_mm),
-            unit.beside_range(product.d15_fine_mm, product.d15_coarse_mm),
+            length(product.d15_fine_mm, unit).to(length(product.d15_coarse_mm, unit)),
             product_result(of, product)
         ));
         line(&format!("    {}", margins(product)));

@@ -20,9 +20,8 @@
 //! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`numbers`] is how a page writes a number, `apart` a value beside its limit.
+//!   [`quantity`] is the way from a number to text.
 
-pub(crate) mod apart;
 mod applied;
 mod base_size;
 pub mod by_connectivity;
@@ -31,7 +30,6 @@ pub mod comparison;
 mod curve_range;
 pub mod design;
 pub mod digest;
-pub(crate) mod digits;
 pub(crate) mod early_stop;
 mod infiltration;
 mod least_squares;
@@ -42,11 +40,11 @@ mod model_limit;
 pub mod network_walk;
 pub mod note;
 pub mod number_rows;
-pub mod numbers;
 pub mod packing;
 pub(crate) mod paper;
 pub mod percolation;
 pub mod precision;
+pub mod quantity;
 pub mod record;
 mod recorder;
 mod rule_note;

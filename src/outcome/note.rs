@@ -1,7 +1,7 @@
 //! Notes on an answer: the table of all of them, each with its numbers and its sentence.
 //!
 //! A row makes a variant of [`Note`]. A name that ends in `_mm`, `_percent` or `_pp` (percentage points) has
-//! that unit, one that begins with `least_` or `most_` is a limit of that side, and a whole number is a
+//! that unit, one that begins with `least_` or `most_` is a limit of that side, with `over_` a lower bound, and a whole number is a
 //! count. No sentence depends on another note. Faces fill the sentences in; nothing else reads them.
 
 use serde::{Deserialize, Serialize};
@@ -59,6 +59,14 @@ macro_rules! notes {
                 }
             }
 
+            /// Whether a table may be another than meant.
+            pub fn is_of_a_mistake(&self) -> bool {
+                matches!(
+                    self,
+                    Self::UnitDoubtful { .. } | Self::FilesExchanged { .. } | Self::FilterOfBoulders { .. }
+                )
+            }
+
             /// Its name in a file.
             #[cfg(test)]
             pub(crate) fn id(&self) -> String {
@@ -111,7 +119,7 @@ notes! {
 
     // What practice finds besides retention.
     /// A filter that is not internally stable.
-    LosesFines { authorities: Vec<String> } "finer part" "rules.md"
+    LosesFines { authorities: Vec<String> } "internal stability" "rules.md"
         "The filter may lose its finer part by {authorities}.";
     /// A filter too fine to drain.
     TooFineToDrain { least_d15f_mm: f64 } "drainage" "rules.md"
@@ -122,15 +130,15 @@ notes! {
          0.075 mm.";
     /// A filter that may segregate.
     MaySegregate { quantities: Vec<String> } "segregation" "rules.md"
-        "The filter may segregate when it is placed, by its {quantities}.";
+        "The filter may segregate when it is placed ({quantities}).";
     /// A base of which nobody has said whether it is dispersive.
     DispersionNotKnown { most_d15f_mm: f64 } "dispersion" "rules.md"
         "Whether the base is dispersive is not stated; if it is, D15F must be at most {most_d15f_mm}."
         "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
     /// The same where no source gives the limit.
     DispersiveLimitNotKnown { most_d15f_mm: f64 } "dispersion" "rules.md"
-        "Whether the base is dispersive is not stated; if it is, its limit is not known and lies below \
-         {most_d15f_mm}."
+        "Whether the base is dispersive is not stated; if it is, D15F must be less than {most_d15f_mm}, and \
+         only a test tells how much."
         "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
 
     // The search of a boundary.
@@ -178,7 +186,7 @@ notes! {
         "The end {density} holds clearly more (D15F/D85B {ratio} on its first network); its boundary was \
          not searched.";
     /// A finest part of the base that is enough to erode.
-    PanErodes { finest_percent: f64 } "finest part" "design.md"
+    PanErodes { finest_percent: f64 } "below the last sieve" "design.md"
         "{finest_percent} of the base is finer than its finest sieve, which is enough to count as erosion."
         "Finer sieves would tell, or base.d0_mm.";
 
@@ -194,11 +202,11 @@ notes! {
         "Try inject_share = {smaller_inject_share}.";
     /// A filter that closed during a run.
     Clogged {
-        run: u64, replicates: u64, walked: u64, least_on_its_way_percent: f64, smaller_inject_share: f64,
+        run: u64, replicates: u64, walked: u64, over_on_its_way_percent: f64, smaller_inject_share: f64,
     }
         "clogging" "uncertainty.md"
         "The filter clogged in run {run} in {replicates} of {walked:replicate}; at least \
-         {least_on_its_way_percent} of \
+         {over_on_its_way_percent} of \
          the base, on its way then, counts as retained."
         "Try inject_share = {smaller_inject_share}.";
     /// Trapped particles that could turn the class.
@@ -209,6 +217,14 @@ notes! {
     /// A second run that erodes though the first does not.
     SecondRunErodes { eroded_percent: f64 } "second run" "uncertainty.md"
         "The second run erodes {eroded_percent} of its base, though the first erodes less than 7.5 %.";
+
+    /// A second run that may erode though the first does not.
+    SecondRunMayErode { most_percent: f64 } "second run" "uncertainty.md"
+        "The second run may erode up to {most_percent} of its base, though the first erodes less than 7.5 %.";
+    /// Amounts and thicknesses that were not walked.
+    NotStudied {} "amount, thickness" "uncertainty.md"
+        "How the class changes with the amount of base and the thickness of the filter was not studied."
+        "record.sensitivity and record.thickness study it.";
 
     // What goes in.
     /// A base whose sizes may be micrometres.
@@ -223,12 +239,12 @@ notes! {
          ignores \
          cohesion.";
     /// A base that practice would regrade.
-    NotRegraded { sieve_mm: f64 } "grading" "soils.md"
+    NotRegraded { sieve_mm: f64 } "unsafe side" "soils.md"
         "The model errs on the unsafe side: practice regrades this base on {sieve_mm}, and it is walked as \
          sampled."
         "base.regrade = \"practice\" walks the part that practice looks at.";
     /// A base that is broadly graded.
-    BroadlyGraded { cu: f64 } "grading" "soils.md"
+    BroadlyGraded { cu: f64 } "unsafe side" "soils.md"
         "The model errs on the unsafe side for a broadly graded base (Cu {cu}): a few coarse grains block \
          for the rest.";
     /// A dispersive base.
@@ -255,6 +271,9 @@ notes! {
          one \
          ({real_mm}) and retains more."
         "network.copies, or network.thickness_mm, rounded up to whole copies, says how thick it is.";
+    /// A modelled filter thinner than its largest grain.
+    ThinnerThanGrain { modelled_mm: f64, grain_mm: f64 } "thickness" "uncertainty.md"
+        "The model is {modelled_mm} of the filter, less than its largest grain ({grain_mm}).";
     /// A cap on the base.
     CappedBase { particles: u64, needed: u64 } "amount of base" "uncertainty.md"
         "The base is capped at {particles} of {needed} particles; offered too few, a filter can seem to hold."
@@ -304,8 +323,8 @@ notes! {
     CuUnchecked { soil: String, cu: f64, low: f64, high: f64 } "uniformity" "soils.md"
         "The Cu of the {soil} is {cu}, and the model was checked for {low} to {high}.";
     /// A Cu of which only the least is known, outside the checked range.
-    CuAtLeast { soil: String, least_cu: f64, d10_mm: f64, low: f64, high: f64 } "uniformity" "soils.md"
-        "The Cu of the {soil} is more than {least_cu} (D10 is finer than {d10_mm}), and the model was \
+    CuAtLeast { soil: String, over_cu: f64, d10_mm: f64, low: f64, high: f64 } "uniformity" "soils.md"
+        "The Cu of the {soil} is more than {over_cu} (D10 is finer than {d10_mm}), and the model was \
          checked for {low} \
          to {high}.";
     /// A Cu that is not known.
@@ -348,18 +367,18 @@ notes! {
          follows from them."
         "filter.grains_per_void gives it.";
     /// A finer part that was packed.
-    PartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "finer part" "uncertainty.md"
+    PartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part" "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed; its constrictions may be \
          {finer_percent} too fine, \
          and both ends are walked.";
     /// A finer part in which the coarse grains float.
-    FloatingPartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "finer part"
+    FloatingPartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part"
         "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed, {finer_percent} finer at most; the \
          coarse \
          grains are taken to float in it.";
     /// A finer part between coarse grains that carry each other.
-    LoosePartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "finer part" "uncertainty.md"
+    LoosePartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part" "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed, {finer_percent} finer at most; it \
          may lie loose, \
          with wider constrictions open.";
@@ -383,11 +402,11 @@ notes! {
 
     // What was looked at, and what else to know.
     /// A finest part that blocks nothing.
-    PanPassive { finest_percent: f64 } "finest part" "soils.md"
+    PanPassive { finest_percent: f64 } "below the last sieve" "soils.md"
         "{finest_percent} of the base is finer than its last sieve and than every constriction; it counts \
          by mass only.";
     /// A finest part that may block, and counts as if it did not.
-    PanCountsAsPassing { finest_percent: f64, sieve_mm: f64, constriction_mm: f64 } "finest part" "soils.md"
+    PanCountsAsPassing { finest_percent: f64, sieve_mm: f64, constriction_mm: f64 } "below the last sieve" "soils.md"
         "The finest {finest_percent} of the base lies below its last sieve, {sieve_mm}, and counts as \
          passing; the \
          finest constriction is {constriction_mm}.";
@@ -401,7 +420,13 @@ notes! {
          how wide.";
     /// A range of constriction curves, whose class and mass count.
     CurveRange {} "constrictions" "uncertainty.md"
-        "Class and eroded mass cover the whole range of constriction curves that the filter may have."
+        "Every constriction curve that the filter may have gives this class; the eroded mass covers all of \
+         them."
+        "A filter that is packed whole (filter.density) has one measured curve.";
+    /// A range of constriction curves that gives more than one class.
+    CurveDecides { of_the_curve: String } "constrictions" "uncertainty.md"
+        "The class depends on which constriction curve the filter has: that of the likeliest curve is \
+         {of_the_curve}."
         "A filter that is packed whole (filter.density) has one measured curve.";
     /// A base far coarser than its filter.
     UnitDoubtful { base_d50_mm: f64, filter_d50_mm: f64 } "tables" "soils.md"
@@ -418,9 +443,8 @@ notes! {
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
     /// A base that is not internally stable.
     UnstableBase { index: f64, finer_percent: f64 } "stability of the base" "rules.md"
-        "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): its \
-         finer part may \
-         move through it.";
+        "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): \
+         decide whether the filter is to hold its finer part alone.";
     /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \
@@ -430,8 +454,8 @@ notes! {
     BroadBase { cu: f64 } "grading of the base" "design.md"
         "The base is broadly graded (Cu {cu} as sampled): its finer part may move between its coarse grains.";
     /// The same where only the least of its Cu is known.
-    BroadBaseAtLeast { least_cu: f64 } "grading of the base" "design.md"
-        "The base is broadly graded (Cu above {least_cu} as sampled): its finer part may move between its \
+    BroadBaseAtLeast { over_cu: f64 } "grading of the base" "design.md"
+        "The base is broadly graded (Cu above {over_cu} as sampled): its finer part may move between its \
          coarse grains.";
     /// A base with a gap.
     GapOfBase { within_percent: f64, from_mm: f64, to_mm: f64 } "gap of the base" "design.md"
@@ -453,7 +477,8 @@ notes! {
         "The base is walked as practice regrades it: the {part_percent} of it that is finer than {sieve_mm}.";
     /// A base that was to be regraded.
     RegradingNotNeeded {} "grading" "soils.md"
-        "The base was to be regraded, and practice does not regrade it.";
+        "The base was to be regraded, and is walked as sampled: practice does not regrade it, or its sizes do \
+         not tell.";
     /// A reading of a file.
     ReadAs { file: String, reading: String } "file" "soils.md"
         "{file}: {reading}.";

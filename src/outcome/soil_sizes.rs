@@ -1,6 +1,6 @@
 //! The sizes of a soil that engineers look for, as a table shows them.
 
-use super::numbers::{SizeUnit, in_digits};
+use super::quantity::{SizeUnit, length, significant};
 pub use crate::gradation::us_sieve;
 use crate::gradation::{FINES_MM, Gradation};
 
@@ -9,11 +9,11 @@ type SizeRow = (&'static str, fn(&Gradation, SizeUnit) -> Option<String>);
 
 /// A size that so many percent are finer than.
 fn finer<const PERCENT: u8>(soil: &Gradation, unit: SizeUnit) -> Option<String> {
-    soil.d(f64::from(PERCENT)).map(|size| unit.digits(size))
+    soil.d(f64::from(PERCENT)).map(|size| length(size, unit).in_digits(3).in_cell())
 }
 
 fn percent_fines(soil: &Gradation, _: SizeUnit) -> Option<String> {
-    soil.percent_finer_if_known(FINES_MM).map(|percent| in_digits(percent, 3))
+    soil.percent_finer_if_known(FINES_MM).map(|percent| significant(percent).in_digits(3).to_string())
 }
 
 /// The sizes that engineers look for.
@@ -27,8 +27,8 @@ const SIZES: [SizeRow; 11] = [
     ("D85", finer::<85>),
     ("D90", finer::<90>),
     ("D95", finer::<95>),
-    ("Cu", |soil, _| soil.cu().map(|cu| in_digits(cu, 3))),
-    ("Cc", |soil, _| soil.cc().map(|cc| in_digits(cc, 3))),
+    ("Cu", |soil, _| soil.cu().map(|cu| significant(cu).in_digits(3).to_string())),
+    ("Cc", |soil, _| soil.cc().map(|cc| significant(cc).in_digits(3).to_string())),
 ];
 
 /// The same where sizes have a unit.

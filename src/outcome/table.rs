@@ -17,7 +17,7 @@ use serde::de::value::Error;
 use serde::de::{DeserializeOwned, Error as _, Visitor};
 use serde::{Deserializer, Serialize, forward_to_deserialize_any};
 
-use super::numbers::{percent, percent_interval, significant, whole};
+use super::quantity::{Quantity, percent, percent_interval, significant, whole};
 use super::record::{Statistic, Verdict};
 use crate::text::visible;
 
@@ -308,7 +308,19 @@ impl TableCell for Statistic {
     }
 
     fn shown(self) -> Shown {
-        percent(self.mean).shown().below(percent_interval(&self))
+        percent(self.mean).shown().below(percent_interval(&self).map(|span| span.to_string()))
+    }
+}
+
+impl TableCell for Quantity {
+    const IS_NUMBER: bool = true;
+
+    fn text(self) -> String {
+        self.number()
+    }
+
+    fn shown(self) -> Shown {
+        Shown { text: self.to_string(), ..Shown::default() }
     }
 }
 
@@ -334,7 +346,7 @@ macro_rules! cells {
             }
 
             fn shown(self) -> Shown {
-                Shown { text: $shown(self), ..Shown::default() }
+                Shown { text: $shown(self).to_string(), ..Shown::default() }
             }
         })*
     };

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::names::{as_sampled, input_name, is_named, soil_name};
-use super::numbers::{SizeUnit, in_digits, percent, trimmed};
+use super::quantity::{SizeUnit, percent, significant};
 use super::shell::{clean, fact};
 use super::table::Table;
 use crate::outcome::record::{InputFile, Outcome};
@@ -74,8 +74,8 @@ fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
     }
     let heading = SizeUnit::of(unit == SizeUnit::D0f, false).name();
     let table = table
-        .number(format!("Size ({heading})"), |row| in_digits(row[0], 4))
-        .number("Percent finer", |row| trimmed((row[1] * 100.0).round() / 100.0));
+        .number(format!("Size ({heading})"), |row| significant(row[0]).in_digits(4))
+        .number("Percent finer", |row| significant((row[1] * 100.0).round() / 100.0).in_digits(4));
     html! {
         div {
             h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(&soil_name(name))) } } }

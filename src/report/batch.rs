@@ -1,5 +1,6 @@
 //! The page of a batch, from `batch.json` alone.
 
+use crate::outcome::quantity::{SizeUnit, interval_in_percent, percent};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -13,7 +14,6 @@ use super::figures::{
 };
 use super::files::json;
 use super::names::{is_named, note_words, soil_name, titled, told_apart};
-use super::numbers::{SizeUnit, interval_in_percent, threshold};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -148,7 +148,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 /// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
     let beside = rules.iter().filter_map(|row| {
-        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm, " mm");
+        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm);
         d15f
     });
     beside.max_by_key(String::len)
@@ -158,7 +158,7 @@ fn d15f(rules: &[BatchRow]) -> Option<String> {
 fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
     let unit = SizeUnit::of(false, inches);
-    let [d15f, limit] = d15f_and_limit(rules, unit, " mm").map(|size| size.unwrap_or("not known".into()));
+    let [d15f, limit] = d15f_and_limit(rules, unit).map(|size| size.unwrap_or("not known".into()));
     html! {
         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
         bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
@@ -192,7 +192,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
              replicates on a narrower lattice where the settings do not name them. Class by walk: with a \
              link to the page of the walk. Below a number its 95 % interval over the replicates; the \
              threshold between the classes is "
-            (threshold(batch.threshold))
+            (percent(batch.threshold).in_digits(3))
             "."
         }
     }

@@ -8,7 +8,7 @@ use super::cases::AtRatio;
 use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule};
 use super::files::{json, json_of, lines, lines_of};
-use super::numbers::{duration, interval, interval_in_percent, whole};
+use super::quantity::{duration, interval, interval_in_percent, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;

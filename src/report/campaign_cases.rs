@@ -1,5 +1,6 @@
 //! The cases of a campaign's page: one row a case, its class first, with a link to its own page.
 
+use crate::outcome::quantity::{SizeUnit, whole};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -7,11 +8,9 @@ use maud::{Markup, Render, html};
 
 use super::cases;
 use super::figures::shorten;
-use super::numbers::whole;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine};
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;

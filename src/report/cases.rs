@@ -5,7 +5,7 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::figures::{Across, Axis, BLACK, BLUE, Colour, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
-use super::numbers::interval_in_percent;
+use super::quantity::interval_in_percent;
 use super::run_figures::{run_name, verdict_colour};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::text::is_plain_part;

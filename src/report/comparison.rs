@@ -1,5 +1,6 @@
 //! The page of a comparison, from `compare.json` alone.
 
+use crate::outcome::quantity::{SizeUnit, percent};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -11,7 +12,6 @@ use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, PURPLE, Point, Rul
 use super::files::json;
 use super::first_page::colour;
 use super::names::{is_named, titled};
-use super::numbers::{SizeUnit, threshold};
 use super::run_figures::run_name;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, unbroken};
@@ -125,7 +125,7 @@ fn page(folder: &Path, comparison: &Comparison) -> Sections {
         (cases(folder, comparison))
         p.small {
             "Class: with a link to the page of the case. Below a number its 95 % interval over the \
-             replicates; the threshold between the classes is " (threshold(comparison.threshold))
+             replicates; the threshold between the classes is " (percent(comparison.threshold).in_digits(3))
             "."
         }
     };

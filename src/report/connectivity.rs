@@ -1,8 +1,8 @@
 //! The section on connectivity of a report page: Table 3 of the paper for this run.
 
+use crate::outcome::quantity::{percent, significant, whole};
 use maud::{Markup, html};
 
-use super::numbers::{percent, significant, whole};
 use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;

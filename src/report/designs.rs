@@ -10,7 +10,7 @@ use super::error::ReportError;
 use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range, shorten};
 use super::files::json;
 use super::names::{file_name, note_words, option_words, titled_by_file};
-use super::numbers::{SizeUnit, whole};
+use super::quantity::{SizeUnit, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, fact, leaves_out};
 use super::sizes::{SizedSoil, of_many};

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
-use super::numbers::SizeUnit;
+use super::quantity::{SizeUnit, range_of_tests};
 use super::rules::{result, value_and_limit};
 use super::shell::{clean, unbroken};
 use super::sizes::{SizedSoil, of_few};
@@ -163,8 +163,7 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
             }
             @if let Some([low, high]) = range {
                 p {
-                    "In tests of such bases erosion began at D15F " (unit.greatest(low)) " to "
-                    (unit.least(high)) " mm (Fell et al., Table 9.2)."
+                    "In tests of such bases erosion began at D15F " (range_of_tests(low, high, unit))                     " (Fell et al., Table 9.2)."
                 }
             }
             p.small { (left_out_line(&outcome.model_leaves_out)) }

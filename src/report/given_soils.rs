@@ -8,7 +8,7 @@ use super::figures::{
     Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten,
 };
 use super::names::{as_sampled, is_named};
-use super::numbers::SizeUnit;
+use super::quantity::SizeUnit;
 use super::shell::Drawn;
 use super::sizes::{SizedSoil, of_few, of_many};
 use crate::outcome::design::specification::{SizeBand, SpecifiedCurve};

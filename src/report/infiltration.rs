@@ -1,8 +1,8 @@
 //! The section on Eq. (1) of a report page.
 
+use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use maud::{Markup, Render, html};
 
-use super::numbers::{percent, significant, size, whole};
 use super::run_figures::run_name;
 use super::shell::clean;
 use super::table::Table;
@@ -33,10 +33,12 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
 }
 
 fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
-    let layers = |layers: Option<f64>| layers.map_or_else(|| "no end".to_owned(), significant);
+    let layers = |layers: Option<f64>| {
+        layers.map_or_else(|| "no end".to_owned(), |layers| significant(layers).to_string())
+    };
     Table::of(&found.sizes)
         .name("Particle", |row| clean(&row.name))
-        .number("Size", |row| size(row.diameter_mm, scale_free))
+        .number("Size", |row| length(row.diameter_mm, SizeUnit::of(scale_free, false)))
         .number("Chance to move one layer on", |row| format!("{:.4}", row.downstream))
         .number("Layers, 95 %", |row| layers(row.layers_95))
         .number("Layers, 99 %", |row| layers(row.layers_99))
@@ -55,13 +57,13 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
             n => show(values.iter().sum::<f64>() / n as f64),
         }
     };
-    let in_unit = |d| size(d, scale_free);
+    let in_unit = |d| length(d, SizeUnit::of(scale_free, false)).to_string();
     let layer = |layer| format!("{layer:.1}");
     let eroded = |run: usize| outcome.summary.get(run).map(|s| s.eroded_mass_fraction.mean);
     html! {
         ul {
             li {
-                "By the closed form particles up to " (size(found.coarsest_through_mm, scale_free))
+                "By the closed form particles up to " (length(found.coarsest_through_mm, SizeUnit::of(scale_free, false)))
                 " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }

@@ -17,7 +17,7 @@
 //!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
-//! [`files`] reads what lies in a folder, [`figures`] draws, [`numbers`] writes a number as the other pages
+//! [`files`] reads what lies in a folder, [`figures`] draws, [`quantity`] writes a number as the other pages
 //! do, and [`shell`] is the page around it, which [`write_page()`] writes. A figure of ours that others show
 //! too is public by itself: [`percolation_spread()`].
 //!
@@ -63,6 +63,7 @@ mod rules;
 mod run_figures;
 mod section;
 pub mod shell;
+mod shown;
 mod sizes;
 mod soils;
 mod specification;
@@ -74,7 +75,7 @@ mod walks;
 mod workbook;
 mod written;
 
-pub use crate::outcome::numbers;
+pub use crate::outcome::quantity;
 pub use batch::write_batch;
 pub use campaign::{campaign_page, write_campaign};
 pub use comparison::write_comparison;

@@ -1,5 +1,6 @@
 //! The page of walks on given networks, without a scene.
 
+use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use std::path::Path;
 
 use maud::{Markup, html};
@@ -8,15 +9,14 @@ use super::connectivity::by_connectivity;
 use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
 use super::files::json_of;
-use super::numbers::{known, percent, significant, size, whole};
 use super::results::{replicates, results};
 use super::run_figures::{self, size_axis};
 use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
+use super::shown::known;
 use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_words};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Verdict;
 use crate::words::left_out::left_out_words;
 use crate::words::sentence;
@@ -197,7 +197,7 @@ fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
 
 fn inputs(record: &NetworkWalkRecord) -> Markup {
     let (base, network) = (&record.base, &record.network);
-    let mm = |value: f64| size(value, false);
+    let mm = |value: f64| length(value, SizeUnit::of(false, false));
     let sizes = |sizes: [Option<f64>; 3]| sizes.map(|size| known(size, mm)).join(", ");
     html! {
         h2 { "How this was made" }
@@ -216,7 +216,7 @@ fn inputs(record: &NetworkWalkRecord) -> Markup {
                 n => format!("{}, of the first:", whole(n)),
             }))
             (fact("Voids, constrictions, layers",
-                [network.voids, network.constrictions, network.layers].map(whole).join(", ")))
+                [network.voids, network.constrictions, network.layers].map(|number| whole(number).to_string()).join(", ")))
             (fact("Particles choose an exit by", &network.exit))
             (fact("Base particles in each run", amount(record)))
             (fact("Inserted in equal parts", whole(record.increments)))

@@ -7,9 +7,10 @@ use maud::{Markup, Render, html};
 use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
 use super::files::{json, rows};
-use super::numbers::{duration, known, percent, significant, whole};
+use super::quantity::{duration, percent, significant, whole};
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, fact};
+use super::shown::known;
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
@@ -191,7 +192,7 @@ fn states(record: &PackingRecord) -> Markup {
         ("Pressure (kPa)", |s| format!("{:.3}", s.pressure_kpa)),
         ("Mean coordination number (2 N_c / N_p)", |s| format!("{:.3}", s.coordination)),
         ("Mean coordination number without loose grains", |s| format!("{:.3}", s.coordination_held)),
-        ("Loose grains (carry no load), by number", |s| percent(s.rattlers)),
+        ("Loose grains (carry no load), by number", |s| percent(s.rattlers).to_string()),
         ("Kinetic over elastic energy", |s| format!("{:.1e}", s.kinetic_ratio)),
         ("Unbalanced force over mean contact force", |s| format!("{:.1e}", s.unbalanced)),
         ("Largest overlap over smaller diameter", |s| format!("{:.1e}", s.largest_overlap)),

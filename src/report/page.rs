@@ -12,16 +12,16 @@ use super::first_page::{self, answer, in_short, sizes};
 use super::folder::{RunFolder, RunTexts, checked, walks};
 use super::infiltration::infiltration;
 use super::names::{file_name, is_named, soil_name};
-use super::numbers::{known, percent, significant, size, size_unit, whole};
+use super::quantity::{SizeUnit, length, percent, significant, whole};
 use super::results::{replicates, results, varied};
 use super::rules::{rules, sources};
 use super::run_figures;
 use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
+use super::shown::known;
 use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::Note;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
@@ -238,7 +238,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     let inputs = &outcome.inputs;
     let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
-    let mm = |value: f64| size(value, inputs.scale_free);
+    let mm = |value: f64| length(value, SizeUnit::of(inputs.scale_free, false)).to_string();
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
             format!(
@@ -315,8 +315,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             table.facts { tbody {
                 (fact("Kind", &kind))
                 @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
-                (fact("Voids, constrictions", [network.voids, network.constrictions].map(whole).join(", ")))
-                (fact("Start nodes, layers", [network.start_nodes, network.layers].map(whole).join(", ")))
+                (fact("Voids, constrictions", [network.voids, network.constrictions].map(|number| whole(number).to_string()).join(", ")))
+                (fact("Start nodes, layers", [network.start_nodes, network.layers].map(|number| whole(number).to_string()).join(", ")))
                 (fact("Thickness modelled", known(network.thickness_mm, mm)))
             } }
         }
@@ -341,7 +341,7 @@ fn provenance(folder: &RunFolder) -> Markup {
             @if !outcome.left_out.is_empty() {
                 table.facts { tbody {
                     (fact("Not needed here",
-                        left_out_words(&outcome.left_out, size_unit(outcome.inputs.scale_free))))
+                        left_out_words(&outcome.left_out, SizeUnit::of(outcome.inputs.scale_free, false).short())))
                 } }
             }
             details {

@@ -1,5 +1,6 @@
 //! The page and the figures of a percolation study.
 
+use crate::outcome::quantity::{duration, significant, whole};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -9,7 +10,6 @@ use super::figures::{
     Across, Axis, BLUE, Chart, Dash, Figure, GREY, Line, PURPLE, Point, Role, Rule, SeriesLook, Shape, Tick,
 };
 use super::files::json;
-use super::numbers::{duration, significant, whole};
 use super::section::Sections;
 use super::shell::Drawn;
 use super::table::Table;

@@ -2,7 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::numbers::{percent, percent_interval, significant, size, size_unit, trimmed, whole};
+use super::quantity::{Quantity, SizeUnit, Span, length, percent, percent_interval, significant, whole};
 use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
@@ -18,7 +18,7 @@ pub(super) fn run_heading(run: u64) -> Markup {
 }
 
 /// A mean with its interval below it.
-fn with_interval(mean: String, interval: Option<String>) -> Markup {
+fn with_interval(mean: Quantity, interval: Option<Span>) -> Markup {
     html! {
         (mean)
         @if let Some(interval) = interval { br; span.small { (interval) } }
@@ -38,22 +38,21 @@ pub(super) fn results(walks: &Walks) -> Markup {
     let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
         Some(of) => {
             let ends = of.low.zip(of.high);
-            let ends = ends.map(|(low, high)| format!("{} to {}", significant(low), significant(high)));
+            let ends = ends.map(|(low, high)| significant(low).to(significant(high)));
             with_interval(significant(of.mean), ends)
         }
         None => nothing(),
     };
     let largest = |run: &RunSummary| match (&run.largest_eroded_over_d15f, walks.d15f_mm) {
-        (Some(of), Some(d15f_mm)) => html! { (size(of.mean * d15f_mm, scale_free)) },
+        (Some(of), Some(d15f_mm)) => html! { (length(of.mean * d15f_mm, SizeUnit::of(scale_free, false))) },
         _ => nothing(),
     };
     let largest_of_all = |run: &RunSummary| {
         let of_run = |replicate: &Replicate| replicate.runs.get(run.run as usize - 1)?.largest_eroded_mm;
         let largest = walks.replicates.iter().filter_map(of_run).reduce(f64::max);
-        largest.map_or_else(nothing, |mm| html! { (size(mm, scale_free)) })
+        largest.map_or_else(nothing, |mm| html! { (length(mm, SizeUnit::of(scale_free, false))) })
     };
-    let sd =
-        |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), percent)) };
+    let sd = |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), |sd| percent(sd).to_string())) };
     let of_largest: &[Row] = match walks.d15f_mm {
         Some(_) => {
             &[("Largest particle eroded, over D15F", &largest_ratio), ("Largest particle eroded", &largest)]
@@ -83,8 +82,9 @@ pub(super) fn results(walks: &Walks) -> Markup {
 
 /// Each replicate, collapsed.
 pub(super) fn replicates(walks: &Walks) -> Markup {
-    let unit = size_unit(walks.scale_free);
-    let of_known = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
+    let unit = SizeUnit::of(walks.scale_free, false).short();
+    let of_known =
+        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| significant(value).to_string());
     let listed = walks.replicates.len().min(LISTED);
     let rows: Vec<(usize, &Replicate, &Run)> = (1..)
         .zip(walks.replicates.iter().take(LISTED))
@@ -104,14 +104,14 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
         .number("Blocked", |(.., run)| percent(run.blocked_fraction))
         .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
         .number("On an open path", |(.., run)| percent(run.backbone_fraction))
-        .number("Inserted", |(.., run)| count(run.inserted))
-        .number("Eroded", |(.., run)| count(run.eroded))
-        .number("In constrictions", |(.., run)| count(run.retained_in_constrictions))
-        .number("In voids", |(.., run)| count(run.retained_in_voids))
-        .number("Trapped", |(.., run)| count(run.trapped))
+        .number("Inserted", |(.., run)| particles(run.inserted))
+        .number("Eroded", |(.., run)| particles(run.eroded))
+        .number("In constrictions", |(.., run)| particles(run.retained_in_constrictions))
+        .number("In voids", |(.., run)| particles(run.retained_in_voids))
+        .number("Trapped", |(.., run)| particles(run.trapped))
         .number("Per void", |(.., run)| significant(run.retained_per_void))
-        .number("Increments", |(.., run)| whole(run.increments))
-        .number("Moves", |(.., run)| whole(run.particle_moves));
+        .number("Increments", |(.., run)| particles(run.increments))
+        .number("Moves", |(.., run)| particles(run.particle_moves));
     html! {
         details {
             summary {
@@ -132,8 +132,8 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
 }
 
 /// A number of particles that fits its column: from ten thousand million on in three digits.
-fn count(particles: u64) -> String {
-    if particles < 10_000_000_000 { whole(particles) } else { significant(particles as f64) }
+fn particles(number: u64) -> Quantity {
+    if number < 10_000_000_000 { whole(number) } else { significant(number as f64) }
 }
 
 /// With a column a run of what eroded in each row.
@@ -170,7 +170,7 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
     let rows: Vec<Varied> = amounts.chain(thicknesses).collect();
     let table = Table::of(&rows)
         .name("Changed", |row| row.changed)
-        .number("Times", |row| format!("×{}", trimmed(row.factor)))
+        .number("Times", |row| format!("×{}", significant(row.factor).in_digits(4)))
         .number("Layers of voids", |row| whole(row.layers))
         .number("Base particles, N_base", |row| whole(row.n_base))
         .number("Replicates", |row| row.walked.replicates);

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::numbers::SizeUnit;
+use super::quantity::{SizeUnit, length};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
@@ -114,7 +114,7 @@ fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRu
                 @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
                     br; span.small {
                         "Without its finest " (format!("{:.1}", left.percent)) " % its D15F is "
-                        (unit.size(left.d15f)) "."
+                        (length(left.d15f, unit)) "."
                     }
                 }
                 @for notes in [&rule.notes, &rule.needs] {

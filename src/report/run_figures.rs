@@ -10,11 +10,9 @@ use super::figures::{
 use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
-use super::numbers::{interval, interval_in_percent, percent, size, threshold, whole};
+use super::quantity::{SizeUnit, interval, interval_in_percent, length, percent, significant, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
-use crate::outcome::numbers::SizeUnit;
-use crate::outcome::numbers::in_digits;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 use crate::words::capital;
 use crate::words::{base_size, grading};
@@ -55,7 +53,7 @@ pub(super) fn upper(statistic: &Statistic) -> f64 {
 
 pub(super) fn threshold_rule(walks: &Walks, across: Across) -> Rule {
     let limit = walks.threshold;
-    Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&threshold(limit))
+    Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&percent(limit).in_digits(3).to_string())
 }
 
 /// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
@@ -79,7 +77,9 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
         let statistic = &run.eroded_mass_fraction;
         let (colour, shape, _) = run_look(run.run);
         let point = Point::new(statistic.mean * 100.0, run.run as f64, colour, shape);
-        figure.add(point.x_interval(interval_in_percent(statistic)).label(&percent(statistic.mean)));
+        figure.add(
+            point.x_interval(interval_in_percent(statistic)).label(&percent(statistic.mean).to_string()),
+        );
     }
     Drawn::new("verdict", figure, "")
 }
@@ -99,12 +99,12 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
         Some(of) => base_size(&of, SizeUnit::Mm),
-        None => format!("D85B is {}", size(base.d85_mm, true)),
+        None => format!("D85B is {}", length(base.d85_mm, SizeUnit::of(true, false))),
     };
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
          mass). D15F is {}, {}.",
-        size(filter.d15_mm, inputs.scale_free),
+        length(filter.d15_mm, SizeUnit::of(inputs.scale_free, false)),
         d85b,
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
@@ -272,7 +272,7 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
         caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
     }
     if let Some(thickness) = walks.thickness_mm {
-        let depth = size(thickness, walks.scale_free);
+        let depth = length(thickness, SizeUnit::of(walks.scale_free, false));
         caption.push_str(&format!(" All layers together are {depth} of filter."));
     }
     Some(Drawn::new("layers", figure, caption))
@@ -329,7 +329,7 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     if let Some(row) = walks.base.first().filter(|row| row[1] > 0.0) {
         caption.push_str(&format!(
             " The base's curve alone has the {} % of it that is finer than its finest sieve.",
-            in_digits(row[1], 3)
+            significant(row[1]).in_digits(3)
         ));
     }
     if all.is_empty() {

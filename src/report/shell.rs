@@ -212,8 +212,8 @@ pub(super) fn citation() -> Markup {
 }
 
 /// A row of a table of facts: what it is, and its value.
-pub(super) fn fact(name: &str, value: impl AsRef<str>) -> Markup {
-    html! { tr { th { (name) } td { (clean(value.as_ref())) } } }
+pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
+    html! { tr { th { (name) } td { (clean(&value.to_string())) } } }
 }
 
 #[cfg(test)]

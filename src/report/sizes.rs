@@ -2,7 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::numbers::SizeUnit;
+use super::quantity::SizeUnit;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::soil_sizes::sizes_of;

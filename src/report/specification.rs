@@ -2,6 +2,7 @@
 //! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
 //! the same.
 
+use crate::outcome::quantity::{Role, SizeUnit, length, significant};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -12,9 +13,9 @@ use super::error::ReportError;
 use super::files::json;
 use super::given_soils::GivenSoils;
 use super::names::titled_by_file;
-use super::numbers::{SizeUnit, known, significant, trimmed};
 use super::section::Sections;
 use super::shell::{clean, unbroken};
+use super::shown::known;
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::specification::ProductMargin;
@@ -128,10 +129,10 @@ fn to_specify(of: &Specification) -> Markup {
     let unit = SizeUnit::of(false, of.inches);
     let sides = [("Fine side", true), ("Coarse side", false)];
     let table = Table::of(&sides).class("band").name(unit.name(), |side| side.0);
-    let table = band.sizes.iter().fold(table, |table, size| {
-        table.number(format!("D{}F", size.percent), move |side: &(_, bool)| match side.1 {
-            true => unit.least(size.min_mm),
-            false => unit.greatest(size.max_mm),
+    let table = band.sizes.iter().fold(table, |table, of| {
+        table.number(format!("D{}F", of.percent), move |side: &(_, bool)| match side.1 {
+            true => length(of.min_mm, unit).role(Role::Least).in_cell(),
+            false => length(of.max_mm, unit).role(Role::Greatest).in_cell(),
         })
     });
     html! {
@@ -174,8 +175,8 @@ fn limits(of: &Specification) -> Markup {
         (Table::of(&of.limits)
             .name("Sieve", |limit| clean(&limit.sieve))
             .number("Opening (mm)", |limit| significant(limit.opening_mm))
-            .number("Least finer (%)", |limit| trimmed(limit.min_percent_finer))
-            .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), trimmed))
+            .number("Least finer (%)", |limit| significant(limit.min_percent_finer).in_digits(4))
+            .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), |number| significant(number).in_digits(4).to_string()))
             .render())
         @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
         @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
@@ -198,8 +199,7 @@ fn products(of: &Specification) -> Markup {
         .class("study")
         .name("Product", |of: &ProductMargin| clean(&of.product))
         .number("D15, fine to coarse side (mm)", |of| {
-            let size = |mm: f64| significant(mm) + &unit.beside(mm);
-            format!("{} to {}", size(of.d15_fine_mm), size(of.d15_coarse_mm))
+            length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
         })
         .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
         .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))

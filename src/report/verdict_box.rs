@@ -4,13 +4,12 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
 
-use super::numbers::{percent, percent_interval, threshold};
+use super::quantity::{SizeUnit, percent, percent_interval};
 use super::results::{fraction, run_heading};
 use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::{ModelLimit, Note, RunSummary, Verdict};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::meaning;
@@ -22,7 +21,8 @@ pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
         .name("Base eroded, by mass", |run| run_heading(run.run))
         .number("mean", |run| percent(run.eroded_mass_fraction.mean))
         .number("95 % interval", |run| {
-            percent_interval(&run.eroded_mass_fraction).unwrap_or_else(|| "none".to_owned())
+            percent_interval(&run.eroded_mass_fraction)
+                .map_or_else(|| "none".to_owned(), |span| span.to_string())
         })
 }
 
@@ -49,7 +49,7 @@ pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
 /// What is said of replicates below the table: how many, by which threshold, and a word where there is one.
 pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     html! {
-        p { (tally(walks, what)) " Threshold between the classes: " (threshold(walks.threshold)) "." }
+        p { (tally(walks, what)) " Threshold between the classes: " (percent(walks.threshold).in_digits(3)) "." }
         @if walks.replicates.len() == 1 {
             p {
                 b { "One replicate: the scatter is unknown." }

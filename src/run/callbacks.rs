@@ -7,7 +7,7 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{Note, Outcome};
 use crate::packing::CompressionProgress;
 use crate::store::Folder;

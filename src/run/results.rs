@@ -45,7 +45,10 @@ pub fn outcome(
     found.extend(case.unchecked_clogging());
     found.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
     found.extend(case.notes());
-    found.extend(other.range.as_ref().map(|_| Note::CurveRange {}));
+    found.extend(other.range.as_ref().map(|range| match range.agrees() {
+        true => Note::CurveRange {},
+        false => Note::CurveDecides { of_the_curve: range.verdict.words().into() },
+    }));
     let inputs_record = case.record();
     // Multiples of D0F are the sizes of a study, not of two soils.
     let in_mm = !case.is_scale_free();
@@ -241,7 +244,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::numbers::SizeUnit;
+    use crate::outcome::quantity::SizeUnit;
     use crate::outcome::record::Headline;
     use crate::run::{Callbacks, walk_case};
     use crate::scene::Scene;

@@ -1,5 +1,6 @@
 //! Walks a scene into a folder, continues a run that was stopped, and walks a case in memory.
 
+use crate::outcome::quantity::SizeUnit;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
@@ -20,7 +21,6 @@ use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
-use crate::outcome::numbers::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;

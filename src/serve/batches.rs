@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::sheets::Sheets;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
 use crate::study::batch::BatchWalks;
 use crate::study::numbered;

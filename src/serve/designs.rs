@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::sheets::Sheets;
 use crate::constrictions;
 use crate::outcome::design::{Design, RowNote};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::run::{PrepareOptions, RunError};
 use crate::study::design::{DesignOptions, ThicknessList};
 use crate::words::base_size;

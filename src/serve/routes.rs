@@ -22,7 +22,7 @@ use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::constrictions::shipped;
 use crate::gradation::{CurvePoint, Gradation, curves_in_file};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};

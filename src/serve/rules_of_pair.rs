@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::verdict::PairRules;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::result_of;

@@ -9,7 +9,7 @@ use super::inputs::{files_of, input_files};
 use super::kept;
 use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::{Design, Specification};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::InputFile;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};

@@ -9,8 +9,8 @@ pub(super) fn broad_base(sampled: &Gradation) -> Option<Note> {
     match sampled.cu() {
         Some(cu) => (cu >= BROAD_CU).then_some(Note::BroadBase { cu }),
         None => {
-            let least_cu = sampled.d(60.0)? / sampled.smallest_mm();
-            (least_cu >= BROAD_CU).then_some(Note::BroadBaseAtLeast { least_cu })
+            let over_cu = sampled.d(60.0)? / sampled.smallest_mm();
+            (over_cu >= BROAD_CU).then_some(Note::BroadBaseAtLeast { over_cu })
         }
     }
 }

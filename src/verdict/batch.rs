@@ -286,7 +286,7 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
-    use crate::outcome::numbers::SizeUnit;
+    use crate::outcome::quantity::SizeUnit;
     use crate::verdict::BatchFilter;
     use crate::words::batch::{columns, counts, of_filter, open_limits};
 

@@ -1,8 +1,9 @@
 //! Notes on the results of a run.
 
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
-use crate::outcome::record::{Note, Outcome, Run, ShortOf, Stopping};
+use crate::outcome::record::{Note, Outcome, Run, ShortOf, Stopping, Verdict};
 use crate::outcome::undecided::UndecidedBy;
+use crate::outcome::verdict::THRESHOLD;
 
 /// Above this part of its volume a void holds more than any packing of particles would.
 const ROOM: f64 = 0.6;
@@ -16,6 +17,9 @@ impl Outcome {
             self.stopping.as_ref().and_then(short_of),
             self.replicates_leave_open(),
             (trapped > 0).then_some(Note::Trapped { particles: trapped }),
+            self.second_run_may_erode(),
+            self.thinner_than_grain(),
+            self.not_studied(),
             self.permeability(),
             self.overfull(),
         ]
@@ -36,6 +40,27 @@ impl Outcome {
             UndecidedBy::SecondRun => Some(Note::SecondRunMissing {}),
             UndecidedBy::Replicates => Some(Note::ReplicatesLeaveOpen {}),
         }
+    }
+
+    /// That the second run may erode though the first does not.
+    fn second_run_may_erode(&self) -> Option<Note> {
+        let mean = self.summary.get(1)?.eroded_mass_fraction.mean;
+        let [_, most_percent] = *self.model.eroded_percent.get(1)?;
+        let may = mean < THRESHOLD && most_percent >= 100.0 * THRESHOLD;
+        (self.model.class == Verdict::None && may).then_some(Note::SecondRunMayErode { most_percent })
+    }
+
+    /// That less of the filter is modelled than its largest grain.
+    fn thinner_than_grain(&self) -> Option<Note> {
+        let modelled_mm = self.inputs.network.thickness_mm?;
+        let [grain_mm, _] = *self.inputs.filter.gradation.last()?;
+        (grain_mm > modelled_mm).then_some(Note::ThinnerThanGrain { modelled_mm, grain_mm })
+    }
+
+    /// That no other amount of base or thickness was walked.
+    fn not_studied(&self) -> Option<Note> {
+        let is_studied = self.studies_to_come || !(self.sensitivity.is_empty() && self.thickness.is_empty());
+        (self.practice.is_some() && !is_studied).then_some(Note::NotStudied {})
     }
 
     /// How far the permeability fell by the end: a mean over the replicates; `None` where no water flowed.

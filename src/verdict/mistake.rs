@@ -1,7 +1,7 @@
 //! Tables that can hardly be a base and its filter: exchanged, or in another unit.
 
 use crate::gradation::Gradation;
-use crate::outcome::numbers::significant;
+use crate::outcome::quantity::significant;
 use crate::outcome::record::Note;
 use crate::outcome::rules::{BaseSoil, NamedCurve};
 

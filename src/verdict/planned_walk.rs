@@ -110,7 +110,7 @@ impl PlannedWalk<'_> {
         let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
         match (self.base.cu(), self.base.d(60.0)) {
             (None, Some(d60)) => {
-                Some(Note::CuAtLeast { soil: "base".into(), least_cu: d60 / sieve, d10_mm: sieve, low, high })
+                Some(Note::CuAtLeast { soil: "base".into(), over_cu: d60 / sieve, d10_mm: sieve, low, high })
             }
             (cu, _) => not_as_uniform("base", cu, BASE_CU),
         }
@@ -251,7 +251,7 @@ mod tests {
         let clayey = soil(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
         let open = PlannedWalk { base: &clayey, ..plan.clone() };
         let least = open.notes().into_iter().find_map(|note| match note {
-            Note::CuAtLeast { least_cu, d10_mm, .. } => Some([least_cu, d10_mm]),
+            Note::CuAtLeast { over_cu, d10_mm, .. } => Some([over_cu, d10_mm]),
             _ => None,
         });
         assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");

@@ -8,7 +8,7 @@ use crate::outcome::record::{
     AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
     Verdict, d15f_between,
 };
-use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
 /// The rules of a role that were made for these soils and are not kept.
 pub fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
@@ -68,8 +68,14 @@ pub fn headline(rules: &[AppliedRule], breaks_if_dispersive: bool) -> Option<Hea
         Standing::Met if breaks_if_dispersive => Headline::MeetsUnlessDispersive,
         Standing::Met if breaks(RuleRole::Drainage) => Headline::MayNotDrain,
         Standing::Met if breaks(RuleRole::Placing) => Headline::MaySegregate,
+        Standing::Met if is_drainage_unknown(rules) => Headline::DrainageNotKnown,
         Standing::Met => Headline::Meets,
     })
+}
+
+/// Whether the rule of drainage has no result.
+pub fn is_drainage_unknown(rules: &[AppliedRule]) -> bool {
+    rules.iter().any(|rule| rule.id == PERMEABILITY && rule.applies && rule.met.is_none())
 }
 
 /// Where a filter stands by practice, the worst first.

@@ -75,13 +75,6 @@ pub(crate) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     limit(DESIGN).zip(limit(TESTS_NO_EROSION)).is_some_and(|(design, tests)| design >= tests * (1.0 - 1e-9))
 }
 
-/// The boundary of no erosion of tests, where a filter within the limit of design lies beyond it.
-pub(crate) fn tests_are_stricter(rules: &[AppliedRule]) -> Option<&AppliedRule> {
-    let tests = rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.is_broken())?;
-    let counts = retaining(rules).any(|rule| rule.id == TESTS_NO_EROSION);
-    (met_of(rules, DESIGN) == Some(true) && !counts).then_some(tests)
-}
-
 /// Who gives the limit of a rule, as a sentence cites it.
 pub fn credit(rule: &AppliedRule) -> &str {
     // One number for design and for no erosion.

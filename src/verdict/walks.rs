@@ -71,8 +71,8 @@ impl Walked<'_> {
             return Some(Note::CloggedBefore { replicates, walked, smaller_inject_share });
         }
         let after = self.clogged.iter().filter(|found| found[1] == run).map(|found| inserted(found[2]));
-        let least_on_its_way_percent = 100.0 * after.fold(inserted(self.layers), f64::min);
-        Some(Note::Clogged { run, replicates, walked, least_on_its_way_percent, smaller_inject_share })
+        let over_on_its_way_percent = 100.0 * after.fold(inserted(self.layers), f64::min);
+        Some(Note::Clogged { run, replicates, walked, over_on_its_way_percent, smaller_inject_share })
     }
 
     /// That the particles trapped could turn the class if they were not retained.
@@ -141,16 +141,16 @@ mod tests {
     #[test]
     fn a_filter_that_clogs_before_its_base_is_through_is_a_doubt() {
         let closed = [(0.021, 0, Some(0.0)), (0.0, 0, Some(0.0))];
-        let least_on_its_way = |clogged: &[[u64; 3]]| match &of(Verdict::None, &closed, clogged)[..] {
-            [Note::Clogged { run: 1, replicates: 1, walked: 1, least_on_its_way_percent, .. }] => {
-                least_on_its_way_percent.round()
+        let over_on_its_way = |clogged: &[[u64; 3]]| match &of(Verdict::None, &closed, clogged)[..] {
+            [Note::Clogged { run: 1, replicates: 1, walked: 1, over_on_its_way_percent, .. }] => {
+                over_on_its_way_percent.round()
             }
             other => panic!("{other:?}"),
         };
-        assert_eq!(least_on_its_way(&[[1, 1, 41], [1, 2, 0]]), 30.0);
+        assert_eq!(over_on_its_way(&[[1, 1, 41], [1, 2, 0]]), 30.0);
         // Less than has been inserted cannot be on its way.
-        assert_eq!(least_on_its_way(&[[1, 1, 10], [1, 2, 0]]), 10.0);
-        assert_eq!(least_on_its_way(&[[1, 1, 24], [2, 1, 32], [1, 2, 0]]), 24.0);
+        assert_eq!(over_on_its_way(&[[1, 1, 10], [1, 2, 0]]), 10.0);
+        assert_eq!(over_on_its_way(&[[1, 1, 24], [2, 1, 32], [1, 2, 0]]), 24.0);
         let before = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
         assert!(matches!(before[..], [Note::CloggedBefore { .. }]), "{before:?}");
         assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), []);

@@ -2,8 +2,7 @@
 
 use super::next::next;
 use super::practice::practice;
-use crate::outcome::digits::percent_span;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::{SizeUnit, Unit, beside_limit, percent};
 use crate::outcome::record::{Headline, Model, Note, Outcome, Practice};
 
 /// Notes that stand on the first page and on a terminal; the rest stand further down the page.
@@ -28,7 +27,8 @@ pub fn lines_of(
 ) -> Vec<(&'static str, String)> {
     let line = ("Model (research)", model(walk));
     let Some((headline, practice)) = headline.zip(practice) else { return vec![line] };
-    let [d15f, limit] = unit.within([practice.d15f_mm.map(|[_, high]| high), practice.limit_mm], " mm");
+    let numbers = [practice.d15f_mm.map(|[_, high]| high), practice.limit_mm];
+    let [d15f, limit] = beside_limit(numbers, false, Unit::Size(unit));
     let at_most = if practice.limit_at_most { "at most " } else { "" };
     let d15f = d15f.map(|d15f| format!("D15F {d15f}"));
     let limit = limit.map(|limit| format!("limit {at_most}{limit}"));
@@ -44,8 +44,8 @@ pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
 
 /// The class of a walk, and what eroded in each run.
 pub fn model(model: &Model) -> String {
-    let spans = model.eroded_percent.iter();
+    let part = |of: f64| percent((of / 100.0).max(0.0));
     let spans: Vec<String> =
-        spans.map(|ends| percent_span(ends.map(|percent| (percent / 100.0).max(0.0)))).collect();
+        model.eroded_percent.iter().map(|[low, high]| part(*low).to(part(*high)).to_string()).collect();
     format!("{}; {} eroded", model.class.words(), spans.join(" then "))
 }

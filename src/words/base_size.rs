@@ -2,7 +2,7 @@
 
 use crate::gradation::us_sieve;
 use crate::outcome::BaseSize;
-use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::quantity::{SizeUnit, length, significant};
 
 /// Whether a base is regraded, and on what.
 pub fn grading(of: &BaseSize) -> String {
@@ -12,7 +12,7 @@ pub fn grading(of: &BaseSize) -> String {
 /// All of it, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; with inches behind each D85 and
 /// the name of a US sieve where those are shown.
 pub fn base_size(of: &BaseSize, unit: SizeUnit) -> String {
-    let size = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
+    let size = |mm: f64| length(mm, unit).to_string();
     let before = of.as_sampled_mm.filter(|_| of.regraded_at_mm.is_some());
     let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
     let comma = if of.regraded_at_mm.is_some() { "," } else { "" };

@@ -4,7 +4,7 @@ use super::dispersion::dispersive_limit;
 use super::note::sentence;
 use super::practice::tested_in_brief;
 use super::rule_note::rule_note;
-use crate::outcome::numbers::{SizeUnit, fixed, in_digits};
+use crate::outcome::quantity::{Role, SizeUnit, Unit, beside_limit, length, significant};
 use crate::outcome::record::{IfDispersive, Verdict};
 use crate::outcome::table::{Columns, TableCell};
 use crate::verdict::batch::{NAMED, governing, may_govern, more_with_that_limit};
@@ -19,10 +19,10 @@ pub const EXCHANGED: &str = "base and filter look exchanged";
 /// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
 /// unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
-    let size = move |mm: Option<f64>| mm.map(|mm| unit.short(mm));
+    let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
     let limit = move |row: &BatchRow| {
         let at_most = if row.limit_at_most { " at most" } else { "" };
-        let [_, limit] = d15f_and_limit(row, unit, "");
+        let [_, limit] = d15f_and_limit_in_cells(row, unit);
         limit.map(|limit| limit + at_most)
     };
     Columns::default()
@@ -41,7 +41,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
         .number("D85B, mm", move |row| size(row.d85b_mm))
         .digits("d15f_mm", 4, |row| row.d15f_mm)
         .number("D15F, mm", move |row: &BatchRow| {
-            let [d15f, _] = d15f_and_limit(row, unit, "");
+            let [d15f, _] = d15f_and_limit_in_cells(row, unit);
             d15f
         })
         .digits("limit_mm", 4, |row| row.limit_mm)
@@ -108,9 +108,14 @@ fn why_not(row: &WalkedRow) -> Option<String> {
     row.walk.is_none().then(|| row.not_walked.clone()).filter(|why| !why.is_empty())
 }
 
-/// D15F of the filter and its limit, each with this name of its unit: with as many digits as tell them apart.
-pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit, name: &str) -> [Option<String>; 2] {
-    unit.within([row.d15f_mm, row.limit_mm], name)
+/// D15F of the filter and its limit: with as many digits as tell them apart.
+pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
+    beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
+}
+
+/// The same in the cells of a table that names the unit at its head.
+fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
+    d15f_and_limit(row, unit).map(|text| text.map(|text| text.replace("\u{202f}mm", "")))
 }
 
 /// The result of a row.
@@ -131,9 +136,10 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
         all.push(format!("if the base is dispersive, D15F must be {}", dispersive_limit(limit, unit)));
     }
     match row.too_coarse_without_percent {
-        Some(part) => {
-            all.push(format!("too coarse without its finest {} %, which it may lose", fixed(part, 1)))
-        }
+        Some(part) => all.push(format!(
+            "too coarse without its finest {} %, which it may lose",
+            significant(part).decimals(1)
+        )),
         None if row.may_lose_fines => all.push("may lose its finer part".into()),
         None => {}
     }
@@ -144,7 +150,7 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     ];
     all.extend(others.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words.to_owned()));
     all.extend(row.joint.map(|joint| match (joint.percent, joint.is_below_source) {
-        (Some(percent), _) => format!("joint: {} % continuing", in_digits(percent, 2)),
+        (Some(percent), _) => format!("joint: {} % continuing", significant(percent).in_digits(2)),
         (None, true) => "joint: less than 0.01 % continuing".into(),
         (None, false) => "joint: no result".into(),
     }));
@@ -169,7 +175,7 @@ pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec
     for (at, row) in strictest.iter().enumerate() {
         let what = if at == 0 { "governing sample" } else { "then" };
         let at_most = if row.limit_at_most { " at most" } else { "" };
-        let [_, limit] = d15f_and_limit(row, unit, " mm");
+        let [_, limit] = d15f_and_limit(row, unit);
         let limit = limit.unwrap_or_default();
         lines.push(format!("{what} {}: D15F up to {limit}{at_most} ({})", row.sample, row.rule));
     }
@@ -210,8 +216,11 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     let limits = undrained.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let limit = match row.d15f_min_at_most {
-        true => format!("the minimum D15F is not known, and at most {}", unit.limit(least, true)),
-        false => format!("D15F {} or more", unit.limit(least, true)),
+        true => format!(
+            "the minimum D15F is not known, and at most {}",
+            length(least, unit).role(Role::Least).to_string()
+        ),
+        false => format!("D15F {} or more", length(least, unit).role(Role::Least).to_string()),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }

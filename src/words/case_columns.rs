@@ -2,7 +2,7 @@
 
 use super::base_size::{base_size, grading};
 use crate::outcome::BaseSize;
-use crate::outcome::numbers::{SizeUnit, percent, significant, whole};
+use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use crate::outcome::record::{Ratios, Statistic};
 use crate::outcome::table::{Columns, TableCell};
 
@@ -57,7 +57,7 @@ impl<'a, T: 'a> Columns<'a, T> {
             let (thickness, scale_free, layers) = of(row);
             let layers = layers.map(|layers| format!("{} layers", whole(layers)));
             let unit = if scale_free { SizeUnit::D0f } else { unit };
-            thickness.map(|thickness| unit.size(thickness)).shown().below(layers)
+            thickness.map(|thickness| length(thickness, unit)).shown().below(layers)
         })
     }
 }

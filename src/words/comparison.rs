@@ -1,7 +1,7 @@
 //! Cases side by side: their tables, and what the difference between two comes to.
 
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Statistic;
 use crate::outcome::table::Columns;
 

@@ -2,7 +2,7 @@
 
 use super::specification::{band, no_band};
 use crate::outcome::design::{Design, Specification, are_few};
-use crate::outcome::numbers::{SizeUnit, rounded_down};
+use crate::outcome::quantity::{Role, SizeUnit, length, significant};
 
 /// Which share of so many networks is shown: of few the least and the most of them.
 pub fn share_of_networks(networks: u64) -> &'static str {
@@ -34,11 +34,14 @@ pub fn design_model(design: &Design, unit: SizeUnit) -> String {
     let Some((row, ratio)) = design.least_held() else {
         return "no D15F/D85B is known that nearly all networks hold".into();
     };
-    let size = design.base.d85_mm.map(|d85| format!(", D15F {}", unit.limit(ratio * d85, false)));
+    let size = design
+        .base
+        .d85_mm
+        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(Role::Greatest).to_string()));
     let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
     format!(
         "nearly all networks hold D15F/D85B {}{}{}",
-        rounded_down(ratio),
+        significant(ratio).role(Role::Greatest),
         size.unwrap_or_default(),
         if holds_whole_search { ", as far as was searched" } else { "" }
     )
@@ -56,7 +59,9 @@ fn specification_lines(specification: &Specification, unit: SizeUnit) -> [(&'sta
 /// The maximum D15F and whose rule sets it.
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
-        Some((curve, limit)) => format!("D15F {} ({})", unit.limit(limit, false), curve.d15f_max_rule),
+        Some((curve, limit)) => {
+            format!("D15F {} ({})", length(limit, unit).role(Role::Greatest).to_string(), curve.d15f_max_rule)
+        }
         None => "not known".into(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::dispersion::{beside_dispersive, dispersive_limit, test};
 use super::specification::no_band;
-use crate::outcome::numbers::{SizeUnit, rounded_down};
+use crate::outcome::quantity::{Role, SizeUnit, length, limits, significant};
 use crate::outcome::record::IfDispersive;
 use crate::outcome::record::Note;
 use crate::outcome::rules::WIDEST_BAND;
@@ -51,7 +51,13 @@ fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     row.d15f_max_mm.map_or_else(
         || "no maximum D15F is known".into(),
-        |mm| format!("D15F up to {} (practice: {})", unit.limit(mm, false), row.rule),
+        |mm| {
+            format!(
+                "D15F up to {} (practice: {})",
+                length(mm, unit).role(Role::Greatest).to_string(),
+                row.rule
+            )
+        },
     )
 }
 
@@ -64,7 +70,8 @@ fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
 ///
 /// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
 pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
-    let [most, least_of] = [false, true].map(|at_least| move |mm: f64| unit.limit(mm, at_least));
+    let [most, least_of] = [false, true]
+        .map(|at_least| move |mm: f64| length(mm, unit).role(Role::of_limit(at_least)).to_string());
     let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
     let cap = strictest(others.iter().copied());
     let Some((first, own)) = strictest(settled.iter().copied()) else {
@@ -112,7 +119,7 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
         ),
         Some(why) => format!(
             "No one filter is specified for {of}{within}, with D15F from {}: {}",
-            unit.limits(least, greatest),
+            limits(least, greatest, unit),
             no_band(&why, unit).trim_end_matches('.')
         ),
         None => {
@@ -125,7 +132,7 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
                      no wider than {WIDEST_BAND} to 1)"
                 ),
             };
-            let both = unit.limits(least_of_band(least, greatest), greatest);
+            let both = limits(least_of_band(least, greatest), greatest, unit);
             format!("A filter for {of}{within}: D15F from {both}{raised}")
         }
     }
@@ -143,7 +150,7 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     if let Some((row, least)) = drainage(&all.rows) {
         let at_most = if row.d15f_min_at_most { "at most " } else { "" };
         let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
-        let limit = unit.limit(least, true);
+        let limit = length(least, unit).role(Role::Least).to_string();
         said.push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
     }
     said.extend(still_to_set(all));
@@ -237,10 +244,10 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let why_not = |row: &DesignedSample| Some(row.not_walked.clone()).filter(|why| !why.is_empty());
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
-        row.d15f_min_mm.map(|least| format!("{}{at_most}", unit.least(least)))
+        row.d15f_min_mm.map(|least| format!("{}{at_most}", length(least, unit).role(Role::Least).in_cell()))
     };
     let band = move |row: &DesignedSample| match row.band_d15f_mm {
-        Some([least, greatest]) => unit.limits(least, greatest).replace(" mm", ""),
+        Some([least, greatest]) => limits(least, greatest, unit).in_cell(),
         None => "none".into(),
     };
     Columns::default()
@@ -252,9 +259,11 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .digits("fines_percent", 1, |row| row.fines_percent)
         .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
         .digits("d85b_mm", 4, |row| row.d85b_mm)
-        .number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| unit.short(mm)))
+        .number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| length(mm, unit).in_cell()))
         .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
-        .number("Limit of practice, mm", move |row| row.d15f_max_mm.map(|mm| unit.greatest(mm)))
+        .number("Limit of practice, mm", move |row| {
+            row.d15f_max_mm.map(|mm| length(mm, unit).role(Role::Greatest).in_cell())
+        })
         .column("rule", |row: &DesignedSample| row.rule.clone())
         .headed("Whose limit")
         .digits("d15f_min_mm", 4, |row| row.d15f_min_mm)
@@ -268,12 +277,16 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .column("no_band", move |row: &DesignedSample| row.no_band.as_ref().map(|why| no_band(why, unit)))
         .digits("model_d15f_over_d85b", 3, move |row| design(row)?.model_d15f_over_d85b)
         .number("Model (research): D15F/D85B", move |row| {
-            let ratio = design(row).and_then(|of| of.model_d15f_over_d85b).map(rounded_down);
+            let ratio = design(row)
+                .and_then(|of| of.model_d15f_over_d85b)
+                .map(|limit| significant(limit).role(Role::Greatest));
             ratio.shown().below(why_not(row))
         })
         .digits("model_d15f_mm", 4, move |row| design(row)?.model_d15f_mm)
         .number("Model (research): D15F, mm", move |row| {
-            design(row).and_then(|of| of.model_d15f_mm).map(|mm| unit.greatest(mm))
+            design(row)
+                .and_then(|of| of.model_d15f_mm)
+                .map(|mm| length(mm, unit).role(Role::Greatest).in_cell())
         })
         .column("not_walked", |row: &DesignedSample| row.not_walked.clone())
         .column("folder", move |row| design(row).map(|of| of.folder))
@@ -286,7 +299,7 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::gradation::SoilSample;
     use crate::outcome::design::Specification;
-    use crate::outcome::numbers::SizeUnit;
+    use crate::outcome::quantity::SizeUnit;
     use crate::verdict::SampleDesign;
     use crate::verdict::SpecificationOptions;
     use crate::words::specification::DESIGN_EACH_AGAIN;

@@ -1,6 +1,6 @@
 //! The limit of a base of which nobody has said whether it is dispersive.
 
-use crate::outcome::numbers::{SizeUnit, fixed};
+use crate::outcome::quantity::{Role, SizeUnit, Unit, beside_limit, length, significant};
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
 
 /// A filter that is too coarse for a dispersive base alone, in a clause; `None` where it keeps the limit, or
@@ -14,9 +14,11 @@ pub fn beyond_dispersive(
     let beyond = limit.broken_by(rules, d15f_mm)?;
     let at_most = if limit.at_most { "at most " } else { "" };
     let [value, most] =
-        unit.within([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], " mm").map(Option::unwrap_or_default);
-    let without =
-        beyond.without_percent.map(|part| format!(" (without the filter's finest {} %)", fixed(part, 1)));
+        beside_limit([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], false, Unit::Size(unit))
+            .map(Option::unwrap_or_default);
+    let without = beyond
+        .without_percent
+        .map(|part| format!(" (without the filter's finest {} %)", significant(part).decimals(1)));
     let without = without.unwrap_or_default();
     Some(format!(
         "if the base is dispersive, the limit is {at_most}{most}, and {value}{without} is beyond it"
@@ -29,13 +31,14 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
     if limit.at_most {
         Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
     } else {
-        (limit.d15f_max_mm < d15f_mm).then(|| format!("{} {IF}", unit.limit(limit.d15f_max_mm, false)))
+        (limit.d15f_max_mm < d15f_mm)
+            .then(|| format!("{} {IF}", length(limit.d15f_max_mm, unit).role(Role::Greatest).to_string()))
     }
 }
 
 /// The limit of D15F. One that no source gives is never called that of other bases.
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
-    let most = unit.limit(limit.d15f_max_mm, false);
+    let most = length(limit.d15f_max_mm, unit).role(Role::Greatest).to_string();
     match limit.lacks.filter(|_| limit.at_most) {
         Some(DispersiveLack::AnyLimit) => {
             format!("less than {most}, by how much no source that was read says")

@@ -1,8 +1,7 @@
 //! The lines of a campaign's ledger.
 
-use crate::outcome::digits::count;
 use crate::outcome::ledger::{LedgerLine, ModelledThickness};
-use crate::outcome::numbers::{SizeUnit, whole};
+use crate::outcome::quantity::{SizeUnit, whole};
 use crate::outcome::table::{Columns, TableCell};
 use crate::text::shorten;
 
@@ -10,7 +9,7 @@ use crate::text::shorten;
 pub fn thickness(of: &ModelledThickness) -> String {
     let unit = if of.scale_free { "D0F" } else { "mm" };
     let size = of.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
-    format!("{} {}, {size}", count(of.layers), if of.layers == 1 { "layer" } else { "layers" })
+    format!("{} {}, {size}", whole(of.layers), if of.layers == 1 { "layer" } else { "layers" })
 }
 
 /// The columns of `cases.csv` and of the page's table.

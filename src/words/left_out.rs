@@ -1,7 +1,7 @@
 //! The words of what an answer leaves out: what the model does not contain, and what a scene does not need.
 
 use crate::outcome::left_out::{LayerKind, LeftOut};
-use crate::outcome::numbers::{fixed, given};
+use crate::outcome::quantity::{given, significant};
 use crate::outcome::record::ModelLimit;
 use crate::walk::{Engine, Finest, Shortcut};
 
@@ -58,8 +58,8 @@ pub fn left_out_line(limits: &[ModelLimit]) -> String {
     if limits.contains(&ModelLimit::Bridging) {
         names.push("bridging");
     }
-    names.extend(["cohesion", "suffusion", "segregation"]);
-    format!("The model leaves out: {}; more on the page.", names.join(", "))
+    names.extend(["cohesion", "dispersion", "suffusion", "segregation"]);
+    format!("The model decides nothing and leaves out: {}; more on the page.", names.join(", "))
 }
 
 /// What the model does not contain and what no rule covers, in two sentences.
@@ -89,7 +89,7 @@ pub fn left_out(part: &LeftOut, unit: &str) -> String {
         }
         LeftOut::PackingByCurve => "packing and triangulation: the constriction curve is given",
         LeftOut::PackingOfShape(folder, factor) => {
-            let factor = fixed(*factor, 4);
+            let factor = significant(*factor).decimals(4);
             return format!(
                 "packing the filter: the packing in {folder} has its shape, and was taken {factor} \
                      times as large"
@@ -140,7 +140,10 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
         _ => "only their number in each void is followed, which is exact",
     };
     let finest_open = |finest: Finest| {
-        format!("the finest open constriction of this walk ({} {unit})", fixed(finest.size_mm, 4))
+        format!(
+            "the finest open constriction of this walk ({} {unit})",
+            significant(finest.size_mm).decimals(4)
+        )
     };
     match shortcut {
         Shortcut::NothingOpen => {
@@ -159,7 +162,7 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
         Shortcut::AllPassive(finest, engine) => format!(
             "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
                  blocked, and none is walked on its own; {}.",
-            fixed(finest.size_mm, 4),
+            significant(finest.size_mm).decimals(4),
             if finest.arches { ", and is too fine to arch" } else { "" },
             followed(engine)
         ),
@@ -184,7 +187,7 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
 fn digits(percent: f64) -> String {
     match percent {
         few if few < 1e-3 && few.is_finite() => format!("{few:.3e}"),
-        many => fixed(many, (3.0 - libm::log10(many).floor()).max(0.0) as usize),
+        many => significant(many).decimals((3.0 - libm::log10(many).floor()).max(0.0) as u8).to_string(),
     }
 }
 

@@ -4,9 +4,11 @@ use super::dispersion::{beside_dispersive, beyond_dispersive};
 use super::rule_note::missing;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::retention::{open_retention, retention};
-use crate::outcome::numbers::{SizeUnit, in_digits};
-use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole};
-use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
+use crate::outcome::quantity::{Role, SizeUnit, length, limits, significant};
+use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole, Verdict};
+use crate::outcome::rules::{
+    FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION,
+};
 use crate::verdict::practice::{Standing, broken, standing};
 
 /// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault of it.
@@ -15,7 +17,7 @@ const DRAIN_D15F_MM: f64 = 5.0;
 /// The next step by practice for a pair in mm, in a sentence without its end.
 pub fn next(outcome: &Outcome, unit: SizeUnit) -> String {
     let (rules, d15f_mm) = (&outcome.rules[..], outcome.inputs.filter.d15_mm);
-    Pair { rules, d15f_mm, if_dispersive: outcome.if_dispersive, unit }.step()
+    Pair { rules, d15f_mm, if_dispersive: outcome.if_dispersive, class: outcome.model.class, unit }.step()
 }
 
 /// A pair as practice sees it.
@@ -23,6 +25,8 @@ struct Pair<'a> {
     rules: &'a [AppliedRule],
     d15f_mm: f64,
     if_dispersive: Option<IfDispersive>,
+    /// The class of the model.
+    class: Verdict,
     unit: SizeUnit,
 }
 
@@ -45,7 +49,15 @@ impl Pair<'_> {
                 .or_else(|| self.placing())
                 .or_else(|| self.fines())
                 .or_else(|| self.missing_drainage())
-                .unwrap_or_else(|| "nothing by these rules".into()),
+                .unwrap_or_else(|| self.of_model().into()),
+        }
+    }
+
+    /// Where the rules ask for nothing more.
+    fn of_model(&self) -> &'static str {
+        match self.class {
+            Verdict::None => "nothing by these rules",
+            Verdict::Some | Verdict::Continuing | Verdict::Undecided => "have this pair tested",
         }
     }
 
@@ -61,7 +73,10 @@ impl Pair<'_> {
             Some((limit, false)) => self.sized(limit) + " that is internally stable",
             _ => "take a filter that is internally stable".into(),
         };
-        format!("{filter}, or have its internal stability tested")
+        // A test of its stability would leave these open.
+        let is_open =
+            [RuleRole::Drainage, RuleRole::Placing].iter().any(|role| !broken(self.rules, *role).is_empty());
+        if is_open { filter } else { format!("{filter}, or have its internal stability tested") }
     }
 
     /// The D15F that retains the base, and what to do with a filter that exists.
@@ -70,7 +85,7 @@ impl Pair<'_> {
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
-                self.unit.limit(limit, false)
+                length(limit, self.unit).role(Role::Greatest).to_string()
             ),
             None => format!("take a finer filter; {exists}"),
             Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
@@ -83,7 +98,7 @@ impl Pair<'_> {
         match boundary.and_then(|rule| Some(rule.value? / rule.limit?)) {
             Some(times) => format!(
                 "for a filter that exists, assume continuing erosion (its D15F is {} times that boundary)",
-                in_digits(times, 2)
+                significant(times).in_digits(3)
             ),
             None => "for a filter that exists, have this pair tested".into(),
         }
@@ -93,10 +108,12 @@ impl Pair<'_> {
     fn sized(&self, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
-            Some(least) if least <= most => (format!(" and at least {}", self.unit.limit(least, true)), None),
+            Some(least) if least <= most => {
+                (format!(" and at least {}", length(least, self.unit).role(Role::Least).to_string()), None)
+            }
             // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
             Some(least) if drainage.is_some() => {
-                let least = self.unit.limit(least, true);
+                let least = length(least, self.unit).role(Role::Least).to_string();
                 let compare = "compare the permeabilities of filter and base";
                 (String::new(), Some(format!("to drain the base it would be at least {least}: {compare}")))
             }
@@ -104,7 +121,10 @@ impl Pair<'_> {
         };
         let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
-        format!("take a filter with a D15F of at most {}{beside}{drains}", self.unit.limit(most, false))
+        format!(
+            "take a filter with a D15F of at most {}{beside}{drains}",
+            length(most, self.unit).role(Role::Greatest).to_string()
+        )
     }
 
     /// The limit of a dispersive base beside a D15F (mm) that is recommended.
@@ -112,10 +132,12 @@ impl Pair<'_> {
         beside_dispersive(self.if_dispersive?, most, self.unit)
     }
 
-    /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
+    /// The maximum D15F (mm) that every rule of retention and the boundary of no erosion allow, and whether the limit itself is lower and
     /// not known.
     fn greatest(&self) -> Option<(f64, bool)> {
         let (_, limit) = retention(self.rules, self.d15f_mm)?;
+        let tests = self.rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.applies);
+        let limit = tests.and_then(|rule| rule.limit).map_or(limit, |tests| tests.min(limit));
         Some((limit, open_retention(self.rules).is_some()))
     }
 
@@ -132,7 +154,7 @@ impl Pair<'_> {
         let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
         match (least, self.greatest()) {
             (Some(least), Some((most, false))) if most >= least => {
-                let range = self.unit.limits(least, most);
+                let range = limits(least, most, self.unit);
                 let dispersive =
                     self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
                 Some(format!("take a coarser filter, D15F {range}{dispersive}{clean}"))
@@ -158,7 +180,7 @@ impl Pair<'_> {
                 return Some("narrow the filter's range of sizes, or specify how it is placed".into());
             }
             let limit = rule.limit.filter(|_| self.d15f_mm <= DRAIN_D15F_MM)?;
-            Some(format!("take out the grains coarser than {} mm", in_digits(limit, 3)))
+            Some(format!("take out the grains coarser than {} mm", significant(limit).in_digits(3)))
         };
         broken(self.rules, RuleRole::Placing).into_iter().find_map(step)
     }

@@ -3,14 +3,13 @@
 use serde_json::Value;
 
 use crate::outcome::design::RowNote;
-use crate::outcome::digits::count;
 use crate::outcome::note::Note;
-use crate::outcome::numbers::{SizeUnit, rounded_down, rounded_up, trimmed_significant};
+use crate::outcome::quantity::{Role, SizeUnit, Unit, significant, whole};
 
 /// The sentence of a note; lengths are shown in this unit.
 ///
 /// ```
-/// use voidwalk::outcome::{note::Note, numbers::SizeUnit};
+/// use voidwalk::outcome::{note::Note, quantity::SizeUnit};
 /// let note = Note::CoarseBase { d85_mm: 19.0 };
 /// let words = voidwalk::words::sentence(&note, SizeUnit::Mm);
 /// assert_eq!(words, "The D85 of the base is 19 mm: are its sizes micrometres under a header in mm?");
@@ -59,28 +58,28 @@ fn shown(name: &str, noun: Option<&str>, value: &Value, unit: SizeUnit) -> Strin
 }
 
 fn measured(name: &str, value: f64, unit: SizeUnit) -> String {
-    let (number, inches) = match name.split('_').next() {
-        Some("least") => (rounded_up(value), unit.beside_least(value)),
-        Some("most") => (rounded_down(value), unit.beside_greatest(value)),
-        _ => (trimmed_significant(value), unit.beside(value)),
+    let number = match name.split('_').next() {
+        Some("least") => significant(value).role(Role::Least),
+        // A value above a bound is above the bound rounded down.
+        Some("most" | "over") => significant(value).role(Role::Greatest),
+        _ => significant(value).in_digits(3),
     };
     match name.rsplit('_').next() {
-        Some("mm") if unit == SizeUnit::D0f => format!("{number} D0F"),
-        Some("mm") => format!("{number} mm{inches}"),
-        Some("percent") => format!("{} %", trimmed_significant(value)),
-        Some("pp") => format!("{} percentage points", trimmed_significant(value)),
-        _ => number,
+        Some("mm") => number.in_unit(Unit::Size(unit)).to_string(),
+        Some("percent") => number.in_unit(Unit::Percent).in_digits(3).to_string(),
+        Some("pp") => format!("{} percentage points", number.in_digits(3)),
+        _ => number.to_string(),
     }
 }
 
 /// A count with what is counted, as `replicate` or `copy|copies`.
 fn counted(number: u64, noun: Option<&str>) -> String {
-    let Some(noun) = noun else { return count(number) };
+    let Some(noun) = noun else { return whole(number).to_string() };
     let (one, many) = noun.split_once('|').unwrap_or((noun, ""));
     match (number, many) {
         (1, _) => format!("1 {one}"),
-        (_, "") => format!("{} {one}s", count(number)),
-        (_, many) => format!("{} {many}", count(number)),
+        (_, "") => format!("{} {one}s", whole(number)),
+        (_, many) => format!("{} {many}", whole(number)),
     }
 }
 

@@ -3,13 +3,13 @@
 use super::dispersion::beyond_dispersive;
 use super::rule::value_and_limit;
 use super::rule_note::{missing, rule_note};
-use crate::outcome::numbers::{SizeUnit, fixed};
-use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Note, Outcome, RuleRole, TestedClass};
-use crate::outcome::rules::{
-    DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority, authority_in_brief,
+use crate::outcome::quantity::{SizeUnit, Unit, beside_limit, significant};
+use crate::outcome::record::{
+    AppliedRule, Headline, IfDispersive, Note, Outcome, RuleNote, RuleRole, TestedClass,
 };
-use crate::verdict::practice::{Standing, broken, headline, standing};
-use crate::verdict::rule_result::{credit, has_no_margin, met_of, tests_are_stricter, without_margin};
+use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority, authority_in_brief};
+use crate::verdict::practice::{Standing, broken, headline, is_drainage_unknown, standing};
+use crate::verdict::rule_result::{credit, has_no_margin, met_of, without_margin};
 use crate::verdict::tested::{self, is_beyond_tests, is_beyond_unclear};
 use crate::verdict::washout::{Washout, washout};
 
@@ -52,20 +52,26 @@ pub fn practice_line(
 /// D15F beside the limit of design.
 fn of_design(rule: &AppliedRule, rules: &[AppliedRule], unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
+    let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
     let d15f = match standing(rules) {
-        Standing::Open(sieves) => rule_note(sieves, unit),
-        _ => format!("D15F {}", value.as_deref().unwrap_or("unknown")),
+        // D15F itself is what the sieves leave open.
+        Standing::Open(sieves @ (RuleNote::D15FBetween(..) | RuleNote::FilterBetween(..))) => {
+            rule_note(sieves, unit)
+        }
+        Standing::Open(sieves) => format!("{known}; {}", rule_note(sieves, unit)),
+        _ => known,
     };
-    let at_most = if rule.limit_at_most { "at most " } else { "" };
     let limit = match limit {
-        Some(limit) => format!("limit {at_most}{limit} ({})", credit(rule)),
+        Some(limit) if rule.limit_at_most => format!("limit not known, at most {limit} ({})", credit(rule)),
+        Some(limit) => format!("limit {limit} ({})", credit(rule)),
         None => "limit not known".to_owned(),
     };
     let needs = match (rule.met, rule.needs.first()) {
         (None, Some(need)) => missing(*need).map(|missing| format!(" (needs {missing})")),
         _ => None,
     };
-    let margin = if has_no_margin(rules) { ", without a margin" } else { "" };
+    let has_margin = rule.met == Some(false) || !has_no_margin(rules);
+    let margin = if has_margin { "" } else { ", without a margin" };
     format!("{d15f}, {limit}{margin}{}", needs.unwrap_or_default())
 }
 
@@ -94,6 +100,7 @@ fn of_tests(rules: &[AppliedRule], unit: SizeUnit) -> Option<String> {
         limit.map(|limit| format!("{at_most}{limit}"))
     };
     let class = match tested::tested(rules) {
+        TestedClass::None if washout(rules).is_some() => "criterion of no erosion met as placed",
         TestedClass::None => "criterion of no erosion met",
         TestedClass::Unknown if !is_beyond_tests(rules) => return None,
         _ => tested_class(rules),
@@ -103,12 +110,18 @@ fn of_tests(rules: &[AppliedRule], unit: SizeUnit) -> Option<String> {
             let unclear = if is_beyond_unclear(rules) { ", a boundary that tests leave unclear" } else { "" };
             boundary(TESTS_CONTINUING).map(|limit| format!(" (beyond {limit}{unclear})"))
         }
-        _ if tests_are_stricter(rules).is_some() || met_of(rules, DESIGN) == Some(false) => {
+        _ if is_below_design(rules) || met_of(rules, DESIGN) == Some(false) => {
             boundary(TESTS_NO_EROSION).map(|limit| format!(" (no erosion up to {limit})"))
         }
         _ => None,
     };
     Some(format!("Foster and Fell: {class}{}", beyond.unwrap_or_default()))
+}
+
+/// Whether the boundary of no erosion in tests lies below the limit of design.
+fn is_below_design(rules: &[AppliedRule]) -> bool {
+    let limit = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies)?.limit;
+    limit(TESTS_NO_EROSION).zip(limit(DESIGN)).is_some_and(|(tests, design)| tests < design)
 }
 
 /// The class by the boundaries that Foster and Fell saw in tests: beyond that of no erosion a base erodes,
@@ -134,14 +147,16 @@ fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
     let more = if washout.is_capped() { "; more may go" } else { "" };
     let d15f = match washout.unit {
         "mm" => {
-            unit.within([Some(washout.left.d15f), Some(washout.least)], " mm")[0].clone().unwrap_or_default()
+            let numbers = [Some(washout.left.d15f), Some(washout.least)];
+            beside_limit(numbers, false, Unit::Size(unit))[0].clone().unwrap_or_default()
         }
-        name => format!("{} {name}", fixed(washout.left.d15f, 3)),
+        name => format!("{} {name}", significant(washout.left.d15f).decimals(3)),
     };
     format!(
-        "without its finest {} % (by {}{more}) D15F is {d15f}, beyond the limit",
-        fixed(washout.left.percent, 1),
-        authority_in_brief(washout.by)
+        "without its finest {} % (by {}{more}) D15F is {d15f}, beyond the limit{}",
+        significant(washout.left.percent).decimals(1),
+        authority_in_brief(washout.by),
+        if washout.continues() { " and the boundary of continuing erosion" } else { "" }
     )
 }
 
@@ -150,12 +165,14 @@ fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
     let breaks = |role| !broken(rules, role).is_empty();
     let loses = [Headline::MayLoseFiner, Headline::TooCoarseWithoutFiner].contains(&headline);
     let drains = breaks(RuleRole::Drainage);
-    let is_unknown = |rule: &AppliedRule| rule.id == PERMEABILITY && rule.applies && rule.met.is_none();
     let all = [
         (breaks(RuleRole::Stability) && !loses, "may lose its finer part"),
         (drains && headline != Headline::MayNotDrain, "may not drain"),
         (breaks(RuleRole::Placing) && headline != Headline::MaySegregate, "may segregate"),
-        (!drains && rules.iter().any(is_unknown), "drainage not known"),
+        (
+            !drains && is_drainage_unknown(rules) && headline != Headline::DrainageNotKnown,
+            "drainage not known",
+        ),
     ];
     all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
 }

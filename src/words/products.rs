@@ -3,7 +3,7 @@
 use crate::gradation::FINES_MM;
 use crate::outcome::design::products::{LEAST_CU, NotKept, is_to_be_checked};
 use crate::outcome::design::specification::{ProductMargin, Specification};
-use crate::outcome::numbers::significant;
+use crate::outcome::quantity::significant;
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
 use crate::outcome::table::Columns;
 

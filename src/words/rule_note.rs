@@ -1,7 +1,7 @@
 //! The words of what rules of practice say beside their results, and of why practice regrades a base.
 
 use crate::gradation::{FEW_FINES, RegradeCause, RegradeReason};
-use crate::outcome::numbers::{SizeUnit, fixed, given, in_digits, significant};
+use crate::outcome::quantity::{Role, SizeUnit, given, length, significant};
 use crate::outcome::record::RuleNote;
 
 /// What rules say beside their results, in a part of a sentence.
@@ -21,12 +21,12 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::BaseBetween(from, to) => return between(unit, "sizes of the base are not known", from, to),
         RuleNote::FlatBase(limit) => {
-            let limit = unit.limit(limit, false);
+            let limit = length(limit, unit).role(Role::Greatest).to_string();
             return format!("the base may be gap-graded: the stricter limit; the other is {limit}");
         }
         RuleNote::Dispersive => "dispersive",
         RuleNote::Category(category) => return format!("base category {category}"),
-        RuleNote::RegradedOn(size) => return format!("base regraded on {}", unit.size(size)),
+        RuleNote::RegradedOn(size) => return format!("base regraded on {}", length(size, unit)),
         RuleNote::BeforeRegrading => "base before regrading",
         RuleNote::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines",
         RuleNote::ResultOfModel => "a result of the model, for the base as it is walked",
@@ -44,35 +44,48 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         RuleNote::ByFines(times, until, fines) => {
             let [width, until] = [until - FEW_FINES, until].map(given);
             let fines = given((100.0 * fines).round() / 100.0);
-            let times = if times == 1.0 { String::new() } else { given(times) + " " };
+            let times = if times == 1.0 { String::new() } else { format!("{} ", given(times)) };
             let by_fines = format!("[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7]");
             return format!("{times}{by_fines} mm for {fines} % fines");
         }
         RuleNote::FloorGoverns(times, size) => {
-            return format!("its floor: {} D85B would be {}", given(times), unit.limit(size, false));
+            return format!(
+                "its floor: {} D85B would be {}",
+                given(times),
+                length(size, unit).role(Role::Greatest).to_string()
+            );
         }
         RuleNote::LeastGoverns(times, size) => {
-            return format!("its floor: {} D15B is below {}", given(times), unit.limit(size, true));
+            return format!(
+                "its floor: {} D15B is below {}",
+                given(times),
+                length(size, unit).role(Role::Least).to_string()
+            );
         }
         RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",
         RuleNote::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed",
         RuleNote::LimitAtLeast => "D15B is finer than the finest sieve; the limit is never less than this",
         RuleNote::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this",
         RuleNote::FinestSieveOfFilter(size) => {
-            return format!("the finest sieve is {}: at most what passes it", unit.size(size));
+            return format!("the finest sieve is {}: at most what passes it", length(size, unit));
         }
-        RuleNote::AtPercentFiner(percent) => return format!("at {} % finer", fixed(percent, 0)),
+        RuleNote::AtPercentFiner(percent) => {
+            return format!("at {} % finer", significant(percent).decimals(0));
+        }
         RuleNote::BandFrom(percent) => {
-            return format!("compared from {} % finer, as no finer sieve tells", fixed(percent, 0));
+            return format!(
+                "compared from {} % finer, as no finer sieve tells",
+                significant(percent).decimals(0)
+            );
         }
         RuleNote::Joint(joint, d95b, ratio) => {
-            let [d95b, ratio] = [fixed(d95b, 3), fixed(ratio, 2)];
+            let [d95b, ratio] = [significant(d95b).decimals(3), significant(ratio).decimals(2)];
             return format!("joint of {} mm, D95B {d95b} mm: JOS/D95B = {ratio}; steady flow", given(joint));
         }
         RuleNote::LessThanSource => "less than 0.01 %",
         RuleNote::ChecksWalk => "checks the walk against their tests, not the filter",
         RuleNote::FarFinerThanTests(times) => {
-            let times = in_digits(times, 2);
+            let times = significant(times).in_digits(2);
             return format!("{times} times finer: the openings walked are not those of such tests");
         }
         RuleNote::KezdiAt(split, coarse, fine) => {
@@ -80,28 +93,32 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
             return format!(
                 "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part \
                      {fine} mm",
-                fixed(split, 1)
+                significant(split).decimals(1)
             );
         }
         RuleNote::KezdiSplits(from, to) => {
-            return format!("judged over splits at {} to {} % finer", fixed(from, 1), fixed(to, 1));
+            return format!(
+                "judged over splits at {} to {} % finer",
+                significant(from).decimals(1),
+                significant(to).decimals(1)
+            );
         }
         RuleNote::KezdiHidden(share) => {
-            let share = fixed(share, 0);
+            let share = significant(share).decimals(0);
             return format!("what its {share} % finer than the finest sieve hide is not known");
         }
         RuleNote::ShapeAt(at, most) => {
-            return format!("at F = {} %, judged up to F = {} %", fixed(at, 1), given(most));
+            return format!("at F = {} %, judged up to F = {} %", significant(at).decimals(1), given(most));
         }
         RuleNote::ShapeAbovePan(at, from, most) => {
-            let [at, from] = [at, from].map(|percent| fixed(percent, 1));
+            let [at, from] = [at, from].map(|percent| significant(percent).decimals(1));
             return format!(
                 "at F = {at} %, judged from F = {from} % (finest sieve) up to F = {} %",
                 given(most)
             );
         }
         RuleNote::BurenkovaRange(whole, low, high) => {
-            let [whole, low, high] = [whole, low, high].map(|value| fixed(value, 2));
+            let [whole, low, high] = [whole, low, high].map(|value| significant(value).decimals(2));
             return format!("h'' = D90/D15 = {whole}; the range is {low} to {high}");
         }
         RuleNote::WanFellSand => "as sand and gravel with up to 10 % of fines that are not plastic",
@@ -113,7 +130,7 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
                  than 15 % of finer fraction"
         }
         RuleNote::LimitsByFines(percent) => {
-            let percent = fixed(percent, 0);
+            let percent = significant(percent).decimals(0);
             return format!("{percent} % of the base is fines: limits by fines stand in its place");
         }
         RuleNote::BurenkovaSoils => "for grains of up to 100 mm and a Cu of up to 200",
@@ -121,7 +138,7 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
             return format!(
                 "h' is above {}: Burenkova's third zone, of which Wan and Fell have no tests and expect \
                      no loss of fines",
-                fixed(high, 2)
+                significant(high).decimals(2)
             );
         }
         RuleNote::UniformFilter => "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded",
@@ -155,21 +172,21 @@ pub fn missing(note: RuleNote) -> Option<&'static str> {
 }
 
 fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
-    let [low, high] = [from, to].map(|size| given((1e6 * size).round() / 1e6));
-    let inches = unit.beside_range(from, to);
-    format!("{what} between {low} and {high} mm{inches}: test the sieves between")
+    let [low, high] = [from, to].map(|sieve| length(sieve, unit).in_digits(6));
+    format!("{what} between {} and {}: test the sieves between", low.in_cell(), high)
 }
 
 /// Why practice regrades a base or does not, as a part of a sentence.
 pub fn regrade_reason(reason: RegradeReason) -> String {
     let cause = match reason.cause {
-        RegradeCause::Gap(from) => {
-            &*format!("gap-graded: next to nothing between {} mm and four times that", fixed(from, 3))
-        }
+        RegradeCause::Gap(from) => &*format!(
+            "gap-graded: next to nothing between {} mm and four times that",
+            significant(from).decimals(3)
+        ),
         RegradeCause::GapAmongGravel(from) => &*format!(
             "gap-graded: next to nothing between {} mm and four times that; what is finer is regraded on \
                  No. 4 (4.75 mm)",
-            fixed(from, 3)
+            significant(from).decimals(3)
         ),
         RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
         RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)",

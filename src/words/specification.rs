@@ -10,7 +10,7 @@ use crate::outcome::design::products::LEAST_CU;
 use crate::outcome::design::size_band::{D15_OVER_D10, SizeBand};
 use crate::outcome::design::specification::{NoBand, StepName, StepNote, StepValue};
 use crate::outcome::design::{Specification, SpecificationStep};
-use crate::outcome::numbers::{SizeUnit, significant};
+use crate::outcome::quantity::{self, Role, SizeUnit, length, limits, significant};
 use crate::outcome::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND,
     range_of_tests,
@@ -26,7 +26,7 @@ pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 ///
 /// ```
 /// use voidwalk::Gradation;
-/// use voidwalk::outcome::{design::Specification, numbers::SizeUnit};
+/// use voidwalk::outcome::{design::Specification, quantity::SizeUnit};
 /// use voidwalk::verdict::SpecificationOptions;
 /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
 /// let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
@@ -39,7 +39,7 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let is_open =
         specification.d15f_min_at_most && specification.d15f_min_mm.is_some_and(|drains| drains >= least);
     let open = if is_open { " (what drains the base is not known and at most the lower D15F)" } else { "" };
-    Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", unit.limits(least, most)))
+    Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", limits(least, most, unit)))
 }
 
 /// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains
@@ -47,7 +47,7 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] = [retains, most].map(|mm| unit.limit(mm, false));
+        let [retains, most] = [retains, most].map(|mm| length(mm, unit).role(Role::Greatest).to_string());
         return Some(format!(
             "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
              the band is no wider than {WIDEST_BAND} to 1"
@@ -55,7 +55,7 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     }
     let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
     let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| unit.limit(mm, true));
+    let [drains, least] = [drains, least].map(|mm| length(mm, unit).role(Role::Least).to_string());
     Some(format!(
         "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
          that the band is no wider than {WIDEST_BAND} to 1"
@@ -71,7 +71,7 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
         // Where a table is entered: a finer D10F allows no coarser D90F.
-        unit.limit(least, false)
+        length(least, unit).role(Role::Greatest).to_string()
     ))
 }
 
@@ -83,7 +83,7 @@ pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<St
         "The limits alone are not enough: D15F of each delivery must lie within {}, its Cu between \
          {LEAST_CU} \
          and {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
-        unit.limits(least, most)
+        limits(least, most, unit)
     ))
 }
 
@@ -110,7 +110,7 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
             format!(
                 "it {place} the range in which tests put the boundary of no erosion ({}; Fell et al., Table \
                  9.2)",
-                unit.range_of_tests(low, high)
+                quantity::range_of_tests(low, high, unit)
             )
         }
     };
@@ -143,15 +143,15 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
             "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
              {} to retain the base: D15B must be tested.",
-            unit.limit(*most_drains_mm, true),
-            unit.limit(*most_mm, false)
+            length(*most_drains_mm, unit).role(Role::Least).to_string(),
+            length(*most_mm, unit).role(Role::Greatest).to_string()
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
             "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
              {} \
              to retain it. {}",
-            unit.limit(*least_mm, true),
-            unit.limit(*most_mm, false),
+            length(*least_mm, unit).role(Role::Least).to_string(),
+            length(*most_mm, unit).role(Role::Greatest).to_string(),
             // So fine a base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
@@ -164,7 +164,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         }
         NoBand::TooCoarse { most_d60f_mm } => format!(
             "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            unit.limit(*most_d60f_mm, false)
+            length(*most_d60f_mm, unit).role(Role::Greatest).to_string()
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
@@ -180,8 +180,8 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
 pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
     Some(match (value.unit.as_str(), value.role()) {
-        ("mm", Some(at_least)) => unit.limit(number, at_least),
-        ("mm", None) => format!("{} mm{}", significant(number), unit.beside(number)),
+        ("mm", Some(at_least)) => length(number, unit).role(Role::of_limit(at_least)).to_string(),
+        ("mm", None) => length(number, unit).to_string(),
         ("", _) if number.fract() == 0.0 && number < 100.0 => format!("{number:.0}"),
         (name, _) => format!("{} {name}", significant(number)).trim_end().to_owned(),
     })
@@ -280,13 +280,10 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
     };
     let found = if within < GAP_PERCENT { "A gap" } else { "No gap" };
     format!(
-        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {} \
-         to \
-         {} mm{}, and below {GAP_PERCENT} % counts as a gap. {EYE}",
+        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {}, \
+         and below {GAP_PERCENT} % counts as a gap. {EYE}",
         significant(within),
-        significant(from_mm),
-        significant(4.0 * from_mm),
-        unit.beside_range(from_mm, 4.0 * from_mm)
+        length(from_mm, unit).to(length(4.0 * from_mm, unit))
     )
 }
 

@@ -181,7 +181,12 @@ fn a_specification_has_every_curve_of_its_base() {
     let step = found["steps"][9].as_object().unwrap();
     assert_eq!(step["does"], "keep_from_segregating");
     let least = step["values"][0]["value"].as_f64().unwrap();
-    let said = format!("minimum D10F of {}\u{202f}mm", voidwalk::report::numbers::rounded_down(least));
+    let said = format!(
+        "minimum D10F of {}\u{202f}mm",
+        voidwalk::report::quantity::significant(least)
+            .role(voidwalk::report::quantity::Role::Greatest)
+            .number()
+    );
     assert!(page.contains(&said), "{said}");
 
     let both = TILL.replace("percent_finer", "north,south").replace(",85\n", ",85,80\n");

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use voidwalk::report::numbers::{rounded_down, rounded_up};
+use voidwalk::report::quantity::{Role, significant};
 use voidwalk::run::FolderKind;
 
 use crate::program::{call, done, figures_are_listed, refused};
@@ -114,7 +114,10 @@ fn a_design_has_the_specification_of_practice_alone() {
         let mut named = values.filter(|value| value["name"] == name);
         named.next().unwrap()["value"].as_f64().unwrap()
     };
-    let [least, greatest] = [rounded_up(of("minimum D15F")), rounded_down(of("maximum D15F"))];
+    let [least, greatest] = [
+        significant(of("minimum D15F")).role(Role::Least),
+        significant(of("maximum D15F")).role(Role::Greatest),
+    ];
     let band = format!("D15F from {least} to {greatest} mm, Cu from 2 to 6");
     let headline = format!("<p class=\"word long\">{band}, by practice.</p>");
     assert!(page.replace('\u{202f}', " ").contains(&headline), "{band}");

@@ -1,7 +1,7 @@
 //! What a page says of the walk: where it can be relied on, and what it was made with.
 
 use voidwalk::Gradation;
-use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::outcome::quantity::SizeUnit;
 use voidwalk::outcome::record::Note;
 use voidwalk::verdict::PairRules;
 

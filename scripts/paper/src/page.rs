@@ -5,7 +5,7 @@ use std::path::Path;
 use maud::{Markup, html};
 use voidwalk::outcome::record::Verdict;
 use voidwalk::outcome::{Modelled, leaves_out};
-use voidwalk::report::numbers::{duration, significant, whole};
+use voidwalk::report::quantity::{duration, significant, whole};
 use voidwalk::report::shell::{Drawn, clean, drawing, whole_page};
 use voidwalk::report::{ReportError, Written, write_page};
 use voidwalk::store::write_whole;
@@ -136,7 +136,8 @@ fn thickness(study: &Study) -> Markup {
     let mut all: Vec<(u64, String)> = Vec::new();
     for case in study.cases(VARIANTS[0].name) {
         let (network, filter) = (&case.outcome.inputs.network, &case.outcome.inputs.filter);
-        let over = network.thickness_mm.map(|mm| significant(mm / filter.d0_mm)).unwrap_or_default();
+        let over =
+            network.thickness_mm.map_or_else(String::new, |mm| significant(mm / filter.d0_mm).to_string());
         let of = filter.cu.map(|cu| ((100.0 * cu).round() / 100.0).to_string()).unwrap_or_default();
         let one = (network.layers, format!("{over} D0F with Cu {of}"));
         if !all.contains(&one) {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use crate::measured::{Measured, Of};
 use crate::measures::{Over, measure};
 use crate::study::{Curves, Study, VARIANTS, Variant};
-use voidwalk::report::numbers::{significant, whole};
+use voidwalk::report::quantity::{significant, whole};
 
 const STATEMENTS: &str = include_str!("../data/statements.toml");
 
@@ -149,8 +149,8 @@ impl Statement {
     fn number(value: f64) -> String {
         match value {
             v if v.fract() == 0.0 && v.abs() < 1e6 => (v as i64).to_string(),
-            v if v.fract() == 0.0 && (0.0..1e18).contains(&v) => whole(v as u64),
-            v => significant(v),
+            v if v.fract() == 0.0 && (0.0..1e18).contains(&v) => whole(v as u64).to_string(),
+            v => significant(v).to_string(),
         }
     }
 

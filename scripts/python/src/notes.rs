@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use voidwalk::outcome::note::Note;
-use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::outcome::quantity::SizeUnit;
 use voidwalk::words::{sentence, setting};
 
 use crate::problem::refused;

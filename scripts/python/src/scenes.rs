@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use voidwalk::Outcome;
 use voidwalk::campaign::{self as campaigns, CampaignOptions, CampaignPlan, CasePart};
 use voidwalk::case::{Case, RECORD};
-use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::outcome::quantity::SizeUnit;
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;

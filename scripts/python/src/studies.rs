@@ -7,7 +7,7 @@ use voidwalk::case::CaseError;
 use voidwalk::gradation::soils_in_file;
 use voidwalk::outcome::design::Specification;
 use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
-use voidwalk::outcome::numbers::SizeUnit;
+use voidwalk::outcome::quantity::{SizeUnit, limits};
 use voidwalk::outcome::record::SheetCover;
 use voidwalk::store::format;
 use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
@@ -138,7 +138,7 @@ pub fn specification_words(record: &str) -> PyResult<Words> {
     let specification: Specification = serde_json::from_str(record).map_err(refused)?;
     let d15f = specification.band.as_ref().map(SizeBand::d15_mm);
     Ok((
-        d15f.map(|[least, most]| format!("D15F from {}", unit.limits(least, most))),
+        d15f.map(|[least, most]| format!("D15F from {}", limits(least, most, unit))),
         specification.no_band.as_ref().map(|why| no_band(why, unit)),
         beside_limits(&specification, unit),
         specification.set_by().map(str::to_owned),

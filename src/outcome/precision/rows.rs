@@ -1,12 +1,14 @@
 //! The rows of a precision study. A field is a column of its CSV file; what follows `=>` is how the page
 //! shows it.
 
-use crate::outcome::numbers::{duration, percent, significant};
+use std::fmt::Display;
+
+use crate::outcome::quantity::{Quantity, duration, percent, significant};
 use crate::outcome::record::Verdict;
 use crate::outcome::table::table_rows;
 
 /// A fraction in percent, or a difference in percentage points.
-fn points(fraction: f64) -> String {
+fn points(fraction: f64) -> Quantity {
     significant(100.0 * fraction)
 }
 
@@ -16,20 +18,20 @@ fn signed(fraction: f64) -> String {
 }
 
 /// A value with the ends of its interval.
-fn between(show: impl Fn(f64) -> String, [value, low, high]: [f64; 3]) -> String {
+fn between<R: Display>(show: impl Fn(f64) -> R, [value, low, high]: [f64; 3]) -> String {
     format!("{} ({} to {})", show(value), show(low), show(high))
 }
 
 /// A difference from the reference setting, with its interval where there is one.
-fn difference(
+fn difference<R: Display>(
     is_reference: bool,
-    show: impl Fn(f64) -> String,
+    show: impl Fn(f64) -> R,
     (mean, low, high): (f64, Option<f64>, Option<f64>),
 ) -> String {
     match low.zip(high) {
         _ if is_reference => "reference".to_owned(),
         Some((low, high)) => between(show, [mean, low, high]),
-        None => show(mean),
+        None => show(mean).to_string(),
     }
 }
 

@@ -49,6 +49,9 @@ pub enum Headline {
     /// The same, unless the base is dispersive, of which nobody has said whether it is.
     #[serde(rename = "meets practice unless the base is dispersive")]
     MeetsUnlessDispersive,
+    /// The limit of design is kept; whether the filter drains the base is not known.
+    #[serde(rename = "meets the limit of retention, drainage not known")]
+    DrainageNotKnown,
     /// The limit of design is kept by a filter that breaks a rule of drainage.
     #[serde(rename = "meets the limit of retention, but may not drain")]
     MayNotDrain,
@@ -77,9 +80,10 @@ pub enum Headline {
 
 impl Headline {
     /// Every headline.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Meets,
         Self::MeetsUnlessDispersive,
+        Self::DrainageNotKnown,
         Self::MayNotDrain,
         Self::MaySegregate,
         Self::BeyondDesign,
@@ -95,6 +99,7 @@ impl Headline {
         match self {
             Self::Meets => "meets practice",
             Self::MeetsUnlessDispersive => "meets practice unless the base is dispersive",
+            Self::DrainageNotKnown => "meets the limit of retention, drainage not known",
             Self::MayNotDrain => "meets the limit of retention, but may not drain",
             Self::MaySegregate => "meets the limit of retention, but may segregate",
             Self::BeyondDesign => "does not meet the limit of design",
@@ -111,9 +116,11 @@ impl Headline {
     /// Whether practice is met.
     pub fn class(self) -> PracticeClass {
         match self {
-            Self::Meets | Self::MeetsUnlessDispersive | Self::MayNotDrain | Self::MaySegregate => {
-                PracticeClass::Meets
-            }
+            Self::Meets
+            | Self::MeetsUnlessDispersive
+            | Self::DrainageNotKnown
+            | Self::MayNotDrain
+            | Self::MaySegregate => PracticeClass::Meets,
             Self::BeyondDesign | Self::DoesNotMeet | Self::TooCoarseWithoutFiner => {
                 PracticeClass::DoesNotMeet
             }

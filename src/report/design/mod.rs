@@ -7,6 +7,7 @@ mod tables;
 mod tests;
 mod words;
 
+use crate::outcome::quantity::{length, significant};
 use std::path::Path;
 
 use maud::{Markup, html};
@@ -16,7 +17,6 @@ use super::error::ReportError;
 use super::files::{json, rows};
 use super::given_soils::GivenSoils;
 use super::names::titled_by_file;
-use super::numbers::significant;
 use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
 use super::specification::{answer, with_details};
@@ -94,7 +94,7 @@ fn filter_words(design: &Design) -> Markup {
 
 /// D15F and Cu of the filter as it was given; nothing where neither is known.
 fn as_given(design: &Design) -> Option<String> {
-    let d15 = design.filter_d15_mm.map(|mm| format!("D15F {}", size_unit(design).size(mm)));
+    let d15 = design.filter_d15_mm.map(|mm| format!("D15F {}", length(mm, size_unit(design))));
     let cu = design.filter_cu.map(|cu| format!("Cu {}", significant(cu)));
     let given = design.filter_d15_mm.map(|_| "as given".to_owned());
     let said: Vec<String> = d15.into_iter().chain(cu).chain(given).collect();

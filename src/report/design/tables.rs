@@ -7,7 +7,7 @@ use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::Note;
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
-use crate::report::numbers::{rounded_down, significant, threshold, trimmed, whole};
+use crate::report::quantity::{Role, length, percent, significant, whole};
 use crate::report::shell::{clean, fact};
 use crate::report::table::Table;
 use crate::words::base_size;
@@ -22,10 +22,12 @@ pub(super) fn boundaries(design: &Design) -> Markup {
         .map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(design))));
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(design);
-    let limit = |mm: f64| unit.limit(mm, false);
-    let found = |mm: f64| format!("{} mm{}", significant(mm), unit.beside(mm));
+    let limit = |mm: f64| length(mm, unit).role(Role::Greatest).to_string();
+    let found = |mm: f64| length(mm, unit).to_string();
     let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
-        let end = if is_limit { rounded_down } else { significant };
+        let end = move |value| {
+            significant(value).role(if is_limit { Role::Greatest } else { Role::Value }).number()
+        };
         html! {
             @match boundary {
                 Some(boundary) => {
@@ -72,12 +74,12 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             })
             .render())
         p.small {
-            "No erosion: less than " (threshold(design.threshold)) " of the mass of the base erodes in the \
+            "No erosion: less than " (percent(design.threshold).in_digits(3)) " of the mass of the base erodes in the \
              first run. Continuing: at least as much in the second run, too. Between the two is some \
              erosion."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
-                 draws other random numbers: on a small lattice it may lose " (threshold(design.threshold))
+                 draws other random numbers: on a small lattice it may lose " (percent(design.threshold).in_digits(3))
                 " of the base at a smaller D15F than the boundary."
             }
         }
@@ -110,21 +112,21 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             (fact("Base", file_name(&design.base.name)))
             (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(
                 "{}; {}, {}",
-                design.base.cu.map_or_else(|| "not known".to_owned(), trimmed),
+                design.base.cu.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string()),
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base_size(&base, size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
-            (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), trimmed)))
-            (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), trimmed)))
+            (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), |number| significant(number).in_digits(4).to_string())))
+            (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), |number| significant(number).in_digits(4).to_string())))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
             (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))
             (fact("Searched", format!(
                 "D15F/D85B {low} to {high}, outwards to steps of 8 %, in steps of {} %; {} ratios walked \
                  (design.csv)",
-                trimmed(100.0 * design.step),
+                significant(100.0 * design.step).in_digits(4),
                 whole(walks.len() as u64)
             )))
             (input_files(&design.inputs))

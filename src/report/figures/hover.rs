@@ -5,7 +5,7 @@ use super::marks::Mark;
 use super::path::simplify;
 use super::place::Rect;
 use super::svg::{Svg, escape, short};
-use crate::report::numbers::significant;
+use crate::report::quantity::significant;
 
 /// Spots on a line, at most, and the space between two (pixels).
 const SPOTS: usize = 24;

@@ -5,7 +5,7 @@ use crate::outcome::precision::{
     BiasRow, DecisionTier, ExactTier, PackingTier, Precision, SamplingTier, ScalingRow,
 };
 use crate::outcome::verdict::THRESHOLD;
-use crate::report::numbers::{duration, significant};
+use crate::report::quantity::{duration, significant};
 
 /// Name of each tier that was measured, and what it says.
 pub fn precision_judgements(study: &Precision) -> Vec<(&'static str, String)> {

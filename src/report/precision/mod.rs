@@ -4,13 +4,13 @@ mod figures;
 mod judgements;
 mod tables;
 
+use crate::outcome::quantity::{duration, whole};
 use std::path::Path;
 
 use maud::{Markup, html};
 
 use super::error::ReportError;
 use super::files::json;
-use super::numbers::{duration, whole};
 use super::section::Sections;
 use super::shell::{Drawn, clean, fact};
 use super::written::Written;

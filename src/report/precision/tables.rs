@@ -7,7 +7,7 @@ use crate::outcome::precision::{
     BiasRow, ClosedRow, DecisionCase, DecisionRow, DecisionTier, ExactRow, ExactTier, PackingRow,
     PackingTier, Precision, SamplingLine, SamplingTier, ScalingRow, Slope, TriangulationRow,
 };
-use crate::report::numbers::{percent, significant};
+use crate::report::quantity::{percent, significant};
 use crate::report::table::Table;
 
 /// A table of the study: its first column names the rows.
@@ -27,7 +27,7 @@ pub(super) fn merits(study: &Precision) -> Markup {
         rows.push([
             format!("{}, {}", row.quantity, row.engine),
             format!("{:.1e}", row.error),
-            significant(row.core_seconds),
+            significant(row.core_seconds).to_string(),
             or_dash(row.merit, |merit| format!("{merit:.1e}")),
         ]);
     }
@@ -36,7 +36,7 @@ pub(super) fn merits(study: &Precision) -> Markup {
         rows.push([
             format!("this scene, {}, {}", line.variant, line.networks),
             format!("{:.1e}", line.sd),
-            significant(line.core_seconds),
+            significant(line.core_seconds).to_string(),
             or_dash(merits, |(merit, (low, high))| format!("{merit:.1e} ({low:.1e} to {high:.1e})")),
         ]);
     }
@@ -86,7 +86,7 @@ pub(super) fn sampling(sampling: &SamplingTier) -> Markup {
         .number("SD between networks (points)", |line| {
             let new = line.networks == "new networks";
             let between = between_networks(sampling, line).filter(|_| new);
-            or_dash(between, |sd| significant(100.0 * sd))
+            or_dash(between, |sd| significant(100.0 * sd).to_string())
         })
         .render()
 }

@@ -2,7 +2,7 @@
 
 use super::sheet::{Entry, Sheet};
 use crate::outcome::design::Specification;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::words::products::{not_kept, product as product_result};
 use crate::words::specification::{beside_limits, no_band, step_rows, still_to_set, without_margin};
 use crate::words::{dispersive_limit, row_note};

@@ -1,7 +1,7 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
 use super::sheet::{Entry, Sheet};
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;

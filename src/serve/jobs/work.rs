@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
 use crate::outcome::comparison::Comparison;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::callbacks::Callbacks;

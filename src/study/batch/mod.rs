@@ -19,7 +19,7 @@ use crate::campaign::cases::{CASES, PreparedCase};
 use crate::campaign::{CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, shown};
 use crate::store::Folder;

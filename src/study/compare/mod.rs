@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use crate::campaign::cases::PreparedCase;
 use crate::campaign::{self, CampaignCallbacks, CampaignOptions, FinishedCampaign};
 use crate::outcome::comparison::Comparison;
-use crate::outcome::numbers::SizeUnit;
+use crate::outcome::quantity::SizeUnit;
 use crate::run::error::RunError;
 use crate::run::folder::FolderKind;
 use crate::store::Folder;

@@ -2,7 +2,7 @@
 
 use super::curve::ReadCurve;
 use crate::gradation::FEW_FINES;
-use crate::outcome::numbers::significant;
+use crate::outcome::quantity::significant;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION};
 use crate::verdict::rule_result::cited_rule;
