@@ -122,7 +122,17 @@ pub enum RuleQuantity {
 
 impl RuleQuantity {
     /// One that is no limit of D15F.
+    ///
+    /// # Panics
+    /// The name is that of one that is: a record that is read back would take it for that. Of a rule, which is
+    /// a constant, this is an error of the compiler.
     pub const fn named(name: &'static str) -> Self {
+        let limits = ["D15F", "D15F/D85B", "D15F/D95B"];
+        let mut at = 0;
+        while at < limits.len() {
+            assert!(!is_same(name, limits[at]), "this name is that of a limit of D15F");
+            at += 1;
+        }
         Self::Named(Cow::Borrowed(name))
     }
 
@@ -135,6 +145,16 @@ impl RuleQuantity {
             Self::Named(name) => name,
         }
     }
+}
+
+/// Whether two texts are the same, in a constant.
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut at = 0;
+    while at < a.len() && at < b.len() && a[at] == b[at] {
+        at += 1;
+    }
+    at == a.len() && at == b.len()
 }
 
 impl fmt::Display for RuleQuantity {

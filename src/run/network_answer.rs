@@ -140,7 +140,7 @@ mod tests {
         assert!(found.iter().any(|note| note.id() == "clogged"), "{found:?}");
     }
 
-    /// Findings that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
+    /// Notes that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
     /// (2) asks for the base.
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
 
@@ -184,7 +184,7 @@ mod tests {
         }
     }
 
-    /// The same soils on the same network, with a scene and without: each finding that follows from them is
+    /// The same soils on the same network, with a scene and without: each note that follows from them is
     /// reported by both with the same numbers, or stands in the list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {

@@ -1,6 +1,5 @@
 //! What single rules of practice found.
 
-use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 

@@ -97,8 +97,11 @@ fn what_stands_beside_a_verdict_stands_beside_it_here() {
     let (_root, at) = soils();
     for (name, dc) in [("a", 40), ("b", 45)] {
         let base = format!("[base]\ncu = 1.5\nd85_at_dc = {dc}\n");
-        fs::write(at.join(format!("{name}.toml")), format!("[filter]\nd0_mm = 1\ncurve = \"cu1.5-loose\"\n{base}"))
-            .unwrap();
+        fs::write(
+            at.join(format!("{name}.toml")),
+            format!("[filter]\nd0_mm = 1\ncurve = \"cu1.5-loose\"\n{base}"),
+        )
+        .unwrap();
     }
     let compare = |replicates: &str| {
         let words = ["compare", "a.toml", "b.toml", "--overwrite", "--out", "c", "--set", replicates];

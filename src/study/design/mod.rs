@@ -13,9 +13,9 @@
 //! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
 //! multiples of D50F.
 
-#[cfg(test)]
-mod finding_tests;
 mod judged;
+#[cfg(test)]
+mod note_tests;
 mod options;
 mod plan;
 #[cfg(test)]
