@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 BELOW = ("outcome", "verdict", "case", "run", "campaign", "study")
-NUMBERS = ("outcome/numbers.rs", "outcome/digits.rs", "outcome/apart.rs", "outcome/digits/", "outcome/numbers/")
+NUMBERS = ("outcome/quantity.rs", "outcome/numbers.rs", "outcome/digits.rs", "outcome/apart.rs", "outcome/digits/", "outcome/numbers/")
 RETURNS = re.compile(r"\bfn\s+\w+[^;{]*?->\s*([^{;]*?)\s*(?:where\b[^{]*)?\{", re.S)
 TEXT = re.compile(r"\b(?:String|str|Cow)\b")
 LITERAL = re.compile(r'"(?:[^"\\]|\\.)*"', re.S)
