@@ -117,7 +117,7 @@ mod tests {
     fn counts_and_names_read_well() {
         assert!(wrapped(&"word ".repeat(60), 13).iter().all(|line| line.len() < WIDTH));
         assert_eq!(counted(1, "replicate", "replicates"), "1 replicate");
-        assert_eq!(counted(1200, "replicate", "replicates"), "1 200 replicates");
+        assert_eq!(counted(12_000, "replicate", "replicates"), "12\u{202f}000 replicates");
         assert_eq!(plain("a\u{1b}[31mb"), "a\u{fffd}[31mb");
     }
 }

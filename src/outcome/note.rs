@@ -443,8 +443,8 @@ notes! {
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
     /// A base that is not internally stable.
     UnstableBase { index: f64, finer_percent: f64 } "stability of the base" "rules.md"
-        "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): \
-         decide whether the filter is to hold its finer part alone.";
+        "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
+         whether its finer part alone is to be held.";
     /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \

@@ -77,7 +77,7 @@ fn distinct_sources(rules: &[AppliedRule]) -> Vec<String> {
 
 /// Value and limit of a rule, which no line breaks apart from their units.
 pub(super) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
-    words::value_and_limit(rule, unit).map(|text| text.map(|text| text.replacen(' ', "\u{202f}", 1)))
+    words::value_and_limit(rule, unit)
 }
 
 /// What stands in the place of a limit that is not there.

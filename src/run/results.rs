@@ -277,11 +277,10 @@ mod tests {
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
         let next = words::next(&coarse, SizeUnit::Mm);
-        let beside =
-            "at most 0.700 mm (0.500 mm if the base is dispersive, which is not stated) and at least ";
+        let beside = "at most 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not stated) and at least ";
         assert!(next.contains(beside), "{next}");
         let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
-        let beside = " to 0.700 mm (0.500 mm if the base is dispersive, which is not stated)";
+        let beside = " to 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not stated)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
         let beside = "(if the base is dispersive, which is not stated: less than ";
@@ -303,7 +302,7 @@ mod tests {
         assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
         assert!(
             words::practice(&broken, SizeUnit::Mm)
-                .contains("; if the base is dispersive, the limit is 0.500 mm, ")
+                .contains("; if the base is dispersive, the limit is 0.500\u{202f}mm, ")
         );
         assert_eq!(
             words::next(&broken, SizeUnit::Mm),
@@ -325,13 +324,13 @@ mod tests {
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
         let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
-        let begin = "take a filter with a D15F of at most 0.860 mm (if the base is dispersive, which is not \
-                     stated: at most 0.500 mm; have the pair tested) and at least ";
+        let begin = "take a filter with a D15F of at most 0.860\u{202f}mm (if the base is dispersive, which is not \
+                     stated: at most 0.500\u{202f}mm; have the pair tested) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
         let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");
         let pan = next(sieved);
-        assert!(pan.starts_with(&format!("{begin}0.375 mm; for a filter that exists")), "{pan}");
+        assert!(pan.starts_with(&format!("{begin}0.375\u{202f}mm; for a filter that exists")), "{pan}");
     }
 
     #[test]
@@ -352,7 +351,7 @@ mod tests {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
             let next = words::next(&walked_base(rows, d15f, set), SizeUnit::Mm);
-            next.split("at most ").nth(1).map(|of| of.split(' ').next().unwrap().to_owned())
+            next.split("at most ").nth(1).map(|of| of.split('\u{202f}').next().unwrap().to_owned())
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=true"]).as_deref(), Some("0.111"));
@@ -362,7 +361,7 @@ mod tests {
         assert_eq!(words::next(&fine, SizeUnit::Mm), "nothing by these rules");
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = of(0.08);
-        assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200 mm");
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {

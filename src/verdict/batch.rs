@@ -356,11 +356,11 @@ mod tests {
         let (mm, inches, said) = of(2.376, 2.3784);
         assert_eq!(mm, ["2.376", "2.378"]);
         assert_eq!(inches, ["2.376 (0.0935\u{202f}in)", "2.378 (0.0936\u{202f}in)"]);
-        assert!(said[1].contains("D15F up to 2.378 mm"), "{said:?}");
+        assert!(said[1].contains("D15F up to 2.378\u{202f}mm"), "{said:?}");
         let (mm, inches, said) = of(1.683, 1.6818);
         assert_eq!(mm, ["1.683", "1.681"]);
         assert_eq!(inches, ["1.683 (0.0663\u{202f}in)", "1.681 (0.0661\u{202f}in)"]);
-        assert!(said[1].contains("D15F up to 1.681 mm"), "{said:?}");
+        assert!(said[1].contains("D15F up to 1.681\u{202f}mm"), "{said:?}");
         assert_eq!(of(1.196, 1.196).0, ["1.196", "1.196"]);
     }
 

@@ -365,7 +365,10 @@ mod tests {
             sand.clone(),
         ];
         let words = dispersive_samples(&rows.each_ref(), SizeUnit::Mm).unwrap();
-        assert!(words.contains(" 3 samples ") && words.contains("A (D15F at most 0.500 mm)"), "{words}");
+        assert!(
+            words.contains(" 3 samples ") && words.contains("A (D15F at most 0.500\u{202f}mm)"),
+            "{words}"
+        );
         assert!(!words.contains("B ("), "{words}");
         assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
         let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };

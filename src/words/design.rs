@@ -113,7 +113,7 @@ mod tests {
         // A ratio that is held is rounded down, as is its size.
         let model = &lines(&[4.034, 4.034], None)[0];
         assert_eq!(model.0, "Model (research)");
-        assert_eq!(model.1, "nearly all networks hold D15F/D85B 4.03, D15F 0.806 mm");
+        assert_eq!(model.1, "nearly all networks hold D15F/D85B 4.03, D15F 0.806\u{202f}mm");
     }
 
     #[test]

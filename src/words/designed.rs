@@ -326,9 +326,13 @@ mod tests {
         assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
         let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
         let said = lines(&by_practice, DESIGN_EACH_AGAIN, SizeUnit::Mm);
-        assert_eq!(said[1], format!("Governing sample core: D15F up to 0.700 mm (practice: {})", core.rule));
+        assert_eq!(
+            said[1],
+            format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule)
+        );
         assert!(
-            said[0].starts_with("A filter for all 2 samples: D15F from ") && said[0].ends_with("0.700 mm")
+            said[0].starts_with("A filter for all 2 samples: D15F from ")
+                && said[0].ends_with("0.700\u{202f}mm")
         );
         for held in [None, Some(0.1), Some(9.0)] {
             let rows = [&sand, &core].map(|row| walked(row.clone(), held)).to_vec();
@@ -397,13 +401,16 @@ mod tests {
         );
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700 mm (the minimum \
-             that drains is 0.100 mm; it is raised so that the band is no wider than 5 to 1)"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the minimum \
+             that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);
         let said = for_all(&one, SizeUnit::Mm);
-        assert!(said.starts_with("A filter for the sample: D15F from 0.140 to 0.700 mm (the"), "{said}");
+        assert!(
+            said.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
+            "{said}"
+        );
         let open = DesignedSample {
             path: "other".into(),
             d15f_min_mm: Some(2.0),

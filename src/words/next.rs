@@ -6,9 +6,7 @@ use crate::gradation::FINES_MM;
 use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::quantity::{Role, SizeUnit, length, limits, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole, Verdict};
-use crate::outcome::rules::{
-    FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION,
-};
+use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
 use crate::verdict::practice::{Standing, broken, standing};
 
 /// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault of it.
@@ -132,12 +130,10 @@ impl Pair<'_> {
         beside_dispersive(self.if_dispersive?, most, self.unit)
     }
 
-    /// The maximum D15F (mm) that every rule of retention and the boundary of no erosion allow, and whether the limit itself is lower and
+    /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
     /// not known.
     fn greatest(&self) -> Option<(f64, bool)> {
         let (_, limit) = retention(self.rules, self.d15f_mm)?;
-        let tests = self.rules.iter().find(|rule| rule.id == TESTS_NO_EROSION && rule.applies);
-        let limit = tests.and_then(|rule| rule.limit).map_or(limit, |tests| tests.min(limit));
         Some((limit, open_retention(self.rules).is_some()))
     }
 

@@ -347,10 +347,10 @@ mod tests {
         let of = |name: &str, value, unit: &str| {
             step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
         };
-        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117 mm");
+        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
         // As the sentence has it that asks for D90F.
-        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191 mm");
-        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583 mm");
+        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
+        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
         assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
         assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
         assert_eq!(of("minimum D15F", None, "mm"), None);
@@ -369,7 +369,7 @@ mod tests {
                 {
                     let (Some(at_least), Some(number)) = (value.role(), value.value) else { continue };
                     let words = step_value(value, SizeUnit::MmAndInches).unwrap();
-                    let (mm, inches) = words.split_once(" mm (").unwrap();
+                    let (mm, inches) = words.split_once("\u{202f}mm (").unwrap();
                     let (mm, inches) =
                         (mm.parse::<f64>(), inches.trim_end_matches("\u{202f}in)").parse::<f64>());
                     let (mm, back) = (mm.unwrap(), 25.4 * inches.unwrap());
@@ -395,7 +395,7 @@ mod tests {
                 step_value(value, SizeUnit::Mm).unwrap()
             };
             let [least, greatest] = ["minimum D15F", "maximum D15F"].map(said);
-            let limits = format!("{} to {greatest}", least.trim_end_matches(" mm"));
+            let limits = format!("{} to {greatest}", least.trim_end_matches("\u{202f}mm"));
             assert!(band(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
             assert!(beside_limits(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
         }
@@ -411,7 +411,9 @@ mod tests {
             let options = SpecificationOptions { finer, ..Default::default() };
             raised(&Specification::of("core", &base, options), SizeUnit::Mm).unwrap()
         };
-        for (finer, sizes) in [(false, ["0.100 mm", "0.140 mm"]), (true, ["0.700 mm", "0.500 mm"])] {
+        for (finer, sizes) in
+            [(false, ["0.100\u{202f}mm", "0.140\u{202f}mm"]), (true, ["0.700\u{202f}mm", "0.500\u{202f}mm"])]
+        {
             let said = of_end(finer);
             assert!(sizes.iter().all(|size| said.contains(size)), "{said}");
         }
@@ -438,7 +440,7 @@ mod tests {
         assert!(has(said(&CORE, None), "it is the lower end of the range"));
         // 6.4 to 13.5 D85B, and a limit of 9 D85B.
         assert!(has(said(&CLAY, None), "it lies in the range in which tests put"));
-        assert!(has(said(&CLAY, None), "0.320 to 0.675 mm"));
+        assert!(has(said(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
         assert!(has(said(&CLAY, Some(true)), "give it for no erosion in tests"));
         // Of a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
         let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
@@ -454,7 +456,10 @@ mod tests {
         let silt = |fines| [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
         let said = |fines, dispersive| if_dispersive(&of(&silt(fines), dispersive), "again", SizeUnit::Mm);
         let known = said(45.0, None).unwrap();
-        assert!(known.contains("at most 0.500 mm") && known.contains("this band is not valid"), "{known}");
+        assert!(
+            known.contains("at most 0.500\u{202f}mm") && known.contains("this band is not valid"),
+            "{known}"
+        );
         let open = said(25.0, None).unwrap();
         assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
         assert!(open.ends_with("have the base tested with the filter"), "{open}");
@@ -467,7 +472,10 @@ mod tests {
     fn a_base_that_is_too_fine_is_not_called_broad() {
         let why =
             |least_mm| no_band(&NoBand::NoneDrainsAndRetains { least_mm, most_mm: 0.0640001 }, SizeUnit::Mm);
-        assert!(why(0.1).contains("at least 0.100 mm to drain it and at most 0.0640 mm to retain it"));
+        assert!(
+            why(0.1)
+                .contains("at least 0.100\u{202f}mm to drain it and at most 0.0640\u{202f}mm to retain it")
+        );
         assert!(!why(0.1).contains("less broad") && why(0.2).contains("less broad"));
     }
 }

@@ -209,7 +209,7 @@ fn a_batch_and_a_comparison_show_inches_beside_mm() {
     assert!(inches_within(batch) > 0, "{batch}");
     // The limit of a sample in the table has the inches of the sentence above it.
     let limit = batch.split("D15F up to ").nth(1).unwrap();
-    let (mm, inches) = limit.split_once("\u{202f}in)").unwrap().0.split_once(" mm (").unwrap();
+    let (mm, inches) = limit.split_once("\u{202f}in)").unwrap().0.split_once("\u{202f}mm (").unwrap();
     assert!(batch.contains(&format!(">{mm} ({inches}\u{202f}in)<")), "{limit}");
     // Files stay in mm, and what is printed has inches, too.
     let csv = fs::read_to_string(root.path().join("batch/batch.csv")).unwrap();

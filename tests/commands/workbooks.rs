@@ -275,7 +275,7 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     );
     assert_eq!(item(first_sheet, "Basis").words(), "By the rules of practice alone, without a walk.");
     assert!(item(first_sheet, "Segregation").words().contains("not checked"));
-    assert!(limits[0]["Note"].words().contains("0.140 to 0.700 mm"));
+    assert!(limits[0]["Note"].words().contains("0.140 to 0.700\u{202f}mm"));
     assert!(limits[1..].iter().all(|row| row["Note"] == Cell::Empty));
     let sand = &rows(&all["Products"])[0];
     assert_eq!(sand["Fits"], Cell::Truth(true));

@@ -164,6 +164,8 @@ NoteId = Literal[
     "clogged",
     "trapped_could_turn",
     "second_run_erodes",
+    "second_run_may_erode",
+    "not_studied",
     "coarse_base",
     "cohesive_fines",
     "fines_not_sieved",
@@ -175,6 +177,7 @@ NoteId = Literal[
     "thickness_of_file",
     "layers_thicker",
     "copies_thicker",
+    "thinner_than_grain",
     "capped_base",
     "few_particles",
     "more_particles",
@@ -207,6 +210,7 @@ NoteId = Literal[
     "arches",
     "openings",
     "curve_range",
+    "curve_decides",
     "unit_doubtful",
     "files_exchanged",
     "filter_of_boulders",
@@ -1298,7 +1302,7 @@ class Outcome(_Outcome, total=False):
         Wall time of everything, s; in a campaign beside other cases on the same threads.
     """
 
-    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
     practice: Optional[Practice]
     if_dispersive: Optional[IfDispersive]
     stopping: Optional[Stopping]
@@ -2214,7 +2218,7 @@ class ComparedCase(_ComparedCase, total=False):
     """
 
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
-    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
     practice: Optional[Practice]
     notes: List[Note]
     base: Optional[BaseSize]
@@ -2536,7 +2540,7 @@ class _PairRules(TypedDict):
     filter: FilterSizes
     base: BaseSizes
     rules: List[AppliedRule]
-    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Literal["meets practice", "meets practice unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
     practice: Optional[Practice]
     notes: List[Note]
 
