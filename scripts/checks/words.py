@@ -29,7 +29,7 @@ WITH_SOURCES = ("C33 on", "No. ", "gap", "filter")
 # Times, and the folder of this machine.
 VARYING = re.compile(r"^\s*(\d[\d.]* ?(s|ms|min)\b.*|to go on from:.*|report: .*)$")
 # The number of notes and their names stand behind that folder; their sentences are on the page.
-LABELS = re.compile(r"^report: .*; (\d+ notes: .*)$")
+LABELS = re.compile(r"^report: .*; (\d+ notes?: .*)$")
 NOTES = re.compile(r"<h2[^>]*>Notes</h2>\s*<ul[^>]*>(.*?)</ul>", re.DOTALL)
 
 
