@@ -163,7 +163,8 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
             }
             @if let Some([low, high]) = range {
                 p {
-                    "In tests of such bases erosion began at D15F " (range_of_tests(low, high, unit))                     " (Fell et al., Table 9.2)."
+                    "In tests of such bases erosion began at D15F " (range_of_tests(low, high, unit))
+                    " (Fell et al., Table 9.2)."
                 }
             }
             p.small { (left_out_line(&outcome.model_leaves_out)) }
