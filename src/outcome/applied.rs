@@ -124,8 +124,8 @@ impl RuleQuantity {
     /// One that is no limit of D15F.
     ///
     /// # Panics
-    /// The name is that of one that is: a record that is read back would take it for that. Of a rule, which is
-    /// a constant, this is an error of the compiler.
+    /// The name is that of one that is: a record that is read back would take it for that. Of a rule, which
+    /// is a constant, this is an error of the compiler.
     pub const fn named(name: &'static str) -> Self {
         let limits = ["D15F", "D15F/D85B", "D15F/D95B"];
         let mut at = 0;

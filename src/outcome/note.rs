@@ -1,8 +1,9 @@
 //! Notes on an answer: the table of all of them, each with its numbers and its sentence.
 //!
 //! A row makes a variant of [`Note`]. A name that ends in `_mm`, `_percent` or `_pp` (percentage points) has
-//! that unit, one that begins with `least_` or `most_` is a limit of that side, with `over_` a lower bound, and a whole number is a
-//! count. No sentence depends on another note. Faces fill the sentences in; nothing else reads them.
+//! that unit, one that begins with `least_` or `most_` is a limit of that side, with `over_` a lower bound,
+//! and a whole number is a count. No sentence depends on another note. Faces fill the sentences in; nothing
+//! else reads them.
 
 use serde::{Deserialize, Serialize};
 
@@ -406,7 +407,8 @@ notes! {
         "{finest_percent} of the base is finer than its last sieve and than every constriction; it counts \
          by mass only.";
     /// A finest part that may block, and counts as if it did not.
-    PanCountsAsPassing { finest_percent: f64, sieve_mm: f64, constriction_mm: f64 } "below the last sieve" "soils.md"
+    PanCountsAsPassing { finest_percent: f64, sieve_mm: f64, constriction_mm: f64 }
+        "below the last sieve" "soils.md"
         "The finest {finest_percent} of the base lies below its last sieve, {sieve_mm}, and counts as \
          passing; the \
          finest constriction is {constriction_mm}.";
@@ -477,8 +479,8 @@ notes! {
         "The base is walked as practice regrades it: the {part_percent} of it that is finer than {sieve_mm}.";
     /// A base that was to be regraded.
     RegradingNotNeeded {} "grading" "soils.md"
-        "The base was to be regraded, and is walked as sampled: practice does not regrade it, or its sizes do \
-         not tell.";
+        "The base was to be regraded, and is walked as sampled: practice does not regrade it, or its sizes \
+         do not tell.";
     /// A reading of a file.
     ReadAs { file: String, reading: String } "file" "soils.md"
         "{file}: {reading}.";

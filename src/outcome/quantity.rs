@@ -286,8 +286,8 @@ pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
 }
 
 /// A value and its limit, as far as they are known: with as many digits as tell the two apart, so that what
-/// exceeds a limit never reads as within it, nor the other way round. The limit is never more generous than it
-/// is. A ratio has no zeros at its end: 4.00 times D85B is four times.
+/// exceeds a limit never reads as within it, nor the other way round. The limit is never more generous than
+/// it is. A ratio has no zeros at its end: 4.00 times D85B is four times.
 pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     let [value, limit] = numbers.map(|number| number.map(|number| significant(number).in_unit(unit)));
     let limit = limit.map(|limit| limit.role(Role::of_limit(at_least)));

@@ -63,7 +63,8 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
     html! {
         ul {
             li {
-                "By the closed form particles up to " (length(found.coarsest_through_mm, SizeUnit::of(scale_free, false)))
+                "By the closed form particles up to "
+                (length(found.coarsest_through_mm, SizeUnit::of(scale_free, false)))
                 " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }

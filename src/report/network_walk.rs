@@ -12,7 +12,7 @@ use super::files::json_of;
 use super::results::{replicates, results};
 use super::run_figures::{self, size_axis};
 use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
-use super::shown::known;
+use super::shown::{counts, known};
 use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_words};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
@@ -216,7 +216,7 @@ fn inputs(record: &NetworkWalkRecord) -> Markup {
                 n => format!("{}, of the first:", whole(n)),
             }))
             (fact("Voids, constrictions, layers",
-                [network.voids, network.constrictions, network.layers].map(|number| whole(number).to_string()).join(", ")))
+                counts([network.voids, network.constrictions, network.layers])))
             (fact("Particles choose an exit by", &network.exit))
             (fact("Base particles in each run", amount(record)))
             (fact("Inserted in equal parts", whole(record.increments)))

@@ -17,7 +17,7 @@ use super::results::{replicates, results, varied};
 use super::rules::{rules, sources};
 use super::run_figures;
 use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
-use super::shown::known;
+use super::shown::{counts, known};
 use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
@@ -315,8 +315,8 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
             table.facts { tbody {
                 (fact("Kind", &kind))
                 @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
-                (fact("Voids, constrictions", [network.voids, network.constrictions].map(|number| whole(number).to_string()).join(", ")))
-                (fact("Start nodes, layers", [network.start_nodes, network.layers].map(|number| whole(number).to_string()).join(", ")))
+                (fact("Voids, constrictions", counts([network.voids, network.constrictions])))
+                (fact("Start nodes, layers", counts([network.start_nodes, network.layers])))
                 (fact("Thickness modelled", known(network.thickness_mm, mm)))
             } }
         }
@@ -341,7 +341,10 @@ fn provenance(folder: &RunFolder) -> Markup {
             @if !outcome.left_out.is_empty() {
                 table.facts { tbody {
                     (fact("Not needed here",
-                        left_out_words(&outcome.left_out, SizeUnit::of(outcome.inputs.scale_free, false).short())))
+                        left_out_words(
+                            &outcome.left_out,
+                            SizeUnit::of(outcome.inputs.scale_free, false).short()
+                        )))
                 } }
             }
             details {

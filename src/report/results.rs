@@ -52,7 +52,10 @@ pub(super) fn results(walks: &Walks) -> Markup {
         let largest = walks.replicates.iter().filter_map(of_run).reduce(f64::max);
         largest.map_or_else(nothing, |mm| html! { (length(mm, SizeUnit::of(scale_free, false))) })
     };
-    let sd = |run: &RunSummary| html! { (run.eroded_mass_fraction.sd.map_or_else(|| "none".to_owned(), |sd| percent(sd).to_string())) };
+    let sd = |run: &RunSummary| {
+        let sd = run.eroded_mass_fraction.sd;
+        html! { (sd.map_or_else(|| "none".to_owned(), |sd| percent(sd).to_string())) }
+    };
     let of_largest: &[Row] = match walks.d15f_mm {
         Some(_) => {
             &[("Largest particle eroded, over D15F", &largest_ratio), ("Largest particle eroded", &largest)]

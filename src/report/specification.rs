@@ -176,7 +176,10 @@ fn limits(of: &Specification) -> Markup {
             .name("Sieve", |limit| clean(&limit.sieve))
             .number("Opening (mm)", |limit| significant(limit.opening_mm))
             .number("Least finer (%)", |limit| significant(limit.min_percent_finer).in_digits(4))
-            .number("Greatest finer (%)", |limit| limit.max_percent_finer.map_or(String::new(), |number| significant(number).in_digits(4).to_string()))
+            .number("Greatest finer (%)", |limit| {
+                let most = limit.max_percent_finer;
+                most.map_or(String::new(), |most| significant(most).in_digits(4).to_string())
+            })
             .render())
         @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
         @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {

@@ -49,7 +49,10 @@ pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
 /// What is said of replicates below the table: how many, by which threshold, and a word where there is one.
 pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     html! {
-        p { (tally(walks, what)) " Threshold between the classes: " (percent(walks.threshold).in_digits(3)) "." }
+        p {
+            (tally(walks, what)) " Threshold between the classes: "
+            (percent(walks.threshold).in_digits(3)) "."
+        }
         @if walks.replicates.len() == 1 {
             p {
                 b { "One replicate: the scatter is unknown." }

@@ -277,7 +277,8 @@ mod tests {
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
         let next = words::next(&coarse, SizeUnit::Mm);
-        let beside = "at most 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not stated) and at least ";
+        let beside = "at most 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not \
+                      stated) and at least ";
         assert!(next.contains(beside), "{next}");
         let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
         let beside = " to 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not stated)";
@@ -324,8 +325,8 @@ mod tests {
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
         let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
-        let begin = "take a filter with a D15F of at most 0.860\u{202f}mm (if the base is dispersive, which is not \
-                     stated: at most 0.500\u{202f}mm; have the pair tested) and at least ";
+        let begin = "take a filter with a D15F of at most 0.860\u{202f}mm (if the base is dispersive, which \
+                     is not stated: at most 0.500\u{202f}mm; have the pair tested) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
         let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");

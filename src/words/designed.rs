@@ -401,8 +401,8 @@ mod tests {
         );
         assert_eq!(
             said[0],
-            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the minimum \
-             that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the \
+             minimum that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
         );
         assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
         let one = DesignedSamples::new("s".into(), vec![core.clone()]);

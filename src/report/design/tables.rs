@@ -9,6 +9,7 @@ use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::quantity::{Role, length, percent, significant, whole};
 use crate::report::shell::{clean, fact};
+use crate::report::shown::known;
 use crate::report::table::Table;
 use crate::words::base_size;
 use crate::words::design::share_of_networks;
@@ -74,12 +75,15 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             })
             .render())
         p.small {
-            "No erosion: less than " (percent(design.threshold).in_digits(3)) " of the mass of the base erodes in the \
+            "No erosion: less than " (percent(design.threshold).in_digits(3)) " of the mass of the base erodes \
+                in \
+                the \
              first run. Continuing: at least as much in the second run, too. Between the two is some \
              erosion."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
-                 draws other random numbers: on a small lattice it may lose " (percent(design.threshold).in_digits(3))
+                 draws other random numbers: on a small lattice it may lose "
+                (percent(design.threshold).in_digits(3))
                 " of the base at a smaller D15F than the boundary."
             }
         }
@@ -112,15 +116,15 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             (fact("Base", file_name(&design.base.name)))
             (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(
                 "{}; {}, {}",
-                design.base.cu.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string()),
+                known(design.base.cu, |cu| significant(cu).in_digits(4)),
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base_size(&base, size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
-            (fact("Cu of the filter", design.filter_cu.map_or_else(|| "not known".to_owned(), |number| significant(number).in_digits(4).to_string())))
-            (fact("Grains per void", grains.map_or_else(|| "not given".to_owned(), |number| significant(number).in_digits(4).to_string())))
+            (fact("Cu of the filter", known(design.filter_cu, |cu| significant(cu).in_digits(4))))
+            (fact("Grains per void", known(grains, |grains| significant(grains).in_digits(4))))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
             (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))
             (fact("Searched", format!(
