@@ -7,7 +7,7 @@ use super::progress::followed;
 use super::specification::{by_option, specification};
 use super::values::{of_soils, with_options};
 use crate::outcome::design::{Boundary, Design, DesignRow, Range};
-use crate::outcome::quantity::{Role, SizeUnit, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, significant};
 use crate::outcome::record::Note;
 use crate::run::{PrepareOptions, RunError};
 use crate::scene::About;
@@ -111,7 +111,7 @@ fn of_row(row: &DesignRow, unit: SizeUnit) -> Vec<String> {
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
     // The boundary of no erosion is stated as a limit.
     let sizes: [fn(f64) -> String; 2] =
-        [|mm| significant(mm).role(Role::Greatest).number(), |mm| format!("{mm:.3}")];
+        [|mm| significant(mm).role(NumberRole::Greatest).number(), |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
         let said = boundary.map(|boundary| ratio(&boundary, networks, size));
         lines.push(match (said, &*note) {

@@ -446,7 +446,7 @@ notes! {
     /// A base that is not internally stable.
     UnstableBase { index: f64, finer_percent: f64 } "stability of the base" "rules.md"
         "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
-         whether its finer part alone is to be held.";
+         whether the filter holds its finer part.";
     /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \

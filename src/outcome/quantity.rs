@@ -1,12 +1,12 @@
 //! The way from a number to text: a quantity has a value, a unit and a role, and every face shows it alike.
 //!
 //! ```
-//! use voidwalk::outcome::quantity::{Role, SizeUnit, count, duration, percent, significant, size};
+//! use voidwalk::outcome::quantity::{NumberRole, SizeUnit, duration, length, percent, whole};
 //! assert_eq!(percent(0.0666).to_string(), "6.66\u{202f}%");
 //! assert_eq!(whole(96_000).to_string(), "96\u{202f}000");
 //! assert_eq!(duration(600.0).to_string(), "10.0\u{202f}min");
 //! // A limit is rounded to its safe side, in mm and in inches.
-//! let most = length(0.7, SizeUnit::MmAndInches).role(Role::Greatest);
+//! let most = length(0.7, SizeUnit::MmAndInches).role(NumberRole::Greatest);
 //! assert_eq!(most.to_string(), "0.700\u{202f}mm (0.0275\u{202f}in)");
 //! ```
 
@@ -70,7 +70,7 @@ pub enum Unit {
 
 /// What a number is: a limit is rounded to its safe side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum NumberRole {
     /// A value.
     Value,
     /// The least that is allowed: rounded up.
@@ -79,7 +79,7 @@ pub enum Role {
     Greatest,
 }
 
-impl Role {
+impl NumberRole {
     /// That of a limit.
     pub fn of_limit(at_least: bool) -> Self {
         if at_least { Self::Least } else { Self::Greatest }
@@ -107,13 +107,13 @@ pub struct Quantity {
     /// Its unit.
     pub unit: Unit,
     /// What it is.
-    pub role: Role,
+    pub role: NumberRole,
     digits: Digits,
 }
 
 /// A number without a unit: three significant digits, without an exponent between 0.0001 and a million.
 pub fn significant(value: f64) -> Quantity {
-    Quantity { value, unit: Unit::None, role: Role::Value, digits: Digits::Usual }
+    Quantity { value, unit: Unit::None, role: NumberRole::Value, digits: Digits::Usual }
 }
 
 /// A number without a unit, as it was given.
@@ -158,7 +158,7 @@ pub fn percent_interval(statistic: &Statistic) -> Option<Span> {
 
 impl Quantity {
     /// The same number as what it is.
-    pub fn role(self, role: Role) -> Self {
+    pub fn role(self, role: NumberRole) -> Self {
         Self { role, ..self }
     }
 
@@ -188,15 +188,15 @@ impl Quantity {
         match (unit, role, digits) {
             (Unit::Count, ..) => grouped(value),
             (Unit::Seconds, ..) => seconds(value).0,
-            (_, Role::Value, Digits::Few(digits)) => few_digits(value, digits),
+            (_, NumberRole::Value, Digits::Few(digits)) => few_digits(value, digits),
             (_, role, Digits::Few(digits)) => {
-                few_digits(within(value, i32::from(digits), role == Role::Least), digits)
+                few_digits(within(value, i32::from(digits), role == NumberRole::Least), digits)
             }
             (_, _, Digits::Decimals(decimals)) => fixed(value, usize::from(decimals)),
             (_, _, Digits::Given) => as_given(value),
-            (Unit::Percent, Role::Value, Digits::Usual) => percent_digits(value),
-            (_, Role::Value, Digits::Usual) => three_digits(value),
-            (_, role, Digits::Usual) => three_digits(within(value, 3, role == Role::Least)),
+            (Unit::Percent, NumberRole::Value, Digits::Usual) => percent_digits(value),
+            (_, NumberRole::Value, Digits::Usual) => three_digits(value),
+            (_, role, Digits::Usual) => three_digits(within(value, 3, role == NumberRole::Least)),
         }
     }
 
@@ -204,6 +204,17 @@ impl Quantity {
     /// table that names it at its head.
     pub fn in_cell(self) -> String {
         self.number() + &self.inches().map_or_else(String::new, |inches| bracket(&inches))
+    }
+
+    /// A size in the cell of a table that names both units at its head, with at most three digits.
+    pub fn in_both_units(self) -> String {
+        let few = self.in_digits(3);
+        match self.unit {
+            Unit::Size(SizeUnit::MmAndInches) => {
+                format!("{} ({})", few.number(), few_digits(self.value / INCH_MM, 3))
+            }
+            _ => few.number(),
+        }
     }
 
     /// The number as its text has it: inches follow from the mm beside them, wherever both stand.
@@ -215,7 +226,7 @@ impl Quantity {
     /// shown.
     fn inches(self) -> Option<String> {
         (self.unit == Unit::Size(SizeUnit::MmAndInches)).then(|| {
-            let mm = if self.role == Role::Value { self.value } else { self.shown() };
+            let mm = if self.role == NumberRole::Value { self.value } else { self.shown() };
             significant(mm / INCH_MM).role(self.role).number()
         })
     }
@@ -277,12 +288,12 @@ fn bracket(inches: &str) -> String {
 
 /// A least and a greatest size in mm, each rounded to its safe side.
 pub fn limits(least: f64, greatest: f64, unit: SizeUnit) -> Span {
-    length(least, unit).role(Role::Least).to(length(greatest, unit).role(Role::Greatest))
+    length(least, unit).role(NumberRole::Least).to(length(greatest, unit).role(NumberRole::Greatest))
 }
 
 /// The range of sizes in mm in which tests left a boundary, with ends rounded outward.
 pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
-    length(low, unit).role(Role::Greatest).to(length(high, unit).role(Role::Least))
+    length(low, unit).role(NumberRole::Greatest).to(length(high, unit).role(NumberRole::Least))
 }
 
 /// A value and its limit, as far as they are known: with as many digits as tell the two apart, so that what
@@ -290,13 +301,13 @@ pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
 /// it is. A ratio has no zeros at its end: 4.00 times D85B is four times.
 pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     let [value, limit] = numbers.map(|number| number.map(|number| significant(number).in_unit(unit)));
-    let limit = limit.map(|limit| limit.role(Role::of_limit(at_least)));
+    let limit = limit.map(|limit| limit.role(NumberRole::of_limit(at_least)));
     let (Some(value), Some(limit)) = (value, limit) else {
         let alone = |of: Quantity| {
-            let at_least = of.role == Role::Least;
+            let at_least = of.role == NumberRole::Least;
             let digits = match of.role {
-                Role::Value => digits_of(of.value, DIGITS),
-                Role::Least | Role::Greatest => digits_within(of.value, DIGITS, at_least),
+                NumberRole::Value => digits_of(of.value, DIGITS),
+                NumberRole::Least | NumberRole::Greatest => digits_within(of.value, DIGITS, at_least),
             };
             let inches = of.inches().map_or_else(String::new, |inches| bracket(&inches));
             without_zeros(&digits, unit).to_owned() + &of.unit_text() + &inches
@@ -492,15 +503,15 @@ mod tests {
     #[test]
     fn limits_are_rounded_inward() {
         let rounded = |role| move |limit: f64| significant(limit).role(role);
-        let down = texts([0.7, 0.2859, 12.39, 0.07, 0.0].map(rounded(Role::Greatest)));
+        let down = texts([0.7, 0.2859, 12.39, 0.07, 0.0].map(rounded(NumberRole::Greatest)));
         assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
-        let up = texts([0.14, 0.2851, 0.9999, 12.31].map(rounded(Role::Least)));
+        let up = texts([0.14, 0.2851, 0.9999, 12.31].map(rounded(NumberRole::Least)));
         assert_eq!(up, ["0.140", "0.286", "1.00", "12.4"]);
         // A table and a sentence beside it have one limit.
         for step in 0..4000 {
             let limit = 0.001 * libm::pow(1.003, f64::from(step));
             for at_least in [false, true] {
-                let shown = significant(limit).role(Role::of_limit(at_least)).number();
+                let shown = significant(limit).role(NumberRole::of_limit(at_least)).number();
                 let alone = digits_within(limit, 3, at_least);
                 assert_eq!(shown.parse::<f64>().unwrap(), alone.parse::<f64>().unwrap(), "{limit}");
             }
@@ -512,7 +523,7 @@ mod tests {
         let unit = SizeUnit::MmAndInches;
         let steps = (1..4000).map(|step| 0.01 * libm::pow(1.003, f64::from(step)));
         for limit in steps.chain([0.7, 0.14, 1.6812, 2.9970, 25.4, 0.701]) {
-            for (role, sign) in [(Role::Greatest, 1.0), (Role::Least, -1.0)] {
+            for (role, sign) in [(NumberRole::Greatest, 1.0), (NumberRole::Least, -1.0)] {
                 let of = length(limit, unit).role(role);
                 let inches = of.inches().unwrap().parse::<f64>().unwrap() * INCH_MM;
                 let hair = 1e-8 * limit;
@@ -521,9 +532,9 @@ mod tests {
                 assert_eq!(length(of.shown(), unit).role(role).to_string(), of.to_string());
             }
         }
-        let most = length(0.7, unit).role(Role::Greatest);
+        let most = length(0.7, unit).role(NumberRole::Greatest);
         assert_eq!(most.in_cell(), "0.700 (0.0275\u{202f}in)");
-        assert_eq!(length(0.14, unit).role(Role::Least).in_cell(), "0.140 (0.00552\u{202f}in)");
+        assert_eq!(length(0.14, unit).role(NumberRole::Least).in_cell(), "0.140 (0.00552\u{202f}in)");
         assert_eq!(limits(0.14, 0.7, SizeUnit::Mm).to_string(), "0.140 to 0.700\u{202f}mm");
         assert_eq!(limits(0.14, 0.7, unit).in_cell(), "0.140 to 0.700 (0.00552 to 0.0275\u{202f}in)");
         assert_eq!(length(0.82, SizeUnit::D0f).to_string(), "0.820\u{202f}D0F");

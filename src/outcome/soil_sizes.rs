@@ -9,7 +9,7 @@ type SizeRow = (&'static str, fn(&Gradation, SizeUnit) -> Option<String>);
 
 /// A size that so many percent are finer than.
 fn finer<const PERCENT: u8>(soil: &Gradation, unit: SizeUnit) -> Option<String> {
-    soil.d(f64::from(PERCENT)).map(|size| length(size, unit).in_digits(3).in_cell())
+    soil.d(f64::from(PERCENT)).map(|size| length(size, unit).in_both_units())
 }
 
 fn percent_fines(soil: &Gradation, _: SizeUnit) -> Option<String> {

@@ -2,7 +2,7 @@
 //! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
 //! the same.
 
-use crate::outcome::quantity::{Role, SizeUnit, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -131,8 +131,8 @@ fn to_specify(of: &Specification) -> Markup {
     let table = Table::of(&sides).class("band").name(unit.name(), |side| side.0);
     let table = band.sizes.iter().fold(table, |table, of| {
         table.number(format!("D{}F", of.percent), move |side: &(_, bool)| match side.1 {
-            true => length(of.min_mm, unit).role(Role::Least).in_cell(),
-            false => length(of.max_mm, unit).role(Role::Greatest).in_cell(),
+            true => length(of.min_mm, unit).role(NumberRole::Least).in_cell(),
+            false => length(of.max_mm, unit).role(NumberRole::Greatest).in_cell(),
         })
     });
     html! {

@@ -286,7 +286,7 @@ mod tests {
         let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
         let beside = "(if the base is dispersive, which is not stated: less than ";
         assert!(open.contains(beside), "{open}");
-        let test = " mm, by how much no source that was read says; have the pair tested)";
+        let test = "\u{202f}mm, by how much no source that was read says; have the pair tested)";
         assert!(open.contains(test), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
@@ -356,10 +356,11 @@ mod tests {
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=true"]).as_deref(), Some("0.111"));
-        // Within the floor nothing is to be done.
+        // Within the floor practice asks for nothing, and the model is undecided.
         let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
         let fine = of(0.18);
-        assert_eq!(words::next(&fine, SizeUnit::Mm), "nothing by these rules");
+        assert_ne!(fine.model.class, Verdict::None);
+        assert_eq!(words::next(&fine, SizeUnit::Mm), "have this pair tested");
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = of(0.08);
         assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");

@@ -4,7 +4,7 @@ use super::dispersion::dispersive_limit;
 use super::note::sentence;
 use super::practice::tested_in_brief;
 use super::rule_note::rule_note;
-use crate::outcome::quantity::{Role, SizeUnit, Unit, beside_limit, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, Unit, beside_limit, length, significant};
 use crate::outcome::record::{IfDispersive, Verdict};
 use crate::outcome::table::{Columns, TableCell};
 use crate::verdict::batch::{NAMED, governing, may_govern, more_with_that_limit};
@@ -218,9 +218,9 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     let limit = match row.d15f_min_at_most {
         true => format!(
             "the minimum D15F is not known, and at most {}",
-            length(least, unit).role(Role::Least).to_string()
+            length(least, unit).role(NumberRole::Least).to_string()
         ),
-        false => format!("D15F {} or more", length(least, unit).role(Role::Least).to_string()),
+        false => format!("D15F {} or more", length(least, unit).role(NumberRole::Least).to_string()),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }

@@ -2,7 +2,7 @@
 
 use super::specification::{band, no_band};
 use crate::outcome::design::{Design, Specification, are_few};
-use crate::outcome::quantity::{Role, SizeUnit, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
 
 /// Which share of so many networks is shown: of few the least and the most of them.
 pub fn share_of_networks(networks: u64) -> &'static str {
@@ -37,11 +37,11 @@ pub fn design_model(design: &Design, unit: SizeUnit) -> String {
     let size = design
         .base
         .d85_mm
-        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(Role::Greatest).to_string()));
+        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(NumberRole::Greatest).to_string()));
     let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
     format!(
         "nearly all networks hold D15F/D85B {}{}{}",
-        significant(ratio).role(Role::Greatest),
+        significant(ratio).role(NumberRole::Greatest),
         size.unwrap_or_default(),
         if holds_whole_search { ", as far as was searched" } else { "" }
     )
@@ -60,7 +60,11 @@ fn specification_lines(specification: &Specification, unit: SizeUnit) -> [(&'sta
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
-            format!("D15F {} ({})", length(limit, unit).role(Role::Greatest).to_string(), curve.d15f_max_rule)
+            format!(
+                "D15F {} ({})",
+                length(limit, unit).role(NumberRole::Greatest).to_string(),
+                curve.d15f_max_rule
+            )
         }
         None => "not known".into(),
     }

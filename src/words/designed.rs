@@ -2,7 +2,7 @@
 
 use super::dispersion::{beside_dispersive, dispersive_limit, test};
 use super::specification::no_band;
-use crate::outcome::quantity::{Role, SizeUnit, length, limits, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, limits, significant};
 use crate::outcome::record::IfDispersive;
 use crate::outcome::record::Note;
 use crate::outcome::rules::WIDEST_BAND;
@@ -54,7 +54,7 @@ fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
         |mm| {
             format!(
                 "D15F up to {} (practice: {})",
-                length(mm, unit).role(Role::Greatest).to_string(),
+                length(mm, unit).role(NumberRole::Greatest).to_string(),
                 row.rule
             )
         },
@@ -71,7 +71,7 @@ fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
 /// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
 pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     let [most, least_of] = [false, true]
-        .map(|at_least| move |mm: f64| length(mm, unit).role(Role::of_limit(at_least)).to_string());
+        .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
     let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
     let cap = strictest(others.iter().copied());
     let Some((first, own)) = strictest(settled.iter().copied()) else {
@@ -150,7 +150,7 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     if let Some((row, least)) = drainage(&all.rows) {
         let at_most = if row.d15f_min_at_most { "at most " } else { "" };
         let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
-        let limit = length(least, unit).role(Role::Least).to_string();
+        let limit = length(least, unit).role(NumberRole::Least).to_string();
         said.push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
     }
     said.extend(still_to_set(all));
@@ -244,7 +244,8 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let why_not = |row: &DesignedSample| Some(row.not_walked.clone()).filter(|why| !why.is_empty());
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
-        row.d15f_min_mm.map(|least| format!("{}{at_most}", length(least, unit).role(Role::Least).in_cell()))
+        row.d15f_min_mm
+            .map(|least| format!("{}{at_most}", length(least, unit).role(NumberRole::Least).in_cell()))
     };
     let band = move |row: &DesignedSample| match row.band_d15f_mm {
         Some([least, greatest]) => limits(least, greatest, unit).in_cell(),
@@ -262,7 +263,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| length(mm, unit).in_cell()))
         .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
         .number("Limit of practice, mm", move |row| {
-            row.d15f_max_mm.map(|mm| length(mm, unit).role(Role::Greatest).in_cell())
+            row.d15f_max_mm.map(|mm| length(mm, unit).role(NumberRole::Greatest).in_cell())
         })
         .column("rule", |row: &DesignedSample| row.rule.clone())
         .headed("Whose limit")
@@ -279,14 +280,14 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .number("Model (research): D15F/D85B", move |row| {
             let ratio = design(row)
                 .and_then(|of| of.model_d15f_over_d85b)
-                .map(|limit| significant(limit).role(Role::Greatest));
+                .map(|limit| significant(limit).role(NumberRole::Greatest));
             ratio.shown().below(why_not(row))
         })
         .digits("model_d15f_mm", 4, move |row| design(row)?.model_d15f_mm)
         .number("Model (research): D15F, mm", move |row| {
             design(row)
                 .and_then(|of| of.model_d15f_mm)
-                .map(|mm| length(mm, unit).role(Role::Greatest).in_cell())
+                .map(|mm| length(mm, unit).role(NumberRole::Greatest).in_cell())
         })
         .column("not_walked", |row: &DesignedSample| row.not_walked.clone())
         .column("folder", move |row| design(row).map(|of| of.folder))

@@ -1,6 +1,6 @@
 //! The limit of a base of which nobody has said whether it is dispersive.
 
-use crate::outcome::quantity::{Role, SizeUnit, Unit, beside_limit, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, Unit, beside_limit, length, significant};
 use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
 
 /// A filter that is too coarse for a dispersive base alone, in a clause; `None` where it keeps the limit, or
@@ -31,14 +31,15 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
     if limit.at_most {
         Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
     } else {
-        (limit.d15f_max_mm < d15f_mm)
-            .then(|| format!("{} {IF}", length(limit.d15f_max_mm, unit).role(Role::Greatest).to_string()))
+        (limit.d15f_max_mm < d15f_mm).then(|| {
+            format!("{} {IF}", length(limit.d15f_max_mm, unit).role(NumberRole::Greatest).to_string())
+        })
     }
 }
 
 /// The limit of D15F. One that no source gives is never called that of other bases.
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
-    let most = length(limit.d15f_max_mm, unit).role(Role::Greatest).to_string();
+    let most = length(limit.d15f_max_mm, unit).role(NumberRole::Greatest).to_string();
     match limit.lacks.filter(|_| limit.at_most) {
         Some(DispersiveLack::AnyLimit) => {
             format!("less than {most}, by how much no source that was read says")

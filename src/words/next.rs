@@ -4,7 +4,7 @@ use super::dispersion::{beside_dispersive, beyond_dispersive};
 use super::rule_note::missing;
 use crate::gradation::FINES_MM;
 use crate::outcome::design::retention::{open_retention, retention};
-use crate::outcome::quantity::{Role, SizeUnit, length, limits, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, limits, significant};
 use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole, Verdict};
 use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
 use crate::verdict::practice::{Standing, broken, standing};
@@ -83,7 +83,7 @@ impl Pair<'_> {
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
-                length(limit, self.unit).role(Role::Greatest).to_string()
+                length(limit, self.unit).role(NumberRole::Greatest).to_string()
             ),
             None => format!("take a finer filter; {exists}"),
             Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
@@ -106,12 +106,13 @@ impl Pair<'_> {
     fn sized(&self, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
-            Some(least) if least <= most => {
-                (format!(" and at least {}", length(least, self.unit).role(Role::Least).to_string()), None)
-            }
+            Some(least) if least <= most => (
+                format!(" and at least {}", length(least, self.unit).role(NumberRole::Least).to_string()),
+                None,
+            ),
             // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
             Some(least) if drainage.is_some() => {
-                let least = length(least, self.unit).role(Role::Least).to_string();
+                let least = length(least, self.unit).role(NumberRole::Least).to_string();
                 let compare = "compare the permeabilities of filter and base";
                 (String::new(), Some(format!("to drain the base it would be at least {least}: {compare}")))
             }
@@ -121,7 +122,7 @@ impl Pair<'_> {
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
         format!(
             "take a filter with a D15F of at most {}{beside}{drains}",
-            length(most, self.unit).role(Role::Greatest).to_string()
+            length(most, self.unit).role(NumberRole::Greatest).to_string()
         )
     }
 

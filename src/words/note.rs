@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::outcome::design::RowNote;
 use crate::outcome::note::Note;
-use crate::outcome::quantity::{Role, SizeUnit, Unit, significant, whole};
+use crate::outcome::quantity::{NumberRole, SizeUnit, Unit, significant, whole};
 
 /// The sentence of a note; lengths are shown in this unit.
 ///
@@ -12,7 +12,7 @@ use crate::outcome::quantity::{Role, SizeUnit, Unit, significant, whole};
 /// use voidwalk::outcome::{note::Note, quantity::SizeUnit};
 /// let note = Note::CoarseBase { d85_mm: 19.0 };
 /// let words = voidwalk::words::sentence(&note, SizeUnit::Mm);
-/// assert_eq!(words, "The D85 of the base is 19 mm: are its sizes micrometres under a header in mm?");
+/// assert_eq!(words, "The D85 of the base is 19\u{202f}mm: are its sizes micrometres under a header in mm?");
 /// ```
 pub fn sentence(note: &Note, unit: SizeUnit) -> String {
     filled(note, note.entry().sentence, unit)
@@ -59,9 +59,9 @@ fn shown(name: &str, noun: Option<&str>, value: &Value, unit: SizeUnit) -> Strin
 
 fn measured(name: &str, value: f64, unit: SizeUnit) -> String {
     let number = match name.split('_').next() {
-        Some("least") => significant(value).role(Role::Least),
+        Some("least") => significant(value).role(NumberRole::Least),
         // A value above a bound is above the bound rounded down.
-        Some("most" | "over") => significant(value).role(Role::Greatest),
+        Some("most" | "over") => significant(value).role(NumberRole::Greatest),
         _ => significant(value).in_digits(3),
     };
     match name.rsplit('_').next() {

@@ -1,7 +1,7 @@
 //! The words of what rules of practice say beside their results, and of why practice regrades a base.
 
 use crate::gradation::{FEW_FINES, RegradeCause, RegradeReason};
-use crate::outcome::quantity::{Role, SizeUnit, given, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, given, length, significant};
 use crate::outcome::record::RuleNote;
 
 /// What rules say beside their results, in a part of a sentence.
@@ -21,7 +21,7 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::BaseBetween(from, to) => return between(unit, "sizes of the base are not known", from, to),
         RuleNote::FlatBase(limit) => {
-            let limit = length(limit, unit).role(Role::Greatest).to_string();
+            let limit = length(limit, unit).role(NumberRole::Greatest).to_string();
             return format!("the base may be gap-graded: the stricter limit; the other is {limit}");
         }
         RuleNote::Dispersive => "dispersive",
@@ -52,14 +52,14 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
             return format!(
                 "its floor: {} D85B would be {}",
                 given(times),
-                length(size, unit).role(Role::Greatest).to_string()
+                length(size, unit).role(NumberRole::Greatest).to_string()
             );
         }
         RuleNote::LeastGoverns(times, size) => {
             return format!(
                 "its floor: {} D15B is below {}",
                 given(times),
-                length(size, unit).role(Role::Least).to_string()
+                length(size, unit).role(NumberRole::Least).to_string()
             );
         }
         RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",

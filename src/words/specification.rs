@@ -10,7 +10,7 @@ use crate::outcome::design::products::LEAST_CU;
 use crate::outcome::design::size_band::{D15_OVER_D10, SizeBand};
 use crate::outcome::design::specification::{NoBand, StepName, StepNote, StepValue};
 use crate::outcome::design::{Specification, SpecificationStep};
-use crate::outcome::quantity::{self, Role, SizeUnit, length, limits, significant};
+use crate::outcome::quantity::{self, NumberRole, SizeUnit, length, limits, significant};
 use crate::outcome::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND,
     range_of_tests,
@@ -31,7 +31,7 @@ pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
 /// let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
 /// let band = voidwalk::words::specification::band(&core, SizeUnit::Mm);
-/// assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700 mm, Cu from 2 to 6"));
+/// assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
 /// # Ok::<(), voidwalk::gradation::GradationError>(())
 /// ```
 pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
@@ -47,7 +47,8 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] = [retains, most].map(|mm| length(mm, unit).role(Role::Greatest).to_string());
+        let [retains, most] =
+            [retains, most].map(|mm| length(mm, unit).role(NumberRole::Greatest).to_string());
         return Some(format!(
             "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
              the band is no wider than {WIDEST_BAND} to 1"
@@ -55,7 +56,7 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     }
     let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
     let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| length(mm, unit).role(Role::Least).to_string());
+    let [drains, least] = [drains, least].map(|mm| length(mm, unit).role(NumberRole::Least).to_string());
     Some(format!(
         "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
          that the band is no wider than {WIDEST_BAND} to 1"
@@ -71,7 +72,7 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
         // Where a table is entered: a finer D10F allows no coarser D90F.
-        length(least, unit).role(Role::Greatest).to_string()
+        length(least, unit).role(NumberRole::Greatest).to_string()
     ))
 }
 
@@ -143,15 +144,15 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
             "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
              {} to retain the base: D15B must be tested.",
-            length(*most_drains_mm, unit).role(Role::Least).to_string(),
-            length(*most_mm, unit).role(Role::Greatest).to_string()
+            length(*most_drains_mm, unit).role(NumberRole::Least).to_string(),
+            length(*most_mm, unit).role(NumberRole::Greatest).to_string()
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
             "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
              {} \
              to retain it. {}",
-            length(*least_mm, unit).role(Role::Least).to_string(),
-            length(*most_mm, unit).role(Role::Greatest).to_string(),
+            length(*least_mm, unit).role(NumberRole::Least).to_string(),
+            length(*most_mm, unit).role(NumberRole::Greatest).to_string(),
             // So fine a base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
@@ -164,7 +165,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         }
         NoBand::TooCoarse { most_d60f_mm } => format!(
             "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            length(*most_d60f_mm, unit).role(Role::Greatest).to_string()
+            length(*most_d60f_mm, unit).role(NumberRole::Greatest).to_string()
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
@@ -180,7 +181,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
 pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
     Some(match (value.unit.as_str(), value.role()) {
-        ("mm", Some(at_least)) => length(number, unit).role(Role::of_limit(at_least)).to_string(),
+        ("mm", Some(at_least)) => length(number, unit).role(NumberRole::of_limit(at_least)).to_string(),
         ("mm", None) => length(number, unit).to_string(),
         ("", _) if number.fract() == 0.0 && number < 100.0 => format!("{number:.0}"),
         (name, _) => format!("{} {name}", significant(number)).trim_end().to_owned(),

@@ -89,7 +89,7 @@ fn cu_of_an_open_tail_is_more_than_that_of_its_sieves() {
     };
     for (finest, d85, cu) in [("0.04", "0.2", "2.88"), ("0.14", "0.19", "1.22"), ("0.02", "0.2", "4.54")] {
         let text = warnings(finest, d85);
-        assert!(text.contains("cu_at_least") && text.contains(&format!("\"least_cu\":{cu}")), "{text}");
+        assert!(text.contains("cu_at_least") && text.contains(&format!("\"over_cu\":{cu}")), "{text}");
         assert_eq!(text.contains("pan_counts_as_passing"), finest == "0.14", "{text}");
     }
 }

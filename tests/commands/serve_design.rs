@@ -139,7 +139,9 @@ fn a_design_is_refused_in_the_words_of_the_command_line() {
     });
     let pair = served.json(&format!("api/rules?base={base}&filter={filter}"));
     let rules = pair["rules"].as_array().unwrap().iter().zip(pair["shown"].as_array().unwrap());
-    let number = |text: &Value| -> f64 { text.as_str().unwrap().split(' ').next().unwrap().parse().unwrap() };
+    let number = |text: &Value| -> f64 {
+        text.as_str().unwrap().split(['\u{202f}', ' ']).next().unwrap().parse().unwrap()
+    };
     let mut reached = 0;
     for (rule, shown) in rules {
         assert_eq!(

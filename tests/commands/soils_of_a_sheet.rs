@@ -184,7 +184,7 @@ fn a_specification_has_every_curve_of_its_base() {
     let said = format!(
         "minimum D10F of {}\u{202f}mm",
         voidwalk::report::quantity::significant(least)
-            .role(voidwalk::report::quantity::Role::Greatest)
+            .role(voidwalk::report::quantity::NumberRole::Greatest)
             .number()
     );
     assert!(page.contains(&said), "{said}");

@@ -2,7 +2,7 @@
 
 use voidwalk::Gradation;
 use voidwalk::outcome::quantity::SizeUnit;
-use voidwalk::outcome::record::Note;
+use voidwalk::outcome::record::{Note, Verdict};
 use voidwalk::verdict::PairRules;
 
 use super::folder::Plan;
@@ -44,6 +44,7 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
         let mut outcome = Plan::usual().outcome;
         outcome.rules = PairRules::of(&base, &soil(filter)).rules;
         outcome.notes.clear();
+        outcome.model.class = Verdict::None;
         voidwalk::words::next(&outcome, SizeUnit::Mm)
     };
     assert_eq!(next(&[(0.5, 0.0), (1.5, 100.0)]), "nothing by these rules");

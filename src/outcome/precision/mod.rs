@@ -70,7 +70,7 @@ pub struct ExactTier {
     /// Random networks of each line.
     pub networks: u64,
     /// What each quantity is.
-    pub quantities: Vec<Quantity>,
+    pub quantities: Vec<MeasuredQuantity>,
     /// One row a quantity, engine and number of particles.
     pub rows: Vec<ExactRow>,
     /// Slope of ln(error) against ln(particles), by quantity and engine.
@@ -82,7 +82,7 @@ pub struct ExactTier {
 /// A quantity of the tier of exact answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct Quantity {
+pub struct MeasuredQuantity {
     /// Short name.
     pub name: String,
     /// What it is, in a sentence.

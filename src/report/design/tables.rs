@@ -7,7 +7,7 @@ use crate::outcome::design::{Boundary, Design, DesignRow, WalkRow};
 use crate::outcome::record::Note;
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
-use crate::report::quantity::{Role, length, percent, significant, whole};
+use crate::report::quantity::{NumberRole, length, percent, significant, whole};
 use crate::report::shell::{clean, fact};
 use crate::report::shown::known;
 use crate::report::table::Table;
@@ -23,11 +23,11 @@ pub(super) fn boundaries(design: &Design) -> Markup {
         .map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(design))));
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(design);
-    let limit = |mm: f64| length(mm, unit).role(Role::Greatest).to_string();
+    let limit = |mm: f64| length(mm, unit).role(NumberRole::Greatest).to_string();
     let found = |mm: f64| length(mm, unit).to_string();
     let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
         let end = move |value| {
-            significant(value).role(if is_limit { Role::Greatest } else { Role::Value }).number()
+            significant(value).role(if is_limit { NumberRole::Greatest } else { NumberRole::Value }).number()
         };
         html! {
             @match boundary {
@@ -75,11 +75,9 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             })
             .render())
         p.small {
-            "No erosion: less than " (percent(design.threshold).in_digits(3)) " of the mass of the base erodes \
-                in \
-                the \
-             first run. Continuing: at least as much in the second run, too. Between the two is some \
-             erosion."
+            "No erosion: less than " (percent(design.threshold).in_digits(3))
+            " of the mass of the base erodes in the first run. Continuing: at least as much in the second run, \
+             too. Between the two is some erosion."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
                  draws other random numbers: on a small lattice it may lose "

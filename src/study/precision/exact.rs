@@ -23,7 +23,9 @@ use super::study::PrecisionStudy;
 use super::work::summed;
 use crate::network::{Network, NetworkError};
 use crate::outcome::log_log_slope;
-use crate::outcome::precision::{ExactRow, ExactTier, NetworkRow, Quantity, Slope, merit, sd_estimate};
+use crate::outcome::precision::{
+    ExactRow, ExactTier, MeasuredQuantity, NetworkRow, Slope, merit, sd_estimate,
+};
 use crate::run::error::RunError;
 use crate::stream::{Key, Purpose, unit};
 use crate::walk::Engine;
@@ -142,9 +144,9 @@ fn tidy(number: f64) -> u64 {
     powers.filter(|n| *n <= 100_000_000).find(|n| *n as f64 <= number).unwrap_or(1000)
 }
 
-fn quantity(name: &str, words: &str, known: &[Known]) -> Quantity {
+fn quantity(name: &str, words: &str, known: &[Known]) -> MeasuredQuantity {
     let leaves: Vec<f64> = known.iter().map(|k| k.leaves).collect();
-    Quantity { name: name.into(), words: words.into(), mean: mean(&leaves) }
+    MeasuredQuantity { name: name.into(), words: words.into(), mean: mean(&leaves) }
 }
 
 /// A lattice of which some constrictions are blocked; the particle is finer than every constriction.
