@@ -76,7 +76,7 @@ pub(super) fn boundaries(design: &Design) -> Markup {
             .render())
         p.small {
             "No erosion: less than " (percent(design.threshold).in_digits(3))
-            " of the mass of the base erodes in the first run. Continuing: at least as much in the second run, \
+            " of the mass of the base erodes in the first run. Continuing: at least as much in the second, \
              too. Between the two is some erosion."
             @if design.moves_expectation() {
                 " Base particles that can block nothing move as their expectation. A run with another engine \
