@@ -95,6 +95,9 @@ pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunErro
     Ok(())
 }
 
+/// Subjects of notes that the last line names, those that matter most.
+const LABELS: usize = 4;
+
 /// What a user wants to know first.
 fn summary(run: &FinishedRun) -> String {
     let outcome = &run.outcome;
@@ -117,12 +120,12 @@ fn summary(run: &FinishedRun) -> String {
             labels.push(note.entry().label);
         }
     }
-    match labels.len() {
-        0 => line(format!("report: {page}")),
-        _ => {
-            let notes = counted(outcome.notes.len() as u64, "note", "notes");
-            line(format!("report: {page}; {notes}: {}", labels.join(", ")));
-        }
+    let notes = counted(outcome.notes.len() as u64, "note", "notes");
+    let (first, others) = labels.split_at(labels.len().min(LABELS));
+    match (first, others.len()) {
+        ([], _) => line(format!("report: {page}")),
+        (_, 0) => line(format!("report: {page}; {notes}: {}", first.join(", "))),
+        (_, others) => line(format!("report: {page}; {notes}: {} and {others} more", first.join(", "))),
     }
     text
 }

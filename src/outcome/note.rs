@@ -223,7 +223,7 @@ notes! {
     SecondRunMayErode { most_percent: f64 } "second run" "uncertainty.md"
         "The second run may erode up to {most_percent} of its base, though the first erodes less than 7.5 %.";
     /// Amounts and thicknesses that were not walked.
-    NotStudied {} "amount, thickness" "uncertainty.md"
+    NotStudied {} "not studied" "uncertainty.md"
         "How the class changes with the amount of base and the thickness of the filter was not studied."
         "record.sensitivity and record.thickness study it.";
 
@@ -422,8 +422,7 @@ notes! {
          how wide.";
     /// A range of constriction curves, whose class and mass count.
     CurveRange {} "constrictions" "uncertainty.md"
-        "Every constriction curve that the filter may have gives this class; the eroded mass covers all of \
-         them."
+        "Every constriction curve that was walked gives this class; the eroded mass covers all of them."
         "A filter that is packed whole (filter.density) has one measured curve.";
     /// A range of constriction curves that gives more than one class.
     CurveDecides { of_the_curve: String } "constrictions" "uncertainty.md"
@@ -445,8 +444,8 @@ notes! {
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
     /// A base that is not internally stable.
     UnstableBase { index: f64, finer_percent: f64 } "stability of the base" "rules.md"
-        "The base is not internally stable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
-         whether the filter holds its finer part.";
+        "The base is internally unstable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
+         whether the filter is to hold its finer part.";
     /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \
@@ -490,8 +489,8 @@ notes! {
         "FILE#NAME takes one of them.";
     /// A finest part of the filter that is not counted.
     PanOfFilter { finest_percent: f64 } "finest part" "soils.md"
-        "The finest {finest_percent} of the filter is not counted: too much base is offered, which favours \
-         holding."
+        "The finest {finest_percent} of the filter is not counted: more base is offered, and a filter can seem \
+         to hold."
         "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     LooseGrains { loose_percent: f64 } "loose grains" "uncertainty.md"

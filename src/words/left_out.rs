@@ -59,7 +59,7 @@ pub fn left_out_line(limits: &[ModelLimit]) -> String {
         names.push("bridging");
     }
     names.extend(["cohesion", "dispersion", "suffusion", "segregation"]);
-    format!("The model decides nothing and leaves out: {}; more on the page.", names.join(", "))
+    format!("The model is no proof; it leaves out {}.", names.join(", "))
 }
 
 /// What the model does not contain and what no rule covers, in two sentences.
@@ -266,7 +266,8 @@ mod tests {
         }
         assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
         let line = left_out_line(&leaves_out(Modelled::default()));
-        for name in ["hydraulics", "gradient", "bridging", "cohesion", "suffusion", "segregation", "the page"]
+        for name in
+            ["hydraulics", "gradient", "bridging", "cohesion", "dispersion", "suffusion", "segregation"]
         {
             assert!(line.contains(name) && line.split(' ').count() <= 20, "{name}: {line}");
         }

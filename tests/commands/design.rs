@@ -95,7 +95,7 @@ fn a_design_fills_a_folder_and_says_it_all() {
         "\nPractice: D15F from",
         "\nLimit: D15F",
         "\nModel (research): nearly all networks hold D15F/D85B ",
-        "The model decides nothing",
+        "The model is no proof",
     ] {
         assert!(said.contains(words), "{said}");
     }

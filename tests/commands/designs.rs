@@ -199,7 +199,7 @@ fn by_practice_alone_nothing_is_walked_and_a_folder_of_sheets_is_taken() {
     assert_eq!(names, ["one/Core", "one/Shell", "one/Till", "two"]);
     assert!(rows.iter().all(|row| row["design"].is_null()));
     assert!(said.contains("Governing sample two: D15F up to 0.700 mm (practice: "), "{said}");
-    assert!(!at.join("voidwalk-designs/samples").exists() && !said.contains("model leaves out"));
+    assert!(!at.join("voidwalk-designs/samples").exists() && !said.contains("it leaves out"));
     // The limits are those of the specification of each.
     designed(at, &["design", "sheets/two.csv", "--steps", "--out", "s"]);
     let steps: Value = serde_json::from_slice(&fs::read(at.join("s/specification.json")).unwrap()).unwrap();

@@ -53,7 +53,7 @@ fn the_page_says_what_an_engineer_reads_first() {
         "Model (research): some erosion; ",
         "Figure 1.",
         "Rules of practice, in short",
-        "leaves out: hydraulics, ",
+        "it leaves out hydraulics, ",
         "Group by ASTM D2487",
         "What the model found",
         "Model (“the walk”): base particles are moved through voids",

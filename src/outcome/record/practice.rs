@@ -23,7 +23,7 @@ pub struct Practice {
     pub range_of_tests_mm: Option<[f64; 2]>,
 }
 
-/// Whether a filter meets practice.
+/// Whether a filter meets the rules checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum PracticeClass {
@@ -44,10 +44,10 @@ pub enum PracticeClass {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub enum Headline {
     /// The limit of design is kept, and no other rule of retention, stability, drainage or placing is broken.
-    #[serde(rename = "meets practice")]
+    #[serde(rename = "meets the rules checked")]
     Meets,
     /// The same, unless the base is dispersive, of which nobody has said whether it is.
-    #[serde(rename = "meets practice unless the base is dispersive")]
+    #[serde(rename = "meets the rules checked unless the base is dispersive")]
     MeetsUnlessDispersive,
     /// The limit of design is kept; whether the filter drains the base is not known.
     #[serde(rename = "meets the limit of retention, drainage not known")]
@@ -97,8 +97,8 @@ impl Headline {
     /// Its words, on every face and in every file.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Meets => "meets practice",
-            Self::MeetsUnlessDispersive => "meets practice unless the base is dispersive",
+            Self::Meets => "meets the rules checked",
+            Self::MeetsUnlessDispersive => "meets the rules checked unless the base is dispersive",
             Self::DrainageNotKnown => "meets the limit of retention, drainage not known",
             Self::MayNotDrain => "meets the limit of retention, but may not drain",
             Self::MaySegregate => "meets the limit of retention, but may segregate",

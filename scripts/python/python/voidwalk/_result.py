@@ -267,7 +267,7 @@ class Result(_Walked):
 
     @property
     def headline(self) -> Optional[str]:
-        """The answer of filter practice, as ``"meets practice"``; ``None`` without two sieve curves in mm."""
+        """The answer of filter practice, as ``"meets the rules checked"``; ``None`` without two sieve curves in mm."""
         return self.outcome.get("headline")
 
     @property
