@@ -489,8 +489,8 @@ notes! {
         "FILE#NAME takes one of them.";
     /// A finest part of the filter that is not counted.
     PanOfFilter { finest_percent: f64 } "finest part" "soils.md"
-        "The finest {finest_percent} of the filter is not counted: more base is offered, and a filter can seem \
-         to hold."
+        "The finest {finest_percent} of the filter is not counted: more base is offered, and a filter can \
+         seem to hold."
         "filter.d0_mm says where that part ends.";
     /// Many loose grains.
     LooseGrains { loose_percent: f64 } "loose grains" "uncertainty.md"

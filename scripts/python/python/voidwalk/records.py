@@ -31,6 +31,7 @@ __all__ = [
     "FilterRecord",
     "FilterSizes",
     "GivenNetwork",
+    "Headline",
     "IfDispersive",
     "Infiltration",
     "InfiltrationSize",
@@ -85,6 +86,22 @@ __all__ = [
     "Stopping",
     "WalkOutcome",
     "WithoutFiner",
+]
+
+
+#: The answer of filter practice, with which every face begins.
+Headline = Literal[
+    "meets the rules checked",
+    "meets the rules checked unless the base is dispersive",
+    "meets the limit of retention, drainage not known",
+    "meets the limit of retention, but may not drain",
+    "meets the limit of retention, but may segregate",
+    "does not meet the limit of design",
+    "does not meet practice",
+    "does not meet practice: it may lose its finer part, and is too coarse without it",
+    "not known: the filter may lose its finer part",
+    "not known: sieves are missing",
+    "not known: a test is missing",
 ]
 
 
@@ -1302,7 +1319,7 @@ class Outcome(_Outcome, total=False):
         Wall time of everything, s; in a campaign beside other cases on the same threads.
     """
 
-    headline: Optional[Literal["meets the rules checked", "meets the rules checked unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Headline]
     practice: Optional[Practice]
     if_dispersive: Optional[IfDispersive]
     stopping: Optional[Stopping]
@@ -2218,7 +2235,7 @@ class ComparedCase(_ComparedCase, total=False):
     """
 
     by_practice: Optional[Literal["no erosion", "some erosion", "continuing erosion", "undecided"]]
-    headline: Optional[Literal["meets the rules checked", "meets the rules checked unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Headline]
     practice: Optional[Practice]
     notes: List[Note]
     base: Optional[BaseSize]
@@ -2540,7 +2557,7 @@ class _PairRules(TypedDict):
     filter: FilterSizes
     base: BaseSizes
     rules: List[AppliedRule]
-    headline: Optional[Literal["meets the rules checked", "meets the rules checked unless the base is dispersive", "meets the limit of retention, drainage not known", "meets the limit of retention, but may not drain", "meets the limit of retention, but may segregate", "does not meet the limit of design", "does not meet practice", "does not meet practice: it may lose its finer part, and is too coarse without it", "not known: the filter may lose its finer part", "not known: sieves are missing", "not known: a test is missing"]]
+    headline: Optional[Headline]
     practice: Optional[Practice]
     notes: List[Note]
 
