@@ -122,7 +122,7 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
         found["notes"].as_array().unwrap().iter().map(|of| of["id"].as_str().unwrap()).collect();
     assert_eq!(ids, ["unstable_base", "broad_base", "gap_of_base"], "{found}");
     for words in [
-        "The base is not internally stable by Kenney and Lau (H/F ",
+        "The base is internally unstable by Kenney and Lau (H/F ",
         "The base is broadly graded (Cu ",
         "The base is gap-graded by the program",
     ] {
@@ -140,7 +140,7 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
     let answer =
         page.split("<section class=\"verdict\">").nth(1).unwrap().split("</section>").next().unwrap();
     for words in [
-        "The base is not internally stable by Kenney and Lau",
+        "The base is internally unstable by Kenney and Lau",
         "The base is broadly graded (Cu ",
         "The base is gap-graded by the program",
     ] {

@@ -56,6 +56,7 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
     let rockfill = PairRules::of(&bedding, &soil(&[(30.0, 0.0), (60.0, 15.0), (150.0, 100.0)])).rules;
     let mut outcome = Plan::usual().outcome;
     outcome.rules = rockfill;
+    outcome.model.class = Verdict::None;
     outcome.inputs.scale_free = false;
     outcome.inputs.filter.d15_mm = 60.0;
     outcome.notes.clear();
