@@ -218,9 +218,9 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     let limit = match row.d15f_min_at_most {
         true => format!(
             "the minimum D15F is not known, and at most {}",
-            length(least, unit).role(NumberRole::Least).to_string()
+            length(least, unit).role(NumberRole::Least)
         ),
-        false => format!("D15F {} or more", length(least, unit).role(NumberRole::Least).to_string()),
+        false => format!("D15F {} or more", length(least, unit).role(NumberRole::Least)),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }

@@ -37,7 +37,7 @@ pub fn design_model(design: &Design, unit: SizeUnit) -> String {
     let size = design
         .base
         .d85_mm
-        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(NumberRole::Greatest).to_string()));
+        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(NumberRole::Greatest)));
     let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
     format!(
         "nearly all networks hold D15F/D85B {}{}{}",
@@ -60,11 +60,7 @@ fn specification_lines(specification: &Specification, unit: SizeUnit) -> [(&'sta
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
-            format!(
-                "D15F {} ({})",
-                length(limit, unit).role(NumberRole::Greatest).to_string(),
-                curve.d15f_max_rule
-            )
+            format!("D15F {} ({})", length(limit, unit).role(NumberRole::Greatest), curve.d15f_max_rule)
         }
         None => "not known".into(),
     }

@@ -51,13 +51,7 @@ fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     row.d15f_max_mm.map_or_else(
         || "no maximum D15F is known".into(),
-        |mm| {
-            format!(
-                "D15F up to {} (practice: {})",
-                length(mm, unit).role(NumberRole::Greatest).to_string(),
-                row.rule
-            )
-        },
+        |mm| format!("D15F up to {} (practice: {})", length(mm, unit).role(NumberRole::Greatest), row.rule),
     )
 }
 

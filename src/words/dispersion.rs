@@ -31,9 +31,8 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
     if limit.at_most {
         Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
     } else {
-        (limit.d15f_max_mm < d15f_mm).then(|| {
-            format!("{} {IF}", length(limit.d15f_max_mm, unit).role(NumberRole::Greatest).to_string())
-        })
+        (limit.d15f_max_mm < d15f_mm)
+            .then(|| format!("{} {IF}", length(limit.d15f_max_mm, unit).role(NumberRole::Greatest)))
     }
 }
 

@@ -83,7 +83,7 @@ impl Pair<'_> {
         match self.greatest() {
             Some((limit, true)) => format!(
                 "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
-                length(limit, self.unit).role(NumberRole::Greatest).to_string()
+                length(limit, self.unit).role(NumberRole::Greatest)
             ),
             None => format!("take a finer filter; {exists}"),
             Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
@@ -103,10 +103,9 @@ impl Pair<'_> {
     fn sized(&self, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
-            Some(least) if least <= most => (
-                format!(" and at least {}", length(least, self.unit).role(NumberRole::Least).to_string()),
-                None,
-            ),
+            Some(least) if least <= most => {
+                (format!(" and at least {}", length(least, self.unit).role(NumberRole::Least)), None)
+            }
             // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
             Some(least) if drainage.is_some() => {
                 let least = length(least, self.unit).role(NumberRole::Least).to_string();
@@ -119,7 +118,7 @@ impl Pair<'_> {
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
         format!(
             "take a filter with a D15F of at most {}{beside}{drains}",
-            length(most, self.unit).role(NumberRole::Greatest).to_string()
+            length(most, self.unit).role(NumberRole::Greatest)
         )
     }
 

@@ -52,14 +52,14 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
             return format!(
                 "its floor: {} D85B would be {}",
                 given(times),
-                length(size, unit).role(NumberRole::Greatest).to_string()
+                length(size, unit).role(NumberRole::Greatest)
             );
         }
         RuleNote::LeastGoverns(times, size) => {
             return format!(
                 "its floor: {} D15B is below {}",
                 given(times),
-                length(size, unit).role(NumberRole::Least).to_string()
+                length(size, unit).role(NumberRole::Least)
             );
         }
         RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",

@@ -72,7 +72,7 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
         // Where a table is entered: a finer D10F allows no coarser D90F.
-        length(least, unit).role(NumberRole::Greatest).to_string()
+        length(least, unit).role(NumberRole::Greatest)
     ))
 }
 
@@ -144,15 +144,15 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
             "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
              {} to retain the base: D15B must be tested.",
-            length(*most_drains_mm, unit).role(NumberRole::Least).to_string(),
-            length(*most_mm, unit).role(NumberRole::Greatest).to_string()
+            length(*most_drains_mm, unit).role(NumberRole::Least),
+            length(*most_mm, unit).role(NumberRole::Greatest)
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
             "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
              {} \
              to retain it. {}",
-            length(*least_mm, unit).role(NumberRole::Least).to_string(),
-            length(*most_mm, unit).role(NumberRole::Greatest).to_string(),
+            length(*least_mm, unit).role(NumberRole::Least),
+            length(*most_mm, unit).role(NumberRole::Greatest),
             // So fine a base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
@@ -165,7 +165,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         }
         NoBand::TooCoarse { most_d60f_mm } => format!(
             "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            length(*most_d60f_mm, unit).role(NumberRole::Greatest).to_string()
+            length(*most_d60f_mm, unit).role(NumberRole::Greatest)
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =

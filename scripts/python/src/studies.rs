@@ -15,6 +15,7 @@ use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
 use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
 use voidwalk::words::specification::{beside_limits, no_band};
 
+use crate::notes::plain;
 use crate::problem::{failed, of_run, refused};
 use crate::scenes::Manner;
 use crate::two_tables::Tables;
@@ -138,9 +139,9 @@ pub fn specification_words(record: &str) -> PyResult<Words> {
     let specification: Specification = serde_json::from_str(record).map_err(refused)?;
     let d15f = specification.band.as_ref().map(SizeBand::d15_mm);
     Ok((
-        d15f.map(|[least, most]| format!("D15F from {}", limits(least, most, unit))),
-        specification.no_band.as_ref().map(|why| no_band(why, unit)),
-        beside_limits(&specification, unit),
+        d15f.map(|[least, most]| plain(&format!("D15F from {}", limits(least, most, unit)))),
+        specification.no_band.as_ref().map(|why| plain(&no_band(why, unit))),
+        beside_limits(&specification, unit).map(|words| plain(&words)),
         specification.set_by().map(str::to_owned),
         specification.products.iter().map(ProductMargin::fits).collect(),
     ))

@@ -19,9 +19,9 @@ SAID: Dict[str, List[str]] = {
     "openpnm_clogging": ["Network(", "WalkResult("],
     "parameter_study": ["Cu of the base", "continuing erosion"],
     "paper_figure_13": [
-        "continuing erosion: Result(practice: ",
-        "some erosion: Result(practice: ",
-        "no erosion: Result(practice: ",
+        "continuing erosion: Result(model: ",
+        "some erosion: Result(model: ",
+        "no erosion: Result(model: ",
     ],
 }
 NEEDS = {"parameter_study": "pandas"}
