@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::args::{SceneArgs, SettingArgs};
 use super::check_plan::check_plan;
-use super::print::{as_it_is, count, json, plain, to_stdout};
+use super::print::{as_it_is, json, plain, to_stdout};
 use super::values::with_options;
 use crate::campaign::CampaignPlan;
 use crate::constrictions::shipped;
@@ -111,7 +111,7 @@ fn words(check: &Check) -> String {
     };
     line("  one by one", one_by_one);
     let [voids, constrictions, starts] =
-        [network.voids, network.constrictions, network.start_nodes].map(count);
+        [network.voids, network.constrictions, network.start_nodes].map(whole);
     let name = &network.name;
     line("network", format!("{name}: {voids} voids, {constrictions} constrictions, {starts} start nodes"));
     let (runs, increments) = (check.runs_to_walk, check.increments);

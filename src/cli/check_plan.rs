@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::args::SettingArgs;
-use super::print::{as_it_is, count, counted, json, plain, to_copy, to_stdout};
+use super::print::{as_it_is, counted, json, plain, to_copy, to_stdout, whole};
 use crate::campaign::{self, CampaignOptions, CampaignPlan, PlanCheck};
 use crate::case::in_words;
 use crate::run::cost::duration;
@@ -56,8 +56,8 @@ fn words(check: &PlanCheck) -> String {
         let said = match case.problem.is_empty() {
             true => format!(
                 "{} base particles a run, {} runs, {}, about {}",
-                count(case.n_base),
-                count(case.runs_to_walk),
+                whole(case.n_base),
+                whole(case.runs_to_walk),
                 in_words(case.bytes),
                 duration(case.core_seconds)
             ),
@@ -69,7 +69,7 @@ fn words(check: &PlanCheck) -> String {
         line("", format!("and {} more: --json has all", check.cases.len() - LISTED));
     }
     let runs = check.cases.iter().map(|case| case.runs_to_walk).sum();
-    line("to walk", format!("{} runs", count(runs)));
+    line("to walk", format!("{} runs", whole(runs)));
     line(
         "memory",
         format!(

@@ -1,7 +1,7 @@
 //! `voidwalk constrictions`: from a packing to its constriction curve.
 
 use super::args::ConstrictionsArgs;
-use super::print::{as_it_is, count, json, plain, to_stdout};
+use super::print::{as_it_is, json, plain, to_stdout, whole};
 use super::progress::unfollowed;
 use crate::packing::ReadOptions;
 use crate::run::{ConstrictionsOptions, RunError, measure_constrictions};
@@ -22,16 +22,16 @@ pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         return Ok(());
     }
     let mut lines = vec![
-        format!("{} grains, void ratio {:.4}", count(summary.grains as u64), summary.void_ratio),
+        format!("{} grains, void ratio {:.4}", whole(summary.grains as u64), summary.void_ratio),
         format!(
             "{} voids, {:.3} grains per void (Eq. 2), {:.2} constrictions a void on average",
-            count(summary.voids as u64),
+            whole(summary.voids as u64),
             summary.grains_per_void,
             summary.mean_connectivity
         ),
         format!(
             "{} constrictions, Cu_CSD {:.3}, merge_overlap {}",
-            count(summary.constrictions as u64),
+            whole(summary.constrictions as u64),
             summary.cu_csd,
             args.merge_overlap
         ),

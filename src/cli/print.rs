@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use serde::Serialize;
 
 use crate::outcome::BaseSize;
-use crate::outcome::quantity::{SizeUnit, THIN, whole};
-pub use crate::outcome::quantity::{percent, whole as count};
+use crate::outcome::quantity::{SizeUnit, THIN};
+pub use crate::outcome::quantity::{percent, whole};
 use crate::run::RunError;
 use crate::store::format::Format;
 pub use crate::text::plain;

@@ -300,17 +300,30 @@ pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
 /// exceeds a limit never reads as within it, nor the other way round. The limit is never more generous than
 /// it is. A ratio has no zeros at its end: 4.00 times D85B is four times.
 pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
+    both_beside(numbers, at_least, unit, Quantity::unit_text)
+}
+
+/// The same for the cells of a table that names the unit at its head.
+pub fn beside_limit_in_cells(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
+    both_beside(numbers, at_least, unit, |_| String::new())
+}
+
+fn both_beside(
+    numbers: [Option<f64>; 2],
+    at_least: bool,
+    unit: Unit,
+    named: impl Fn(Quantity) -> String,
+) -> [Option<String>; 2] {
     let [value, limit] = numbers.map(|number| number.map(|number| significant(number).in_unit(unit)));
     let limit = limit.map(|limit| limit.role(NumberRole::of_limit(at_least)));
     let (Some(value), Some(limit)) = (value, limit) else {
         let alone = |of: Quantity| {
-            let at_least = of.role == NumberRole::Least;
             let digits = match of.role {
                 NumberRole::Value => digits_of(of.value, DIGITS),
                 NumberRole::Least | NumberRole::Greatest => digits_within(of.value, DIGITS, at_least),
             };
             let inches = of.inches().map_or_else(String::new, |inches| bracket(&inches));
-            without_zeros(&digits, unit).to_owned() + &of.unit_text() + &inches
+            without_zeros(&digits, unit).to_owned() + &named(of) + &inches
         };
         return [value.map(alone), limit.map(alone)];
     };
@@ -323,7 +336,7 @@ pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [O
         }
         _ => Default::default(),
     };
-    let [of_value, of_limit] = both.map(|(text, of)| without_zeros(text, unit).to_owned() + &of.unit_text());
+    let [of_value, of_limit] = both.map(|(text, of)| without_zeros(text, unit).to_owned() + &named(of));
     [Some(of_value + &inches[0]), Some(of_limit + &inches[1])]
 }
 

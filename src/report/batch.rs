@@ -1,6 +1,5 @@
 //! The page of a batch, from `batch.json` alone.
 
-use crate::outcome::quantity::{SizeUnit, interval_in_percent, percent};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -18,6 +17,7 @@ use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
 use super::written::Written;
+use crate::outcome::quantity::{SizeUnit, interval_in_percent, percent};
 use crate::verdict::{BatchFilter, BatchRow, SampleWalk, WalkedBatch, WalkedRow};
 use crate::words::batch::{
     answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,

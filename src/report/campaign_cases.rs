@@ -1,6 +1,5 @@
 //! The cases of a campaign's page: one row a case, its class first, with a link to its own page.
 
-use crate::outcome::quantity::{SizeUnit, whole};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -11,6 +10,7 @@ use super::figures::shorten;
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::outcome::quantity::{SizeUnit, whole};
 use crate::outcome::record::Verdict;
 use crate::outcome::rules::RULES;
 use crate::outcome::undecided::UndecidedBy;

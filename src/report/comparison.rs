@@ -1,6 +1,5 @@
 //! The page of a comparison, from `compare.json` alone.
 
-use crate::outcome::quantity::{SizeUnit, percent};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -18,6 +17,7 @@ use super::shell::{Drawn, citation, clean, unbroken};
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::comparison::{ComparedCase, ComparedPair, Comparison};
+use crate::outcome::quantity::{SizeUnit, percent};
 use crate::outcome::record::Verdict;
 use crate::words::capital;
 use crate::words::comparison::{case_columns, difference, not_in_intervals};

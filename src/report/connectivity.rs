@@ -1,12 +1,12 @@
 //! The section on connectivity of a report page: Table 3 of the paper for this run.
 
-use crate::outcome::quantity::{percent, significant, whole};
 use maud::{Markup, html};
 
 use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::by_connectivity::of_replicates;
+use crate::outcome::quantity::{percent, significant, whole};
 use crate::outcome::record::ByConnectivity;
 
 /// Nothing where all voids have the same connectivity.

@@ -1,11 +1,11 @@
 //! The section on Eq. (1) of a report page.
 
-use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use maud::{Markup, Render, html};
 
 use super::run_figures::run_name;
 use super::shell::clean;
 use super::table::Table;
+use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use crate::outcome::record::{Infiltration, Outcome, Run};
 
 /// Eq. (1) for single particles, what the walk found, and where the two part.

@@ -1,6 +1,5 @@
 //! The page of walks on given networks, without a scene.
 
-use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use std::path::Path;
 
 use maud::{Markup, html};
@@ -17,6 +16,7 @@ use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_word
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::network_walk::NetworkWalkRecord;
+use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use crate::outcome::record::Verdict;
 use crate::words::left_out::left_out_words;
 use crate::words::sentence;

@@ -1,6 +1,5 @@
 //! The page and the figures of a percolation study.
 
-use crate::outcome::quantity::{duration, significant, whole};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -15,6 +14,7 @@ use super::shell::Drawn;
 use super::table::Table;
 use super::written::Written;
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, SizeThreshold, Z};
+use crate::outcome::quantity::{duration, significant, whole};
 use crate::outcome::record::Statistic;
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`

@@ -2,7 +2,6 @@
 //! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
 //! the same.
 
-use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
 use std::path::Path;
 
 use maud::{Markup, Render, html};
@@ -20,6 +19,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{Specification, SpecificationStep};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
 use crate::words::design::limit;
 use crate::words::products::{
     FITS, not_kept, product as product_result, products as products_line, to_be_checked,

@@ -4,7 +4,9 @@ use super::dispersion::dispersive_limit;
 use super::note::sentence;
 use super::practice::tested_in_brief;
 use super::rule_note::rule_note;
-use crate::outcome::quantity::{NumberRole, SizeUnit, Unit, beside_limit, length, significant};
+use crate::outcome::quantity::{
+    NumberRole, SizeUnit, Unit, beside_limit, beside_limit_in_cells, length, significant,
+};
 use crate::outcome::record::{IfDispersive, Verdict};
 use crate::outcome::table::{Columns, TableCell};
 use crate::verdict::batch::{NAMED, governing, may_govern, more_with_that_limit};
@@ -115,7 +117,7 @@ pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
 
 /// The same in the cells of a table that names the unit at its head.
 fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
-    d15f_and_limit(row, unit).map(|text| text.map(|text| text.replace("\u{202f}mm", "")))
+    beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
 /// The result of a row.

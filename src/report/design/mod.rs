@@ -7,7 +7,6 @@ mod tables;
 mod tests;
 mod words;
 
-use crate::outcome::quantity::{length, significant};
 use std::path::Path;
 
 use maud::{Markup, html};
@@ -22,6 +21,7 @@ use super::shell::{citation, clean, unbroken};
 use super::specification::{answer, with_details};
 use super::written::Written;
 use crate::outcome::design::{Design, WalkRow};
+use crate::outcome::quantity::{length, significant};
 use crate::words::base_size;
 use crate::words::design::design_model;
 use crate::words::left_out::left_out_in_brief;

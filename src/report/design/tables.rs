@@ -103,6 +103,11 @@ pub(super) fn networks(design: &Design) -> Markup {
     }
 }
 
+/// A coefficient of uniformity, or that it is not known.
+fn cu(of: Option<f64>) -> String {
+    of.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
+}
+
 /// What was walked, and from what.
 pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
     let [low, high] = design.bracket;
@@ -114,14 +119,14 @@ pub(super) fn made(design: &Design, walks: &[WalkRow]) -> Markup {
             (fact("Base", file_name(&design.base.name)))
             (fact("Cu of the base as walked; D15 as sampled, D85 as walked", format!(
                 "{}; {}, {}",
-                known(design.base.cu, |cu| significant(cu).in_digits(4)),
+                cu(design.base.cu),
                 size(design.base.d15_mm),
                 size(design.base.d85_mm)
             )))
             @if let Some(base) = design.base.size() { (fact("D85B", base_size(&base, size_unit(design)))) }
             (fact("Filter", file_name(&design.filter)))
             @if let Some(mm) = design.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
-            (fact("Cu of the filter", known(design.filter_cu, |cu| significant(cu).in_digits(4))))
+            (fact("Cu of the filter", cu(design.filter_cu)))
             (fact("Grains per void", known(grains, |grains| significant(grains).in_digits(4))))
             @if !design.engine.is_empty() { (fact("Engine", &design.engine)) }
             (fact("Networks, seed", format!("{}, {}", whole(design.replicates), design.seed)))

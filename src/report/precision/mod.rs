@@ -4,7 +4,6 @@ mod figures;
 mod judgements;
 mod tables;
 
-use crate::outcome::quantity::{duration, whole};
 use std::path::Path;
 
 use maud::{Markup, html};
@@ -15,6 +14,7 @@ use super::section::Sections;
 use super::shell::{Drawn, clean, fact};
 use super::written::Written;
 use crate::outcome::precision::Precision;
+use crate::outcome::quantity::{duration, whole};
 
 pub use judgements::precision_judgements;
 
