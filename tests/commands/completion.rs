@@ -198,7 +198,12 @@ fn last_word(at: &Path, terminal: &mut Terminal, keys: &str) -> String {
     let before = asked().len();
     let waits = terminal.seen().matches("MORE>").count();
     terminal.send(keys);
-    terminal.until(|seen| asked().len() > before || seen.matches("MORE>").count() > waits, 20.0);
+    // A shell writes a word in pieces: it is whole once its end is there.
+    let is_whole = || {
+        let all = asked();
+        all.len() > before && all.ends_with('\0')
+    };
+    terminal.until(|seen| is_whole() || seen.matches("MORE>").count() > waits, 20.0);
     let word = asked()[before..].split('\0').next().unwrap_or_default().to_owned();
     if word.is_empty() {
         let prompts = terminal.seen().matches("READY>").count();
@@ -216,13 +221,7 @@ fn completed(shell: &str, start: &str, setup: &str, quote: &str) -> Option<Vec<(
     let (root, mut terminal) = terminal(shell, start, setup)?;
     let names = sheets(root.path());
     let keys = |n| format!("voidwalk soil {quote}{}\t\n", begun(n));
-    // Asked once more where it is not the name: on a busy machine fish took one of 720 names up to a space.
-    let with_word = |(n, name): (usize, String)| {
-        let word = last_word(root.path(), &mut terminal, &keys(n));
-        let is_whole = word == name || word.is_empty() || word == begun(n);
-        let word = if is_whole { word } else { last_word(root.path(), &mut terminal, &keys(n)) };
-        (name, word)
-    };
+    let with_word = |(n, name)| (name, last_word(root.path(), &mut terminal, &keys(n)));
     Some(names.into_iter().enumerate().map(with_word).collect())
 }
 
