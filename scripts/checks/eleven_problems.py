@@ -102,7 +102,7 @@ def faults_of_practice(line, hand):
     strictest = min(design, no_erosion)
     if line.startswith("meets") != (d15f <= design and (washed_out is None or washed_out <= strictest)):
         yield "met or not"
-    washed = re.search(r"D15F is ([\d.]+) mm, beyond the limit", line)
+    washed = re.search(r"D15F ([\d.]+) mm without its finest", line)
     if "too coarse without it" in line and not (washed and near(washed[1], washed_out)):
         yield f"D15F after washout is {washed_out:.3g} mm"
     sizes = re.search(r"D15F ([\d.]+) mm, limit ([\d.]+) mm", line)
@@ -115,9 +115,9 @@ def faults_of_practice(line, hand):
         yield f"limit {sizes[2]}"
     beyond = "at least some erosion" if continuing is None or d15f <= continuing else "continuing erosion"
     wanted = "no erosion" if d15f <= no_erosion else beyond
-    said = "criterion of no erosion met" if wanted == "no erosion" else wanted
+    said = "no-erosion criterion met" if wanted == "no erosion" else wanted
     # The limit of a dispersive base is that of no erosion, and taken for design, too.
-    if f"Foster and Fell: {said}" not in line and not (wanted == "no erosion" and "without a margin" in line):
+    if f"Foster and Fell: {said}" not in line and not (wanted == "no erosion" and "note b" in line):
         yield f"Foster and Fell: not {wanted}"
     if wanted.startswith("at least") and "not excluded" not in line:
         yield "nothing of excessive erosion"

@@ -141,6 +141,14 @@ notes! {
         "Whether the base is dispersive is not stated; if it is, D15F must be less than {most_d15f_mm}, and \
          only a test tells how much."
         "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
+    /// A limit of design that is not below the boundary of no erosion of tests.
+    LimitWithoutMargin { most_d15f_mm: f64 } "margin" "rules.md"
+        "The limit of D15F itself, {most_d15f_mm}, has no margin: it is not below the boundary of no erosion \
+         of tests.";
+    /// A base that is not internally stable.
+    UnstableBase { index: f64, finer_percent: f64 } "base stability" "rules.md"
+        "The base is internally unstable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
+         whether the filter is to hold its finer part.";
 
     // The search of a boundary.
     /// One layer of voids thicker than the filter that was asked for.
@@ -222,10 +230,6 @@ notes! {
     /// A second run that may erode though the first does not.
     SecondRunMayErode { most_percent: f64 } "second run" "uncertainty.md"
         "The second run may erode up to {most_percent} of its base, though the first erodes less than 7.5 %.";
-    /// Amounts and thicknesses that were not walked.
-    NotStudied {} "not studied" "uncertainty.md"
-        "How the class changes with the amount of base and the thickness of the filter was not studied."
-        "record.sensitivity and record.thickness study it.";
 
     // What goes in.
     /// A base whose sizes may be micrometres.
@@ -248,6 +252,10 @@ notes! {
     BroadlyGraded { cu: f64 } "unsafe side" "soils.md"
         "The model errs on the unsafe side for a broadly graded base (Cu {cu}): a few coarse grains block \
          for the rest.";
+    /// Amounts and thicknesses that were not walked.
+    NotStudied {} "not studied" "uncertainty.md"
+        "How the class changes with the amount of base and the thickness of the filter was not studied."
+        "record.sensitivity and record.thickness study it.";
     /// A dispersive base.
     DispersiveBase {} "dispersion" "rules.md"
         "The base is dispersive; the model knows its sizes alone.";
@@ -442,10 +450,6 @@ notes! {
     /// A filter of boulders.
     FilterOfBoulders { d50_mm: f64 } "tables" "soils.md"
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
-    /// A base that is not internally stable.
-    UnstableBase { index: f64, finer_percent: f64 } "stability of the base" "rules.md"
-        "The base is internally unstable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
-         whether the filter is to hold its finer part.";
     /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \

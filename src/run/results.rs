@@ -277,17 +277,13 @@ mod tests {
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
         let next = words::next(&coarse, SizeUnit::Mm);
-        let beside = "at most 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not \
-                      stated) and at least ";
+        let beside = "at most 0.700\u{202f}mm (dispersive base: at most 0.500\u{202f}mm) and at least ";
         assert!(next.contains(beside), "{next}");
         let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
-        let beside = " to 0.700\u{202f}mm (0.500\u{202f}mm if the base is dispersive, which is not stated)";
+        let beside = " to 0.700\u{202f}mm (dispersive base: at most 0.500\u{202f}mm)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
         let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
-        let beside = "(if the base is dispersive, which is not stated: less than ";
-        assert!(open.contains(beside), "{open}");
-        let test = "\u{202f}mm, by how much no source that was read says; have the pair tested)";
-        assert!(open.contains(test), "{open}");
+        assert!(open.contains(" (dispersive base: less than "), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
             assert!(
@@ -303,7 +299,7 @@ mod tests {
         assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
         assert!(
             words::practice(&broken, SizeUnit::Mm)
-                .contains("; if the base is dispersive, the limit is 0.500\u{202f}mm, ")
+                .contains("; dispersive base: limit 0.500\u{202f}mm, not kept")
         );
         assert_eq!(
             words::next(&broken, SizeUnit::Mm),
@@ -325,13 +321,13 @@ mod tests {
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
         let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
-        let begin = "take a filter with a D15F of at most 0.860\u{202f}mm (if the base is dispersive, which \
-                     is not stated: at most 0.500\u{202f}mm; have the pair tested) and at least ";
+        let begin = "take a filter with D15F at most 0.860\u{202f}mm (dispersive base: at most \
+                     0.500\u{202f}mm) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
         let design = next(&format!("0.01,0\n0.02,13.07\n0.04,26.14\n{sieved}"));
         assert!(design.starts_with(begin), "{design}");
         let pan = next(sieved);
-        assert!(pan.starts_with(&format!("{begin}0.375\u{202f}mm; for a filter that exists")), "{pan}");
+        assert!(pan.starts_with(&format!("{begin}0.375\u{202f}mm; for an existing filter")), "{pan}");
     }
 
     #[test]

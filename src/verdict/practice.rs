@@ -1,6 +1,6 @@
 //! What the rules of filter practice say of a pair: where the filter stands by all of them, and notes.
 
-use super::rule_result::met_of;
+use super::rule_result::{has_no_margin, met_of};
 use super::tested::{is_beyond_tests, tested};
 use super::washout::washout;
 use crate::outcome::design::retention::retaining;
@@ -18,8 +18,8 @@ pub fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
     }
 }
 
-/// Notes on rules of stability, drainage and placing that are not kept. Rules of retention stand in the line
-/// of practice.
+/// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
+/// Rules of retention stand in the line of practice.
 pub fn notes(rules: &[AppliedRule]) -> Vec<Note> {
     let [unstable, undrained, placing] =
         [RuleRole::Stability, RuleRole::Drainage, RuleRole::Placing].map(|role| broken(rules, role));
@@ -34,10 +34,17 @@ pub fn notes(rules: &[AppliedRule]) -> Vec<Note> {
         limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
         limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
         (!placing.is_empty()).then_some(Note::MaySegregate { quantities }),
+        limit_without_margin(rules).map(|most_d15f_mm| Note::LimitWithoutMargin { most_d15f_mm }),
     ]
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// A limit of design (mm) that is not broken and has no margin.
+fn limit_without_margin(rules: &[AppliedRule]) -> Option<f64> {
+    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies)?;
+    design.limit.filter(|_| design.met != Some(false) && has_no_margin(rules))
 }
 
 /// What practice says of a pair, for programs; `None` where no rule of design was applied.
@@ -191,7 +198,7 @@ mod tests {
             assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
             assert_eq!(standing(&rules), Standing::Met);
             assert_eq!(counts_as(&rules), Some(Verdict::None));
-            assert!(notes(&rules).is_empty());
+            assert!(matches!(notes(&rules)[..], [Note::LimitWithoutMargin { .. }]));
             for (id, wanted) in [(DESIGN, design), (TESTS_NO_EROSION, tests)] {
                 let limit = rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
                 assert!((limit / wanted - 1.0).abs() < 0.01, "{id} {limit}");

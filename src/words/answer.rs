@@ -45,7 +45,10 @@ pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
 /// The class of a walk, and what eroded in each run.
 pub fn model(model: &Model) -> String {
     let part = |of: f64| percent((of / 100.0).max(0.0));
-    let spans: Vec<String> =
-        model.eroded_percent.iter().map(|[low, high]| part(*low).to(part(*high)).to_string()).collect();
-    format!("{}; {} eroded", model.class.words(), spans.join(" then "))
+    let run = |(run, [low, high]): (usize, &[f64; 2])| {
+        let eroded = part(*low).to(part(*high));
+        if run == 0 { format!("{eroded} eroded") } else { format!("run {}: {eroded}", run + 1) }
+    };
+    let runs: Vec<String> = model.eroded_percent.iter().enumerate().map(run).collect();
+    format!("{}; {}", model.class.words(), runs.join(", "))
 }

@@ -16,24 +16,24 @@ pub fn beyond_dispersive(
     let [value, most] =
         beside_limit([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], false, Unit::Size(unit))
             .map(Option::unwrap_or_default);
-    let without = beyond
-        .without_percent
-        .map(|part| format!(" (without the filter's finest {} %)", significant(part).decimals(1)));
+    let without = beyond.without_percent.map(|part| {
+        format!(" (D15F {value} without the filter's finest {} %)", significant(part).decimals(1))
+    });
     let without = without.unwrap_or_default();
-    Some(format!(
-        "if the base is dispersive, the limit is {at_most}{most}, and {value}{without} is beyond it"
-    ))
+    Some(format!("dispersive base: limit {at_most}{most}, not kept{without}"))
 }
 
 /// The limit behind a D15F (mm) that is recommended; `None` where that holds for a dispersive base too.
 pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> Option<String> {
-    const IF: &str = "if the base is dispersive, which is not stated";
-    if limit.at_most {
-        Some(format!("{IF}: {}; {}", dispersive_limit(limit, unit), test(limit, "have the pair tested")))
-    } else {
-        (limit.d15f_max_mm < d15f_mm)
-            .then(|| format!("{} {IF}", length(limit.d15f_max_mm, unit).role(NumberRole::Greatest)))
+    if !limit.at_most && limit.d15f_max_mm >= d15f_mm {
+        return None;
     }
+    let bound = match limit.lacks {
+        Some(DispersiveLack::AnyLimit) => "less than",
+        Some(DispersiveLack::D85B | DispersiveLack::LimitOfDesign) | None => "at most",
+    };
+    let most = length(limit.d15f_max_mm, unit).role(NumberRole::Greatest);
+    Some(format!("dispersive base: {bound} {most}"))
 }
 
 /// The limit of D15F. One that no source gives is never called that of other bases.

@@ -46,7 +46,7 @@ pub fn model_limit(limit: ModelLimit) -> String {
 }
 
 /// What no rule covers, as no text was read that gives its numbers.
-pub const NOT_COVERED: &str = "Not covered by the rules: segregation by D90F and D10F, excessive erosion.";
+pub const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
 
 /// The limits of the model that matter most to a designer, in a line; the page lists all.
 pub fn left_out_line(limits: &[ModelLimit]) -> String {
@@ -281,7 +281,7 @@ mod tests {
         );
         assert!(brief.ends_with(
             "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter. \
-             Not covered by the rules: segregation by D90F and D10F, excessive erosion."
+             Not checked: segregation by D90F and D10F, excessive erosion."
         ));
     }
 }

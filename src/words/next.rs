@@ -68,8 +68,8 @@ impl Pair<'_> {
     /// The filter to take in the place of one that may lose its finer part.
     fn stability(&self) -> String {
         let filter = match self.greatest() {
-            Some((limit, false)) => self.sized(limit) + " that is internally stable",
-            _ => "take a filter that is internally stable".into(),
+            Some((limit, false)) => self.sized("an internally stable filter", limit),
+            _ => "take an internally stable filter".into(),
         };
         // A test of its stability would leave these open.
         let is_open =
@@ -86,7 +86,7 @@ impl Pair<'_> {
                 length(limit, self.unit).role(NumberRole::Greatest)
             ),
             None => format!("take a finer filter; {exists}"),
-            Some((limit, false)) => format!("{}; {exists}", self.sized(limit)),
+            Some((limit, false)) => format!("{}; {exists}", self.sized("a filter", limit)),
         }
     }
 
@@ -94,13 +94,13 @@ impl Pair<'_> {
     fn existing_filter(&self) -> &'static str {
         let is_beyond = |rule: &AppliedRule| rule.id == TESTS_CONTINUING && rule.met == Some(false);
         match self.rules.iter().any(is_beyond) {
-            true => "for a filter that exists, assume continuing erosion",
-            false => "for a filter that exists, have this pair tested",
+            true => "for an existing filter, assume continuing erosion",
+            false => "for an existing filter, have this pair tested",
         }
     }
 
     /// A filter with a D15F of at most this (mm), and of at least what drains the base.
-    fn sized(&self, most: f64) -> String {
+    fn sized(&self, filter: &str, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
             Some(least) if least <= most => {
@@ -109,15 +109,14 @@ impl Pair<'_> {
             // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
             Some(least) if drainage.is_some() => {
                 let least = length(least, self.unit).role(NumberRole::Least).to_string();
-                let compare = "compare the permeabilities of filter and base";
-                (String::new(), Some(format!("to drain the base it would be at least {least}: {compare}")))
+                (String::new(), Some(format!("drainage asks for at least {least}: compare permeabilities")))
             }
             Some(_) | None => (String::new(), None),
         };
         let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
         format!(
-            "take a filter with a D15F of at most {}{beside}{drains}",
+            "take {filter} with D15F at most {}{beside}{drains}",
             length(most, self.unit).role(NumberRole::Greatest)
         )
     }

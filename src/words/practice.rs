@@ -9,7 +9,7 @@ use crate::outcome::record::{
 };
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority, authority_in_brief};
 use crate::verdict::practice::{Standing, broken, headline, is_drainage_unknown, standing};
-use crate::verdict::rule_result::{credit, has_no_margin, met_of, without_margin};
+use crate::verdict::rule_result::{credit, met_of, without_margin};
 use crate::verdict::tested::{self, is_beyond_tests, is_beyond_unclear};
 use crate::verdict::washout::{Washout, washout};
 
@@ -70,9 +70,7 @@ fn of_design(rule: &AppliedRule, rules: &[AppliedRule], unit: SizeUnit) -> Strin
         (None, Some(need)) => missing(*need).map(|missing| format!(" (needs {missing})")),
         _ => None,
     };
-    let has_margin = rule.met == Some(false) || !has_no_margin(rules);
-    let margin = if has_margin { "" } else { ", without a margin" };
-    format!("{d15f}, {limit}{margin}{}", needs.unwrap_or_default())
+    format!("{d15f}, {limit}{}", needs.unwrap_or_default())
 }
 
 /// Other rules of retention that are not kept, where the limit of design has no result.
@@ -100,8 +98,9 @@ fn of_tests(rules: &[AppliedRule], unit: SizeUnit) -> Option<String> {
         limit.map(|limit| format!("{at_most}{limit}"))
     };
     let class = match tested::tested(rules) {
-        TestedClass::None if washout(rules).is_some() => "criterion of no erosion met as placed",
-        TestedClass::None => "criterion of no erosion met",
+        // What is met as placed says nothing of what is left.
+        TestedClass::None if washout(rules).is_some() => return None,
+        TestedClass::None => "no-erosion criterion met",
         TestedClass::Unknown if !is_beyond_tests(rules) => return None,
         _ => tested_class(rules),
     };
@@ -144,7 +143,7 @@ pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
 
 /// D15F of a filter without the finer part that it may lose.
 fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
-    let more = if washout.is_capped() { "; more may go" } else { "" };
+    let more = if washout.is_capped() { " or more" } else { "" };
     let d15f = match washout.unit {
         "mm" => {
             let numbers = [Some(washout.left.d15f), Some(washout.least)];
@@ -153,10 +152,10 @@ fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
         name => format!("{} {name}", significant(washout.left.d15f).decimals(3)),
     };
     format!(
-        "without its finest {} % (by {}{more}) D15F is {d15f}, beyond the limit{}",
+        "D15F {d15f} without its finest {} %{more} ({}){}",
         significant(washout.left.percent).decimals(1),
         authority_in_brief(washout.by),
-        if washout.continues() { " and the boundary of continuing erosion" } else { "" }
+        if washout.continues() { ", beyond the continuing-erosion boundary" } else { "" }
     )
 }
 
@@ -243,11 +242,7 @@ mod tests {
             assert_eq!(pair.headline == Some(Headline::MeetsUnlessDispersive), breaks);
             let line = practice_line(&pair.rules, pair.if_dispersive, Some(d15f), SizeUnit::Mm);
             assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
-            assert_eq!(
-                line.contains("if the base is dispersive, the limit is 0.500\u{202f}mm"),
-                breaks,
-                "{line}"
-            );
+            assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
         }
         assert_eq!(headline(&rules(&filter(0.61), &base, true), false), Some(Headline::DoesNotMeet));
     }
