@@ -319,15 +319,15 @@ def look(browser, url, pictures, workbook, root, process, binary):
 
     tab.drop("more", "coarse.csv", COARSE.encode())
     tab.until("document.querySelectorAll('#more li').length === 1")
-    tab.click("#compare")
+    tab.click("#judge-all")
     tab.until("document.querySelectorAll('.job').length === 3")
     tab.job(0, "done", 60)
-    tab.picture("14-compared")
-    tab.readable("14-compared")
+    tab.picture("14-filters")
+    tab.readable("14-filters")
     page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
     report.browser.show(report.tab, page, 1280, 900)
     if report.run("document.querySelectorAll('.cases a').length") != 2:
-        raise SystemExit("the comparison links no page of its cases")
+        raise SystemExit("the table links no page of its walks")
     report.picture("15-its-page")
     size = tab.run("fetch(document.querySelectorAll('.job')[0].querySelectorAll('.actions a')[1].href).then(a => a.blob()).then(b => b.size)")
     if size < 20_000:
@@ -363,7 +363,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.until("!document.querySelector('#gone').hidden", 15)
     tab.picture("18-the-program-has-ended")
     left = sorted(entry.name for entry in (root / "served").iterdir() if not entry.name.startswith("."))
-    if left != ["compare-3", "design-4", "run-1", "run-2", "serve.json", "sheets"]:
+    if left != ["batch-3", "design-4", "run-1", "run-2", "serve.json", "sheets"]:
         raise SystemExit(f"left behind: {left}")
 
 

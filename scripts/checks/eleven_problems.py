@@ -4,7 +4,7 @@
     scripts/checks/eleven_problems.py [--binary target/release/voidwalk] [--only a,b2] [--pictures DIR] [--out results/eleven-problems.md]
                                       [--set network.nx=8 ...]
 
-Writes the soils of each problem as sheets (`trial_sheets.py` has them), runs `judge`, `design` or `compare` as somebody would who gives no
+Writes the soils of each problem as sheets (`trial_sheets.py` has them), runs `judge` or `design` as somebody would who gives no
 density, and takes what the program says first, its seconds and its exit code. By hand: D15F by logarithmic interpolation, the limit of design by
 category after regrading on 4.75 mm, and the boundaries of no and of continuing erosion. A problem is equal where the numbers in the program's
 lines are these within 1 %, where it says "met" or "not met" as the limit has it, and, of `design`, where no answer is beyond the strictest limit.
@@ -41,7 +41,9 @@ PROBLEMS = {
     "f2": ("C33, middle, on No. 57 stone", "C33_MID", ["NO_57"], ["judge"]),
     "g": ("design: a filter of the shape of C33 for the till", "TILL", ["C33_MID"], ["design"]),
     "h": ("design: a filter of the library for the silty fine sand", "SILTY_SAND", [], ["design", "--filter", "cu1.5-loose"]),
-    "k": ("compare: No. 8, No. 57 and C33 on the silty fine sand", "SILTY_SAND", ["NO_8", "NO_57", "C33_MID"], ["compare"]),
+    "k1": ("No. 8 on the silty fine sand", "SILTY_SAND", ["NO_8"], ["judge"]),
+    "k2": ("No. 57 on the silty fine sand", "SILTY_SAND", ["NO_57"], ["judge"]),
+    "k3": ("C33 on the silty fine sand", "SILTY_SAND", ["C33_MID"], ["judge"]),
 }
 
 # Words that say nothing to who signs the page, and places that no report can cite.
@@ -51,7 +53,7 @@ PROGRAM_WORDS = re.compile(
 
 # A sheet has its rules, its sizes and its figure on the first page.
 FIRST_PAGE = {"judge": ["Figure 1.", "D15", "D85", "Group by ASTM D2487", "Rules of practice", "it leaves out "],
-              "design": ["Figure 1.", "D15F", "it leaves out "], "compare": ["Practice", "Model (research)", "Next", "it leaves out "]}
+              "design": ["Figure 1.", "D15F", "it leaves out "]}
 
 
 def continuing_limit(base):
@@ -137,8 +139,7 @@ class Problem:
             (folder / f"{sheet}.csv").write_bytes(csv([["Opening (mm)", "% passing"], *map(list, getattr(soils, sheet))]))
         files = [f"{one}.csv" for one in filters]
         command, *flags = self.call
-        self.args = {"judge": [command, f"{base}.csv", *files, *flags], "compare": [command, "--base", f"{base}.csv", *files, *flags],
-                     "design": [command, f"{base}.csv", *(["--filter", *files] if files else []), *flags]}[command]
+        self.args = {"judge": [command, f"{base}.csv", *files, *flags], "design": [command, f"{base}.csv", *(["--filter", *files] if files else []), *flags]}[command]
         self.args += [word for one in options.set for word in ("--set", one)]
         self.faults = []
 
@@ -175,7 +176,7 @@ class Problem:
 
     def look(self, pictures):
         """Prints and pictures of the page; what breaks there is a fault."""
-        page = self.folder / self.name / {"judge": "report.html", "design": "design.html", "compare": "compare.html"}[self.call[0]]
+        page = self.folder / self.name / {"judge": "report.html", "design": "design.html"}[self.call[0]]
         for suffix, how in (("1280.png", ["1280"]), ("390.png", ["390"]), ("dark.png", ["1280", "dark"]), ("a4.pdf", ["a4"]), ("letter.pdf", ["letter"])):
             out = pictures / f"{self.name}-{suffix}"
             done = subprocess.run(["sh", BROWSER, page, out, *how], capture_output=True, text=True)

@@ -81,12 +81,7 @@ WORKS = {
     ),
     "campaign": (["campaign", "plan.toml", "--out", "r", "-q", *EVERY], None, ["r"]),
     "judge": (["judge", "base.csv", "filter.csv", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
-    "compare": (["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
-    "compare-overwrite": (
-        ["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", "--overwrite", *TABLES, *EVERY],
-        ["compare", "--filter", "filter.csv", "base.csv", "other.csv", "--out", "r", "-q", *TABLES],
-        ["r"],
-    ),
+    "filters": (["judge", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
     "batch": (["judge", "base.csv", "filter.csv", "other.csv", "--each", "--out", "r", "-q", *TABLES, *EVERY], None, ["r"]),
     "constrictions": (["constrictions", "grains.csv", "--out", "r"], None, ["r"]),
     "constrictions-overwrite": (
@@ -133,8 +128,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
          "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "compare.json", "batch.json", "designs.json", "case.json")
-PAGES = ("report.html", "precision.html", "design.html", "specification.html", "compare.html", "batch.html", "designs.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
+PAGES = ("report.html", "precision.html", "design.html", "specification.html", "batch.html", "designs.html")
 
 
 class Find(Exception):
@@ -531,7 +526,7 @@ class Trial:
             "run": ["run", "run.toml", "--out", "r", "-q"],
             "pack": ["pack", "pack.toml", "--out", "r", "-q"],
             "campaign": ["campaign", "plan.toml", "--out", "r", "-q"],
-            "compare": ["compare", "--base", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES],
+            "filters": ["judge", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES],
             "batch": ["judge", "base.csv", "filter.csv", "--each", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],

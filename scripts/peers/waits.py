@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Prints how long a user waits for `judge`, `design` and `compare` of real pairs, from two sheets to the page, in Markdown.
+"""Prints how long a user waits for `judge` and `design` of real pairs, from two sheets to the page, in Markdown.
 
     scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
 
 The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
 programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
-which asks for the right to), so that other work takes no turns from them, though it shares their caches. `compare` takes the soil and the
+which asks for the right to), so that other work takes no turns from them, though it shares their caches. `judge` with three filters takes the soil and the
 first three of the six filters.
 """
 
@@ -36,7 +36,7 @@ def commands(folder):
         "judge --quick": ["judge", base, of_filter, "--quick"],
         "judge": ["judge", base, of_filter],
         "design": ["design", base, "--filter", of_filter],
-        "compare, three filters": ["compare", "--base", base, *others, "--quick"],
+        "judge, three filters": ["judge", base, *others, "--quick"],
     }
 
 

@@ -23,7 +23,6 @@ ROOTS = {
     "outcome": "Outcome",
     "network-walk": "WalkOutcome",
     "design": "Design",
-    "comparison": "Comparison",
     "percolation": "PercolationStudy",
     "rules": "PairRules",
     "soils": "Soils",

@@ -8,7 +8,7 @@ pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, Wal
 pub use super::study_args::{
     CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs, PrecisionArgs,
 };
-use super::values::{assignment, density, form, length, threads};
+use super::values::{density, form, length, threads};
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
 use crate::store::format::Format;
@@ -29,8 +29,6 @@ pub enum Command {
     Run(RunArgs),
     /// Judge a base and a filter by their sieve tables: find the constrictions, walk, and write the page
     Judge(JudgeArgs),
-    /// Compare filters on one base, bases on one filter, or scenes
-    Compare(CompareArgs),
     /// Open a page in the browser of this machine: curves, rules, walks and verdicts of dropped sheets
     #[cfg(feature = "serve")]
     Serve(ServeArgs),
@@ -103,23 +101,16 @@ pub struct RulesArgs {
     /// --each also a folder of tables
     pub base: PathBuf,
     /// The filter: a sieve table, as filter.sieve in a scene; several soils are the curves of an envelope.
-    /// With --each one or several filters
+    /// Several filters make one table
     #[arg(required = true, value_name = "FILTER")]
     pub filters: Vec<PathBuf>,
     /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: one
     /// table, and the samples that govern
     #[arg(long, conflicts_with = "json")]
     pub each: bool,
-    /// With --each: write the table into this new file
-    #[arg(long, value_name = "FILE.csv", requires = "each")]
+    /// With --each or several filters: write the table into this new file
+    #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
-    /// With --each: walk the three samples that govern each filter, as compare does, into folders in here.
-    /// The same command continues what was stopped; a folder with other walks is refused
-    #[arg(long, value_name = "DIR", requires = "each")]
-    pub walk: Option<PathBuf>,
-    /// With --walk: replace a setting of the walks, for example --set replicates=20; can be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment, requires = "walk")]
-    pub settings: Vec<String>,
     /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,
@@ -212,7 +203,8 @@ pub struct JudgeArgs {
     /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils. With --each also a
     /// folder of tables
     pub base: PathBuf,
-    /// The filter, in the same form. With --each one or several filters
+    /// The filter, in the same form. Several filters are walked one by one into one table, in --out
+    /// [default: voidwalk-batch]
     #[arg(required = true, value_name = "FILTER")]
     pub filters: Vec<PathBuf>,
     /// Take every soil of BASE as a sample of its own: a first look at each, the three samples that govern
@@ -231,35 +223,6 @@ pub struct JudgeArgs {
     /// Where the results go, and how it is walked.
     #[command(flatten)]
     pub results: ResultArgs,
-}
-
-/// What is compared, and where the answer goes.
-#[derive(Debug, Args)]
-pub struct CompareArgs {
-    /// Two to six filters with --base, bases with --filter, or scenes (TOML) with neither
-    #[arg(required = true)]
-    pub files: Vec<PathBuf>,
-    /// The one base, for all filters: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
-    #[arg(long, value_name = "FILE", conflicts_with = "filter")]
-    pub base: Option<PathBuf>,
-    /// The one filter, for all bases, in the same form
-    #[arg(long, value_name = "FILE")]
-    pub filter: Option<PathBuf>,
-    /// How tables become scenes.
-    #[command(flatten)]
-    pub tables: TableArgs,
-    /// Folder for the results: new, empty, or with a stopped comparison, which continues
-    #[arg(long, value_name = "DIR", default_value = "voidwalk-compare")]
-    pub out: PathBuf,
-    /// Replace an earlier comparison in --out; shared cases are kept
-    #[arg(long)]
-    pub overwrite: bool,
-    /// Which verdicts are not accepted, of any case.
-    #[command(flatten)]
-    pub accept: AcceptArgs,
-    /// How it is walked.
-    #[command(flatten)]
-    pub walk: WalkArgs,
 }
 
 /// Where the page is, and how its jobs are walked.

@@ -1,45 +1,29 @@
-//! `voidwalk rules --each`: many samples of a base against one or several filters, in one table.
+//! `voidwalk rules` of several filters, or with --each of many samples of a base: in one table.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::args::RulesArgs;
-use super::compare::{show, walked};
 use super::print::{plain, shown, to_copy, to_stdout};
-use super::run::command_line;
-use super::values::{of_soils, with_options};
-use crate::campaign::CampaignOptions;
-use crate::outcome::comparison::Comparison;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
-use crate::run::{PrepareOptions, RunError, write_new};
-use crate::scene::TableOptions;
-use crate::study::compare::{self, ComparePlan, Compared};
+use crate::run::{RunError, write_new};
 use crate::study::refuse_twice;
 use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
 use crate::words::batch::{columns, of_filter as filter_lines};
 
-/// Why several filters are refused.
-pub(super) const SEVERAL_FILTERS: &str =
-    "several filters go with --each, which takes every soil of the base by itself";
-
-impl RulesArgs {
-    /// What the scenes of the walks are given besides the soils.
-    ///
-    /// # Errors
-    /// A setting is given by an option of its own and by --set, too.
-    fn changes(&self) -> Result<Vec<String>, RunError> {
-        with_options(&self.settings, of_soils(self.dispersive, self.joint_mm))
-    }
-}
-
 /// Applies every rule to each sample and each filter.
 pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
+    if args.json {
+        return Err(RunError::refused("--json goes with one filter, without --each"));
+    }
     refuse_twice(&args.filters)?;
     let table = BatchTable::read(&args.base, &args.filters, options).map_err(RunError::refused)?;
+    if !args.each {
+        table.one_base(&args.base).map_err(RunError::Refused)?;
+    }
     let rows = &table.rows;
-    let walks = walks(args, rows)?;
     if let Some(path) = &args.csv {
         let csv = columns(SizeUnit::Mm).csv(rows);
         // A call that continues finds the table that it wrote.
@@ -54,18 +38,12 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
     for filter in &table.filters {
         text.push('\n');
         text += &of_filter(rows, filter, false);
-        text += &to_walk(rows, Path::new(&filter.name), args.walk.is_some());
+        text += &to_walk(args, rows, Path::new(&filter.name));
     }
     if let Some(path) = &args.csv {
         text += &format!("\n{}\n", shown(path));
     }
     to_stdout(&text);
-    for walk in &walks {
-        to_stdout(&format!("\n{}\n", plain(&shown(&walk.filter))));
-        let walked = || walked(&walk.plan, &walk.options, false, false);
-        let comparison = walk.found.clone().map_or_else(walked, Ok)?;
-        show(&walk.plan, &comparison, &walk.options.out);
-    }
     Ok(())
 }
 
@@ -73,39 +51,6 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
 pub(super) fn in_notes(notes: &[String]) -> String {
     let lines = notes.iter().map(|note| format!("note  {}\n", plain(note))).collect::<String>();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
-}
-
-/// Samples that govern a filter, to be walked as `voidwalk compare` does.
-struct PlannedWalk {
-    filter: PathBuf,
-    plan: ComparePlan,
-    options: CampaignOptions,
-    /// What is walked already.
-    found: Option<Comparison>,
-}
-
-/// The walks of all filters that have samples to compare, each found sound before anything is written.
-fn walks(args: &RulesArgs, rows: &[BatchRow]) -> Result<Vec<PlannedWalk>, RunError> {
-    let Some(folder) = &args.walk else { return Ok(Vec::new()) };
-    let tables =
-        TableOptions { as_given: args.as_given, changes: args.changes()?, ..TableOptions::default() };
-    let mut walks = Vec::new();
-    for (at, filter) in args.filters.iter().enumerate() {
-        let bases = paths(rows, filter);
-        if bases.len() > 1 {
-            let stem = filter.file_stem().unwrap_or_default().to_string_lossy();
-            let options = CampaignOptions {
-                out: folder.join(format!("{}-{stem}", at + 1)),
-                packings: Some(PrepareOptions::default().packings),
-                command: command_line(),
-                ..CampaignOptions::default()
-            };
-            let plan = ComparePlan::new(&Compared::Bases { filter: filter.clone(), bases }, &tables)?;
-            let found = compare::found(&plan, &options)?;
-            walks.push(PlannedWalk { filter: filter.clone(), plan, options, found });
-        }
-    }
-    Ok(walks)
 }
 
 /// The samples that govern a filter, as a command line names them.
@@ -142,17 +87,16 @@ pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -
     lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
 }
 
-/// The command that walks the samples that govern, or that nothing was walked.
-fn to_walk(rows: &[BatchRow], filter: &Path, is_walked: bool) -> String {
+/// The command that walks the samples that govern.
+fn to_walk(args: &RulesArgs, rows: &[BatchRow], filter: &Path) -> String {
     let paths: Vec<String> = paths(rows, filter).iter().map(to_copy).collect();
-    let walk = match paths.len() {
-        0 if is_walked => return "  Nothing was walked, as no sample has a limit.\n".into(),
+    let (which, walk) = match paths.len() {
         0 => return String::new(),
-        // One sample is nothing to compare.
-        1 => format!("voidwalk judge {} {}", paths[0], to_copy(filter)),
-        _ if is_walked => return String::new(),
-        _ => format!("voidwalk compare --filter {} {}", to_copy(filter), paths.join(" ")),
+        1 => ("the one that governs", format!("{} {}", paths[0], to_copy(filter))),
+        _ => {
+            let samples = to_copy(&args.base);
+            ("those that govern", format!("{samples} {} --each --governing", to_copy(filter)))
+        }
     };
-    let which = if paths.len() == 1 { "the one that governs" } else { "those that govern" };
-    format!("  Nothing was walked. To walk {which}: {walk}\n")
+    format!("  Nothing was walked. To walk {which}: voidwalk judge {walk}\n")
 }

@@ -13,7 +13,7 @@ use super::groups::with_groups;
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 20] = [
+const EXAMPLES: [(&str, [Example; 2]); 19] = [
     (
         "run",
         [
@@ -28,14 +28,7 @@ const EXAMPLES: [(&str, [Example; 2]); 20] = [
         "judge",
         [
             ["voidwalk judge base.csv filter.csv --quick", "a first look: five replicates, loose and dense"],
-            ["voidwalk judge \"site.xlsx#Core\" \"site.xlsx#Filter A\" --pack", "the filter packed"],
-        ],
-    ),
-    (
-        "compare",
-        [
-            ["voidwalk compare --base base.csv fine.csv coarse.csv", "two filters on one base"],
-            ["voidwalk compare --filter filter.csv core.csv shell.csv --quick", "two bases on one filter"],
+            ["voidwalk judge base.csv fine.csv coarse.csv", "two filters, in one table"],
         ],
     ),
     (

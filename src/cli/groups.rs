@@ -8,7 +8,7 @@ use clap::Command;
 /// The commands that are listed, by what one has at hand.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("To begin", &["examples", "serve", "soil"]),
-    ("Two sieve tables", &["rules", "judge", "compare", "design"]),
+    ("Two sieve tables", &["rules", "judge", "design"]),
     ("A scene", &["init", "check", "run", "resume"]),
     ("Many cases, and results", &["campaign", "report", "export"]),
 ];

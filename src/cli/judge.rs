@@ -1,7 +1,6 @@
 //! `voidwalk judge`: two sieve tables in, the whole answer out.
 
 use super::args::{JudgeArgs, TableArgs};
-use super::batch::SEVERAL_FILTERS;
 use super::judge_each::judge_each;
 use super::print::{shown, to_stdout};
 use super::progress::followed;
@@ -34,9 +33,8 @@ impl TableArgs {
 /// Judges a base and a filter.
 pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     let filter = match &args.filters[..] {
-        _ if args.each => return judge_each(args),
-        [filter] => filter,
-        _ => return Err(RunError::refused(SEVERAL_FILTERS)),
+        [filter] if !args.each => filter,
+        _ => return judge_each(args),
     };
     let (tables, quiet) = (&args.tables, args.results.walk.quiet);
     let scene = Scene::of_tables(&args.base, filter, &tables.options()?)?;

@@ -1,14 +1,15 @@
-//! `voidwalk judge --each`: many samples against one or several filters, walked, in one table.
+//! `voidwalk judge` of several filters, or with --each of many samples: walked, in one table.
 
 use std::fmt::Write;
 use std::path::Path;
 
-use super::args::JudgeArgs;
+use super::args::{JudgeArgs, SettingArgs, WalkArgs};
 use super::batch::{aligned, in_notes, of_filter};
 use super::case_progress::CaseProgress;
-use super::compare::{campaign_options, of_earlier_cover};
 use super::exit::{JudgedAnswer, accept_walked};
 use super::print::{as_it_is, json, plain, shown, to_stdout};
+use super::run::command_line;
+use crate::campaign::{CampaignOptions, CasePart};
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
@@ -23,13 +24,18 @@ const OUT: &str = "voidwalk-batch";
 /// Judges every sample and every filter.
 pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let (tables, results) = (&args.tables, &args.results);
+    #[cfg(feature = "xlsx")]
+    if results.xlsx {
+        return Err(RunError::refused("--xlsx goes with one filter"));
+    }
     let quiet = results.walk.quiet;
     let out = results.out.as_deref().unwrap_or(Path::new(OUT));
     let options = campaign_options(out, &tables.set, &results.walk);
-    let walks = match (args.governing, tables.quick) {
-        (true, _) => BatchWalks::GoverningAlone,
-        (false, true) => BatchWalks::FirstLook,
-        (false, false) => BatchWalks::GoverningInFull,
+    let walks = match (args.each, args.governing, tables.quick) {
+        (false, ..) => BatchWalks::OneBase,
+        (true, true, _) => BatchWalks::GoverningAlone,
+        (true, false, true) => BatchWalks::FirstLook,
+        (true, false, false) => BatchWalks::GoverningInFull,
     };
     let rules =
         PairOptions { dispersive: tables.dispersive, joint_mm: tables.joint_mm, as_given: tables.as_given };
@@ -61,6 +67,30 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     accept_walked(results.accept.fail_on, pairs)
 }
 
+/// How cases are walked that options of the command line describe.
+fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CampaignOptions {
+    CampaignOptions {
+        out: out.to_owned(),
+        part: CasePart::All,
+        packings: Some(set.packings.clone()),
+        memory: set.memory,
+        threads: walk.threads,
+        checkpoint_interval: walk.checkpoint_every.unwrap_or_default(),
+        command: command_line(),
+    }
+}
+
+/// That so many walks were kept with the cover of an earlier call, in a line; nothing where none was.
+fn of_earlier_cover(walks: usize) -> String {
+    match walks {
+        0 => String::new(),
+        1 => "1 walk was kept from an earlier call; its own page has the cover of that call\n".into(),
+        _ => format!(
+            "{walks} walks were kept from an earlier call; their own pages have the cover of that call\n"
+        ),
+    }
+}
+
 fn name(row: &WalkedRow) -> String {
     format!("{} in {}", row.rules.sample, row.rules.filter)
 }
@@ -68,8 +98,14 @@ fn name(row: &WalkedRow) -> String {
 fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     let unit = SizeUnit::of(false, batch.inches);
     let mut text = aligned(walked_columns(unit), &batch.rows) + &in_notes(&batch.notes);
+    if !batch.base.is_empty() {
+        text.push('\n');
+        for row in &batch.rows {
+            let _ = writeln!(text, "{}", plain(&format!("{}: {}", row.rules.filter, answer(row))));
+        }
+    }
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
-    for filter in &batch.filters {
+    for filter in batch.filters.iter().filter(|_| batch.base.is_empty()) {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
         for said in walks(batch, &filter.name, unit) {

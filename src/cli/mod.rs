@@ -8,7 +8,6 @@ mod campaign;
 mod case_progress;
 mod check;
 mod check_plan;
-mod compare;
 mod constrictions;
 mod design;
 mod design_each;
@@ -98,7 +97,6 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
     match arguments.command {
         Command::Run(args) => run::run(&args),
         Command::Judge(args) => judge::judge(&args),
-        Command::Compare(args) => compare::compare(&args),
         #[cfg(feature = "serve")]
         Command::Serve(args) => serve::serve(&args),
         Command::Resume(args) => run::resume(&args),

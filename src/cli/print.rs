@@ -6,14 +6,12 @@ use std::sync::OnceLock;
 
 use serde::Serialize;
 
-use crate::outcome::BaseSize;
-use crate::outcome::quantity::{SizeUnit, THIN};
+use crate::outcome::quantity::THIN;
 pub use crate::outcome::quantity::{percent, whole};
 use crate::run::RunError;
 use crate::store::format::Format;
 pub use crate::text::plain;
 use crate::text::shell_word;
-use crate::words::base_size;
 
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
@@ -63,11 +61,6 @@ pub fn to_copy(word: impl AsRef<Path>) -> String {
 /// A path made safe for a terminal.
 pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
-}
-
-/// Which base a D15F/D85B is of, in brackets; nothing where sizes have no unit.
-pub fn of_base(base: Option<BaseSize>) -> String {
-    base.map_or(String::new(), |base| format!(" ({})", base_size(&base, SizeUnit::Mm)))
 }
 
 /// A record in its form, as its file says it.

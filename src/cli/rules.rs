@@ -1,7 +1,7 @@
 //! `voidwalk rules`: what filter practice says of two soils, without a walk.
 
 use super::args::RulesArgs;
-use super::batch::{SEVERAL_FILTERS, each};
+use super::batch::each;
 use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::quantity::{SizeUnit, significant};
@@ -26,10 +26,12 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let options =
         PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
     let filter = match &args.filters[..] {
-        _ if args.each => return each(args, options),
-        [filter] => filter,
-        _ => return Err(RunError::refused(SEVERAL_FILTERS)),
+        [filter] if !args.each => filter,
+        _ => return each(args, options),
     };
+    if args.csv.is_some() {
+        return Err(RunError::refused("--csv goes with --each, or with several filters"));
+    }
     let bases = curves_in_file(&args.base, None).map_err(RunError::refused)?;
     let filters = curves_in_file(filter, None).map_err(RunError::refused)?;
     let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {

@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use super::soil::Soils;
 use crate::campaign::PlanCheck;
 use crate::constrictions::Summary;
-use crate::outcome::comparison::Comparison;
 use crate::outcome::design::{Design, Specification};
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::network_walk::NetworkWalkRecord;
@@ -31,7 +30,6 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::DESIGN, of::<Design>()),
         (format::DESIGNS, of::<DesignedSamples>()),
         (format::SPECIFICATION, of::<Specification>()),
-        (format::COMPARISON, of::<Comparison>()),
         (format::BATCH, of::<WalkedBatch>()),
         (format::CAMPAIGN, of::<Campaign>()),
         (format::CASE, of::<LedgerLine>()),

@@ -12,7 +12,7 @@ const TO_TRY: [[&str; 2]; 9] = [
     ["voidwalk rules base.csv filter.csv", "every rule of practice"],
     ["voidwalk rules borrow-area.ags filter-fine.csv filter.csv --each", "many samples, two filters"],
     ["voidwalk judge base.csv filter.csv --quick", "rules and walk, and a page"],
-    ["voidwalk compare --base base.csv filter-fine.csv filter.csv --quick", "two filters side by side"],
+    ["voidwalk judge base.csv filter-fine.csv filter.csv --quick", "two filters, in one table"],
     ["voidwalk design base.csv --filter filter.csv", "how coarse such a filter may be"],
     ["voidwalk run scene.toml --out scene", "the scene"],
     ["voidwalk campaign plan.toml", "the plan"],

@@ -3,9 +3,6 @@
 #[doc = include_str!("soils.md")]
 pub mod soils {}
 
-#[doc = include_str!("compare.md")]
-pub mod compare {}
-
 #[doc = include_str!("serve.md")]
 pub mod serve {}
 

@@ -17,7 +17,7 @@
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`undecided`] is what leaves a verdict open.
-//! - [`precision`] is error against run time; [`comparison`] is several cases side by side.
+//! - [`precision`] is error against run time.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
 //!   [`quantity`] is the way from a number to text.
@@ -26,7 +26,6 @@ mod applied;
 mod base_size;
 pub mod by_connectivity;
 pub(crate) mod by_void;
-pub mod comparison;
 mod curve_range;
 pub mod design;
 pub mod digest;

@@ -8,11 +8,12 @@ use super::cases;
 use super::cover::program;
 use super::error::ReportError;
 use super::figures::{
-    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, ORANGE, PURPLE, Point, Rule, Shape, VERMILLION,
-    positive_range, shorten,
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, Line, ORANGE, PURPLE, Point, Rule, Shape,
+    VERMILLION, positive_range, shorten,
 };
 use super::files::json;
 use super::names::{is_named, note_words, soil_name, titled, told_apart};
+use super::run_figures::size_axis;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -83,7 +84,7 @@ fn key(batch: &WalkedBatch) -> Markup {
 
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
-        (titled("Samples", &batch.samples))
+        (titled(if batch.base.is_empty() { "Samples" } else { "Base" }, &batch.samples))
         @match &batch.filters[..] {
             [only] => @if is_named("filter", &only.name) { ", " (titled("filter", &only.name)) },
             all => {
@@ -107,13 +108,17 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
          of its own with its report; " code { "batch.json" } " holds this page’s numbers, "
         code { "batch.csv" } " its table with further columns."
     } };
-    Sections::new("Samples against filters", "Which samples do these filters hold?", &names)
+    let (kind, question) = match batch.base.is_empty() {
+        true => ("Samples against filters", "Which samples do these filters hold?"),
+        false => ("Filters of one base", "Which of these filters hold this base?"),
+    };
+    Sections::new(kind, question, &names)
         .model()
         .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
         .words(&first)
         .contents()
         .words(&html! { h2 { "Figures" } })
-        .figures([limits(batch), eroded(batch)].into_iter().flatten())
+        .figures([curves(batch), limits(batch), eroded(batch)].into_iter().flatten())
         .section("Samples", &table(folder, batch))
         .section("Notes on the files", &notes(batch))
         .section("How this was made", &made)
@@ -129,13 +134,24 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (d15f(&rules).unwrap_or("not known".into())) }
         ul {
-            li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
-            @for (at, said) in walks.iter().enumerate() {
-                li {
-                    @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
+            @if batch.base.is_empty() {
+                li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
+                @for (at, said) in walks.iter().enumerate() {
+                    li {
+                        @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
+                    }
+                }
+                @for row in batch.governing(&filter.name) {
+                    li {
+                        @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
+                        bdi { (name(&row.rules.sample)) } ": " (limit_and_answer(folder, row, batch.inches))
+                    }
+                }
+            } @else {
+                @for row in batch.of_filter(&filter.name) {
+                    li { (limit_and_answer(folder, row, batch.inches)) }
                 }
             }
-            @for row in batch.governing(&filter.name) { li { (governs(folder, row, batch.inches)) } }
             @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: the worst of them counts for each \
@@ -154,14 +170,13 @@ fn d15f(rules: &[BatchRow]) -> Option<String> {
     beside.max_by_key(String::len)
 }
 
-/// A sample that governs: its limit, D15F beside it, and what its walk says.
-fn governs(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
+/// The limit of a sample, D15F beside it, and the answer.
+fn limit_and_answer(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
     let unit = SizeUnit::of(false, inches);
     let [d15f, limit] = d15f_and_limit(rules, unit).map(|size| size.unwrap_or("not known".into()));
     html! {
-        @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
-        bdi { (name(&rules.sample)) } ": D15F up to " (limit) @if rules.limit_at_most { " at most" }
+        "D15F up to " (limit) @if rules.limit_at_most { " at most" }
         @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
         ", here " (d15f)
         ": " (clean(&answer(row)))
@@ -204,14 +219,49 @@ fn notes(batch: &WalkedBatch) -> Markup {
     }
 }
 
-/// The limit of every sample against its D85B, with the D15F of the filters; none without a limit.
+/// The curves of one base and of its filters, with the limits of D15F by practice; none of many samples.
+fn curves(batch: &WalkedBatch) -> Option<Drawn> {
+    let filters =
+        || batch.filters.iter().flat_map(|filter| filter.gradations.iter().map(move |of| (filter, of)));
+    let limit = batch.rows.iter().filter_map(|row| row.rules.limit_mm).reduce(f64::min);
+    let drains = batch.rows.iter().filter_map(|row| row.rules.d15f_min_mm).reduce(f64::max);
+    let marked = [(limit, "limit", VERMILLION), (drains, "drains", GREEN)];
+    let marked = || marked.iter().filter_map(|(mm, name, colour)| Some(((*mm)?, *name, *colour)));
+    if batch.base.is_empty() {
+        return None;
+    }
+    let sizes = batch.base.iter().chain(filters().flat_map(|(_, rows)| rows)).map(|row| row[0]);
+    let x = size_axis(false, sizes.chain(marked().map(|(mm, ..)| mm)));
+    let what = "Percent finer by mass against size of the base as sampled and of every filter, with the \
+                limits of D15F";
+    let mut figure = Figure::new("Gradations", what, "", x, Axis::percent("Percent finer (%)"))
+        .sizes((720.0, 460.0), (358.0, 400.0))
+        .sheet((680.0, 350.0))
+        .sieves();
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
+    for (mm, name, colour) in marked() {
+        let line = Line::new(vec![(mm, 11.0), (mm, 19.0)], colour);
+        figure.add(line.width(3.0).stays().label(name));
+    }
+    figure.add(Line::of_rows(&batch.base, VERMILLION).width(2.6).label("base, as sampled"));
+    for ((filter, rows), (colour, dash)) in filters().zip(LINES.iter().cycle()) {
+        let label = shorten(&filter_name(batch, &filter.name), 24);
+        figure.add(Line::of_rows(rows, *colour).width(2.0).dash(*dash).label(&label));
+    }
+    let caption = "Gradations by mass. Short lines: the maximum D15F that retains the base (limit), and the \
+                   minimum D15F that drains it (drains).";
+    Some(Drawn::new("batch-curves", figure, caption))
+}
+
+/// The limit of every sample against its D85B, with the D15F of the filters; none without a limit, or of one
+/// base.
 fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     // A limit is the sample's: filters only differ where rules ask for more of one.
     let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
     let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
     let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
     let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
-    if rows.is_empty() {
+    if rows.is_empty() || !batch.base.is_empty() {
         return None;
     }
     let filters =
@@ -283,7 +333,12 @@ mod tests {
 
     #[test]
     fn filters_of_one_name_have_a_key() {
-        let filter = |name: &str| BatchFilter { name: name.into(), curves: vec!["f".into()], d15f_mm: None };
+        let filter = |name: &str| BatchFilter {
+            name: name.into(),
+            curves: vec!["f".into()],
+            d15f_mm: None,
+            gradations: Vec::new(),
+        };
         let of = |names: &[&str]| {
             let filters = names.iter().map(|name| filter(name)).collect();
             key(&WalkedBatch::new("s.csv".into(), filters, Vec::new())).into_string()

@@ -1,4 +1,4 @@
-//! What campaigns and comparisons show of a case among others: its class with a link, and both runs of all.
+//! What campaigns and batches show of a case among others: its class with a link, and both runs of all.
 
 use std::path::Path;
 

@@ -4,9 +4,8 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time; [`write_comparison()`] that of several cases side by side, [`write_batch()`]
-//! that of many samples against filters, [`write_design()`] that of a design, [`write_designs()`]
-//! that of the designs of many samples, and [`write_specification()`] that of a specification by
+//! against run time; [`write_batch()`] that of many samples against filters, [`write_design()`] that of a
+//! design, [`write_designs()`] that of the designs of many samples, and [`write_specification()`] that of a specification by
 //! practice alone. They write
 //! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
@@ -39,7 +38,6 @@ mod by_void;
 mod campaign;
 mod campaign_cases;
 mod cases;
-mod comparison;
 mod connectivity;
 mod cover;
 mod design;
@@ -78,7 +76,6 @@ mod written;
 pub use crate::outcome::quantity;
 pub use batch::write_batch;
 pub use campaign::{campaign_page, write_campaign};
-pub use comparison::write_comparison;
 pub use design::write_design;
 pub use designs::write_designs;
 pub use error::ReportError;

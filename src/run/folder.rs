@@ -46,8 +46,6 @@ pub enum FolderKind {
     Percolation,
     /// A study of error against run time.
     Precision,
-    /// Several cases side by side.
-    Comparison,
     /// Many samples against filters.
     Batch,
     /// How coarse a filter may be.
@@ -64,13 +62,12 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 11] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
         Self::Percolation,
         Self::Precision,
-        Self::Comparison,
         Self::Batch,
         Self::Design,
         Self::Designs,
@@ -87,7 +84,6 @@ impl FolderKind {
             Self::Campaign => "campaign",
             Self::Percolation => "percolation study",
             Self::Precision => "precision study",
-            Self::Comparison => "comparison",
             Self::Batch => "batch",
             Self::Design => "design",
             Self::Designs => "set of designs",
@@ -105,7 +101,6 @@ impl FolderKind {
             Self::Campaign => format::CAMPAIGN,
             Self::Percolation => format::PERCOLATION,
             Self::Precision => format::PRECISION,
-            Self::Comparison => format::COMPARISON,
             Self::Batch => format::BATCH,
             Self::Design => format::DESIGN,
             Self::Designs => format::DESIGNS,
@@ -127,7 +122,7 @@ impl FolderKind {
 
     /// Whether it holds cases that continue by themselves, each in a folder of its own.
     pub(crate) fn has_cases(self) -> bool {
-        matches!(self, Self::Comparison | Self::Batch | Self::Designs)
+        matches!(self, Self::Batch | Self::Designs)
     }
 
     /// What else marks such a folder, finished or not.
@@ -138,7 +133,6 @@ impl FolderKind {
             Self::Campaign => &["cases"],
             Self::Percolation => &LATTICES,
             Self::Precision => &STUDY,
-            Self::Comparison => &["walks"],
             Self::Batch => &["pairs"],
             Self::Design => &DESIGN,
             Self::Designs => &["samples"],
@@ -202,7 +196,6 @@ impl FolderKind {
                 STUDY[1],
             ],
             // Its cases stay, as all that a campaign holds.
-            Self::Comparison => &["compare.json", "compare.html", "compare.csv", "compare_pairs.csv"],
             Self::Batch => &["batch.json", "batch.html", "batch.csv"],
             Self::Design => &[
                 "design.json",
@@ -249,8 +242,7 @@ impl FolderKind {
                 "packing",
                 "triangulation",
             ],
-            Self::Comparison => &["compared-runs", "compared-differences"],
-            Self::Batch => &["batch-limits", "batch-eroded"],
+            Self::Batch => &["batch-curves", "batch-limits", "batch-eroded"],
             Self::Design => &["design", "specification"],
             Self::Designs => &["designs"],
             Self::Specification => &["specification"],

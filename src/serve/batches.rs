@@ -19,11 +19,11 @@ use crate::words::left_out::left_out_in_brief;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskedBatch {
-    /// The sheet whose every soil is a sample, by its number.
+    /// The sheet whose every soil is a sample, by its number; or the one base, for walks of `filters`.
     pub base: String,
     /// The sheets of the filters.
     pub filters: Vec<String>,
-    /// Which pairs are walked, and how: `governing`, `look` or `alone`.
+    /// Which pairs are walked, and how: `governing`, `look`, `alone`, or `filters` for one base.
     pub walks: String,
     #[serde(default)]
     pub dispersive: bool,
@@ -34,6 +34,8 @@ pub struct AskedBatch {
     pub density: String,
     #[serde(default)]
     pub pack: bool,
+    #[serde(default)]
+    pub quick: bool,
     #[serde(default)]
     pub as_sampled: bool,
     #[serde(default)]
@@ -71,7 +73,8 @@ impl AskedBatch {
             "governing" => Ok(BatchWalks::GoverningInFull),
             "look" => Ok(BatchWalks::FirstLook),
             "alone" => Ok(BatchWalks::GoverningAlone),
-            other => Err(format!("walks: {other}: governing, look or alone")),
+            "filters" => Ok(BatchWalks::OneBase),
+            other => Err(format!("walks: {other}: governing, look, alone or filters")),
         }
     }
 
@@ -81,7 +84,18 @@ impl AskedBatch {
     /// There is no such sheet; no filter, or too many of them.
     pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
         let filters = filter_paths(sheets, &self.filters)?;
-        Ok((sheets.path(whole_sheet(&self.base))?, filters))
+        let base = if self.has_one_base() { &self.base } else { whole_sheet(&self.base) };
+        Ok((sheets.path(base)?, filters))
+    }
+
+    fn has_one_base(&self) -> bool {
+        self.walks == "filters"
+    }
+
+    /// What its job is called, of samples and filters with these names.
+    pub fn title(&self, samples: &str, filters: &[String]) -> String {
+        let every = if self.has_one_base() { "" } else { "Every sample of " };
+        format!("{every}{samples} on {}", filters.join(", "))
     }
 }
 
@@ -125,9 +139,4 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
-}
-
-/// What a job is called whose samples and filters these are.
-pub fn title(samples: &str, filters: &[String]) -> String {
-    format!("Every sample of {samples} on {}", filters.join(", "))
 }

@@ -1,6 +1,6 @@
 //! What the page has asked for: one job is walked at a time, the others wait.
 //!
-//! A job is a call of the library into a folder of its own, which is that of a run, a comparison or a design
+//! A job is a call of the library into a folder of its own, which is that of a run, a batch or a design
 //! as of the command line. What it was asked for is kept there before any work (`job_file.rs`), so that a
 //! later server on the same folder can do it. A kind of job more is a variant of [`Work`], what it does in
 //! `WorkContext::work`, and how its request is read (`Routes::planned`).

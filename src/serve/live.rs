@@ -78,12 +78,12 @@ impl Live {
         }
     }
 
-    /// The cases of a comparison are counted.
+    /// The cases of a batch are counted.
     pub fn cases(&mut self, all: usize, done: usize) {
         self.cases = [done, all];
     }
 
-    /// An event of a case of a comparison.
+    /// An event of a case of a batch.
     pub fn tell_case(&mut self, case: &str, event: CaseEvent) {
         match event {
             CaseEvent::Begun { .. } | CaseEvent::Waiting => self.case = case.to_owned(),

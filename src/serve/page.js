@@ -192,7 +192,7 @@ function showSheets() {
     type: "button", "aria-label": "remove",
     onclick: () => { state.more = state.more.filter((one) => one !== key); take("none", ""); },
   }, "×"))));
-  $("#compare").disabled = state.more.length === 0;
+  $("#judge-all").disabled = state.more.length === 0;
   showShapes();
 }
 
@@ -207,7 +207,7 @@ async function showPair() {
   $("#seen").hidden = !any;
   $("#how").hidden = !both;
   $("#coarse").hidden = !state.base;
-  $("#compare").title = state.more.length ? "" : "add more sheets to compare with";
+  $("#judge-all").title = state.more.length ? "" : "add further filters";
   const query = new URLSearchParams();
   if (state.base) query.set("base", state.base);
   if (state.filter) query.set("filter", state.filter);
@@ -242,7 +242,7 @@ async function showPair() {
 }
 
 /** The filter, and every further filter. */
-const filters = () => [state.filter, ...($("input[name=as]:checked").value === "filters" ? state.more : [])];
+const filters = () => [state.filter, ...state.more];
 
 /** The rules on every soil of the sheet of the base, where it has several. */
 async function showSamples(query) {
@@ -396,8 +396,8 @@ async function setUpForm() {
       ...keys.map((key) => el("label", {}, el("code", {}, key.name), input(key), el("span", {}, key.doc))))) : null;
   }).filter(Boolean));
   $("#form").addEventListener("submit", (event) => { event.preventDefault(); start("judge"); });
-  $("#compare").addEventListener("click", () => start("compare"));
-  $("#walk-samples").addEventListener("click", walkSamples);
+  $("#judge-all").addEventListener("click", () => walkFilters("filters", "#form-problem"));
+  $("#walk-samples").addEventListener("click", () => walkFilters($("#samples-walks").value, "#walk-problem"));
   $("#check").addEventListener("click", check);
 }
 
@@ -410,28 +410,27 @@ function ofSoils() {
 /** How the two sheets are taken. */
 const taken = () => ({ as_sampled: $("#as-sampled").checked, as_given: $("#as-given").checked });
 
-function asked(compare) {
+function asked() {
   const changes = $$("[data-key]").filter((field) => field.value.trim())
     .map((field) => `${field.dataset.key}=${field.value.trim()}`);
   changes.push(...ofSoils());
   changes.push(...$("#free").value.split("\n").map((line) => line.trim()).filter(Boolean));
-  const what = { base: state.base, filter: state.filter, density: $("#density").value, pack: $("#pack").checked, quick: $("#quick").checked, ...taken(), changes };
-  if (compare) what[$("input[name=as]:checked").value] = state.more;
-  return what;
+  return { base: state.base, filter: state.filter, density: $("#density").value, pack: $("#pack").checked, quick: $("#quick").checked, ...taken(), changes };
 }
 
-/** Walks every sample of the sheet of the base, with what the form says. */
-async function walkSamples() {
-  show($("#walk-problem"), "");
-  const { density, pack, as_sampled, as_given, changes } = asked(false);
+/** Walks the base, or every sample of its sheet, against every filter, with what the form says. */
+async function walkFilters(walks, problem) {
+  show($(problem), "");
+  const { density, pack, as_sampled, as_given, changes } = asked();
+  const quick = walks === "filters" && $("#quick").checked;
   // What is ticked beside the rules goes with the rules, too.
   const [dispersive, joint] = [$("#dispersion").value === "true", $("#joint").value.trim()];
   try {
-    await ask("api/batch", { base: state.base, filters: filters(), walks: $("#samples-walks").value, dispersive, joint, density, pack, as_sampled, as_given, changes });
+    await ask("api/batch", { base: state.base, filters: filters(), walks, dispersive, joint, density, pack, quick, as_sampled, as_given, changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
-    show($("#walk-problem"), error.message);
+    show($(problem), error.message);
   }
 }
 
@@ -439,7 +438,7 @@ async function start(kind) {
   show($("#form-problem"), "");
   $("#checked").hidden = true;
   try {
-    await ask("api/" + kind, asked(kind === "compare"));
+    await ask("api/" + kind, asked());
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
@@ -620,16 +619,6 @@ function verdictOf(job) {
   if (job.kind === "batch") {
     return [...done.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")), samplesTable(job, done),
       list(done.notes), el("p", { class: "small" }, done.leaves_out)];
-  }
-  if (job.kind === "compare") {
-    return [scrolling(`the cases of job ${job.id}`, el("table", {}, el("thead", {}, el("tr", {},
-      ...["Case", "Class", "Rules not kept", "Eroded, first run", "second run"].map((text) => el("th", {}, text)))),
-      el("tbody", {}, ...done.cases.map((one) => el("tr", {}, el("th", {}, one.name), el("td", {}, el("b", {}, one.verdict)),
-        el("td", {}, one.rules_not_kept.length ? el("span", { class: "mark" }, String(one.rules_not_kept.length)) : "0"),
-        ...[0, 1].map((at) => el("td", {}, one.runs[at] ? percent(one.runs[at].mean) : "–",
-          one.runs[at] && one.runs[at].low !== null ? el("span", { class: "small" }, ` ${percent(one.runs[at].low)} to ${percent(one.runs[at].high)}`) : "")))))) ),
-      ...done.cases.flatMap((one) => [el("h4", {}, one.name), ...answer(one.lines), ...notes(one.notes)]),
-      el("p", { class: "small" }, "Differences, each with its interval, are on the page of this comparison.")];
   }
   return [...answer(done.lines), ...plot(done.runs), ...notes(done.notes)];
 }

@@ -30,7 +30,6 @@ use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
 use crate::study::batch::BatchPlan;
-use crate::study::compare::{ComparePlan, Compared};
 use crate::study::design;
 use crate::text::is_plain_part;
 use crate::verdict::{PairOptions, PairRules};
@@ -57,11 +56,6 @@ const SETTINGS: (usize, usize) = (200, 2000);
 struct Asked {
     base: String,
     filter: String,
-    /// Further filters to compare; or further bases.
-    #[serde(default)]
-    filters: Vec<String>,
-    #[serde(default)]
-    bases: Vec<String>,
     #[serde(default)]
     density: String,
     /// This very filter is packed.
@@ -194,7 +188,7 @@ impl Routes {
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
                 Ok(Answer::json(200, json!(*sheet)))
             }
-            "api/judge" | "api/compare" | "api/design" | "api/batch" => {
+            "api/judge" | "api/design" | "api/batch" => {
                 let request: Value =
                     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
                 let kind = path.trim_start_matches("api/").to_owned();
@@ -244,12 +238,6 @@ impl Routes {
                 let work = Work::Judge(Box::new(self.scene(&asked)?));
                 Ok(Planned { title, asked: asked.sheets(), work })
             }
-            "compare" => {
-                let asked: Asked = read(request)?;
-                let plan = self.comparison(&asked)?;
-                let title = plan.names().collect::<Vec<_>>().join(", ");
-                Ok(Planned { title, asked: asked.sheets(), work: Work::Compare(Box::new(plan)) })
-            }
             "design" => {
                 let asked: AskedDesign = read(request)?;
                 let sheets = json!({ "base": asked.base, "filter": asked.filter });
@@ -267,7 +255,7 @@ impl Routes {
                 let of_samples = self.sheets.as_named(&samples.display().to_string());
                 let plan = self.batch(&asked, &samples, &filters)?;
                 let plan = plan.named(&of_samples, &names, |said| self.sheets.as_named(said));
-                let title = batches::title(&of_samples, &names);
+                let title = asked.title(&of_samples, &names);
                 Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
             }
             _ => Err((404, "there is no such work".into())),
@@ -303,30 +291,13 @@ impl Routes {
         Scene::of_tables(&base, &filter, &options(asked)?).map_err(wrong)
     }
 
-    fn comparison(&self, asked: &Asked) -> Result<ComparePlan, Problem> {
-        let all = |first: &String, more: &[String]| -> Result<Vec<PathBuf>, Problem> {
-            std::iter::once(first).chain(more).map(|sheet| self.path(sheet)).collect()
-        };
-        let compared = match (asked.filters.is_empty(), asked.bases.is_empty()) {
-            (false, true) => Compared::Filters {
-                base: self.path(&asked.base)?,
-                filters: all(&asked.filter, &asked.filters)?,
-            },
-            (true, false) => {
-                Compared::Bases { filter: self.path(&asked.filter)?, bases: all(&asked.base, &asked.bases)? }
-            }
-            _ => return Err(wrong("compare further filters, or further bases")),
-        };
-        ComparePlan::new(&compared, &options(asked)?).map_err(wrong)
-    }
-
     fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
         let joint_mm = joint(Some(asked.joint.clone()).filter(|text| !text.trim().is_empty()))?;
-        let AskedBatch { dispersive, as_given, as_sampled, pack, .. } = *asked;
+        let AskedBatch { dispersive, as_given, as_sampled, pack, quick, .. } = *asked;
         let rules = PairOptions { dispersive, joint_mm, as_given };
         bounded(&asked.changes)?;
         let (density, changes) = (density(&asked.density)?, asked.changes.clone());
-        let tables = TableOptions { density, pack, quick: false, as_sampled, as_given, changes };
+        let tables = TableOptions { density, pack, quick, as_sampled, as_given, changes };
         let walks = asked.walks().map_err(wrong)?;
         let options = of_cases(&self.root, &self.prepare, "");
         BatchPlan::new(samples, filters, &tables, rules, walks, &options).map_err(wrong)

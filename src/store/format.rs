@@ -53,8 +53,6 @@ formats! {
     DESIGNS = "designs" / 1, "designs.json";
     /// The specification of a filter by practice alone.
     SPECIFICATION = "specification" / 1, "specification.json";
-    /// Several cases side by side.
-    COMPARISON = "comparison" / 1, "compare.json";
     /// Many samples against filters.
     BATCH = "batch" / 1, "batch.json";
     /// A campaign, with its `ledger.jsonl` and `cases.csv`.

@@ -2,7 +2,7 @@
 //!
 //! It is a checkpoint of the folder ([`crate::store::checkpoint`]): section `found`, a record, under a hash
 //! of everything that the study follows from. What was under way is begun again; what it says follows from
-//! its seed alone, so the whole is that of a study that nobody stopped. A comparison or a batch keeps no such
+//! its seed alone, so the whole is that of a study that nobody stopped. A batch keeps no such
 //! file: its cases are run folders, each of which continues by itself.
 
 use std::path::Path;

@@ -1,8 +1,7 @@
-//! Studies: several cases side by side, many samples against filters, how coarse a filter may be; and of the
+//! Studies: many samples against filters, how coarse a filter may be; and of the
 //! model itself, error against run time and the percolation threshold of lattices.
 
 pub mod batch;
-pub mod compare;
 mod days;
 pub mod design;
 pub mod designs;

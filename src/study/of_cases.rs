@@ -104,9 +104,7 @@ impl StudyOfCases<'_> {
         let folder = claim(&options.out, kind, true)?;
         let other = || {
             let name = kind.name();
-            // The command that makes a comparison of its samples has no such option.
-            let or = if kind == FolderKind::Batch { "add --overwrite" } else { "remove that one" };
-            let problem = format!("holds another {name}; name another folder, or {or}");
+            let problem = format!("holds another {name}; name another folder, or add --overwrite");
             Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
         };
         if kind.is_finished(folder.path())? {

@@ -346,7 +346,12 @@ mod tests {
                 };
                 [cell("D15F, mm"), cell("Limit, mm")]
             };
-            let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: Some(d15f) };
+            let filter = BatchFilter {
+                name: "F".into(),
+                curves: vec!["F".into()],
+                d15f_mm: Some(d15f),
+                gradations: Vec::new(),
+            };
             (
                 shown(SizeUnit::Mm),
                 shown(SizeUnit::MmAndInches),

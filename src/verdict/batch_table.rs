@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::BatchRow;
 use super::pair::PairOptions;
-use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
+use crate::gradation::{Gradation, GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,8 @@ pub struct BatchFilter {
     pub curves: Vec<String>,
     /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
     pub d15f_mm: Option<f64>,
+    /// Each curve: rows of (size in mm, percent finer by mass), sizes ascending.
+    pub gradations: Vec<Vec<[f64; 2]>>,
 }
 
 /// What practice says of every sample and filter, filter by filter.
@@ -28,6 +30,9 @@ pub struct BatchTable {
     pub rows: Vec<BatchRow>,
     /// The filters.
     pub filters: Vec<BatchFilter>,
+    /// The curve of the base as sampled, rows of (size in mm, percent finer by mass); empty where there are
+    /// several samples.
+    pub base: Vec<[f64; 2]>,
     /// What was assumed of a file, once: the file and the sentence.
     pub notes: Vec<(PathBuf, String)>,
 }
@@ -47,7 +52,11 @@ impl BatchTable {
     /// A file that cannot be read as a table.
     pub fn read(samples: &Path, filters: &[PathBuf], options: PairOptions) -> Result<Self, GradationError> {
         let of_base = samples_in(samples)?;
-        let mut table = Self { rows: Vec::new(), filters: Vec::new(), notes: Vec::new() };
+        let base = match &of_base[..] {
+            [sample] => number_rows(&sample.curve),
+            _ => Vec::new(),
+        };
+        let mut table = Self { rows: Vec::new(), filters: Vec::new(), base, notes: Vec::new() };
         for filter in filters {
             let curves = curves_in_file(filter, None)?;
             let name = filter.display().to_string();
@@ -55,8 +64,9 @@ impl BatchTable {
             let rows: Vec<BatchRow> = rows.collect();
             let d15f_mm = rows.iter().find_map(|row| row.d15f_mm);
             table.rows.extend(rows);
+            let gradations = curves.iter().map(|(_, curve)| number_rows(curve)).collect();
             let curves = curves.into_iter().map(|(name, _)| name).collect();
-            table.filters.push(BatchFilter { name, curves, d15f_mm });
+            table.filters.push(BatchFilter { name, curves, d15f_mm, gradations });
         }
         let files: Vec<PathBuf> = match samples.is_dir() {
             true => of_base.iter().map(|sample| file_and_soil(&sample.path).0).collect(),
@@ -68,4 +78,23 @@ impl BatchTable {
         }
         Ok(table)
     }
+
+    /// Checks that it has one sample, the base from this file.
+    ///
+    /// # Errors
+    /// It has several: in words.
+    pub fn one_base(&self, base: &Path) -> Result<(), String> {
+        match self.rows.len() / self.filters.len().max(1) {
+            ..=1 => Ok(()),
+            soils => Err(format!(
+                "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
+                base.display()
+            )),
+        }
+    }
+}
+
+/// A curve in rows of (size in mm, percent finer by mass).
+fn number_rows(curve: &Gradation) -> Vec<[f64; 2]> {
+    curve.points().iter().map(|point| [point.size, point.percent]).collect()
 }

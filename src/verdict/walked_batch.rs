@@ -26,6 +26,10 @@ pub struct WalkedBatch {
     pub samples: String,
     /// The filters.
     pub filters: Vec<BatchFilter>,
+    /// The curve of the base as sampled, rows of (size in mm, percent finer by mass); left out where there
+    /// are several samples.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub base: Vec<[f64; 2]>,
     /// A row for each filter and sample, filter by filter.
     pub rows: Vec<WalkedRow>,
     /// What was assumed of the files, a sentence each.
@@ -116,6 +120,7 @@ impl WalkedBatch {
             seed: 0,
             samples,
             filters,
+            base: Vec::new(),
             rows,
             notes: Vec::new(),
             threshold: THRESHOLD,

@@ -2,8 +2,8 @@
 
 use super::next::next;
 use super::practice::practice;
-use crate::outcome::quantity::{SizeUnit, Unit, beside_limit, percent};
-use crate::outcome::record::{Headline, Model, Note, Outcome, Practice};
+use crate::outcome::quantity::{SizeUnit, percent};
+use crate::outcome::record::{Model, Note, Outcome};
 
 /// Notes that stand on the first page and on a terminal; the rest stand further down the page.
 pub const FOREMOST: usize = 3;
@@ -18,24 +18,6 @@ pub fn first_lines(outcome: &Outcome, unit: SizeUnit) -> Vec<(&'static str, Stri
     }
 }
 
-/// The same of a record that has no rules: without the next step.
-pub fn lines_of(
-    headline: Option<Headline>,
-    practice: Option<&Practice>,
-    walk: &Model,
-    unit: SizeUnit,
-) -> Vec<(&'static str, String)> {
-    let line = ("Model (research)", model(walk));
-    let Some((headline, practice)) = headline.zip(practice) else { return vec![line] };
-    let numbers = [practice.d15f_mm.map(|[_, high]| high), practice.limit_mm];
-    let [d15f, limit] = beside_limit(numbers, false, Unit::Size(unit));
-    let at_most = if practice.limit_at_most { "at most " } else { "" };
-    let d15f = d15f.map(|d15f| format!("D15F {d15f}"));
-    let limit = limit.map(|limit| format!("limit {at_most}{limit}"));
-    let numbers: Vec<String> = d15f.into_iter().chain(limit).collect();
-    vec![("Practice", format!("{}: {}", headline.words(), numbers.join(", "))), line]
-}
-
 /// The notes that matter most, at most [`FOREMOST`], and the number of the others.
 pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
     let (first, rest) = outcome.notes.split_at(outcome.notes.len().min(FOREMOST));
@@ -47,7 +29,11 @@ pub fn model(model: &Model) -> String {
     let part = |of: f64| percent((of / 100.0).max(0.0));
     let run = |(run, [low, high]): (usize, &[f64; 2])| {
         let eroded = part(*low).to(part(*high));
-        if run == 0 { format!("{eroded} eroded") } else { format!("run {}: {eroded}", run + 1) }
+        match run {
+            0 => format!("{eroded} eroded"),
+            1 => format!("second run: {eroded}"),
+            _ => format!("run {}: {eroded}", run + 1),
+        }
     };
     let runs: Vec<String> = model.eroded_percent.iter().enumerate().map(run).collect();
     format!("{}; {}", model.class.words(), runs.join(", "))

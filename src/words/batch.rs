@@ -345,7 +345,8 @@ mod tests {
         let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
         assert_eq!(doubted, [false, true, true, false]);
         assert_eq!(answer(&rows[3]), "not walked: no table");
-        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let filter =
+            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
         let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
         assert!(walks(&batch, "F", SizeUnit::Mm)[0].contains("2 no erosion, 1 some erosion"));
     }
@@ -373,7 +374,8 @@ mod tests {
         );
         assert!(!words.contains("B ("), "{words}");
         assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
-        let filter = BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None };
+        let filter =
+            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
         let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows.to_vec());
         let last = walks(&batch, "F", SizeUnit::Mm).pop().unwrap();
         assert!(last.starts_with("not known whether dispersive: 3 samples"), "{last}");

@@ -1,4 +1,4 @@
-//! The columns that the tables of campaigns and of comparisons share.
+//! The columns that the tables of campaigns and of batches share.
 
 use super::base_size::{base_size, grading};
 use crate::outcome::BaseSize;

@@ -10,7 +10,6 @@ mod base_size;
 pub mod batch;
 mod case_columns;
 mod class;
-pub mod comparison;
 pub mod design;
 pub mod designed;
 mod dispersion;
@@ -25,7 +24,7 @@ pub mod rule_note;
 mod so_far;
 pub mod specification;
 
-pub use answer::{FOREMOST, first_lines, foremost, lines_of, model};
+pub use answer::{FOREMOST, first_lines, foremost, model};
 pub use base_size::{base_size, grading};
 pub use class::{capital, meaning, undecided_by};
 pub use dispersion::{beside_dispersive, beyond_dispersive, dispersive_limit, test};

@@ -181,16 +181,12 @@ fn other_samples_filters_and_settings_are_refused_and_nothing_changes() {
     ] {
         refused(&call(&at, &other), "holds another batch; name another folder");
     }
-    refused(
-        &call(&at, &["compare", "--base", "samples.csv#Core", "fine.csv", "coarse.csv", "--out", "b"]),
-        "holds a batch",
-    );
     assert!((tables(&at.join("b")), moments(&at.join("b"))) == before);
     // No file is written before these are refused.
     for (words, says) in [
         (
             vec!["judge", "samples.csv", "fine.csv", "coarse.csv", "--out", "n"],
-            "several filters go with --each",
+            "holds 5 soils; name one of them as FILE#NAME, or add --each",
         ),
         (words("samples.csv", &["fine.csv", "./fine.csv"], "n"), "is named twice"),
         (words("samples.csv#Gravel", &["fine.csv"], "n"), "no pair of a sample and a filter can be walked"),
@@ -204,6 +200,40 @@ fn other_samples_filters_and_settings_are_refused_and_nothing_changes() {
     // Another one takes the folder where that is asked for.
     judged(&at, &[quick("other.csv", &["fine.csv"]), vec!["--overwrite"]].concat());
     assert!(tables(&at.join("b")) != before.0);
+}
+
+/// Each pair is walked as `judge` walks it alone.
+#[test]
+fn several_filters_of_one_base_make_one_table() {
+    let (_root, at) = site();
+    fs::write(at.join("a<b>.csv"), "opening_mm,percent_finer\n8,100\n4,50\n2,0\n").unwrap();
+    let filters = ["fine.csv", "coarse.csv", "a<b>.csv"];
+    let base = "samples.csv#Core";
+    let words = [&["judge", base], &filters[..], &["--quick", "--out", "t"], &SMALL].concat();
+    let said = String::from_utf8(judged(&at, &words).stdout).unwrap();
+    let batch = record(&at.join("t"));
+    let rows = batch["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), batch["filters"].as_array().unwrap().len()), (3, 3));
+    for (row, filter) in rows.iter().zip(filters) {
+        let alone = ["judge", base, filter, "--quick", "--overwrite", "--out", "one", "--json"];
+        let alone = judged(&at, &[&alone[..], &SMALL].concat());
+        let alone: Value = serde_json::from_slice(&alone.stdout).unwrap();
+        let walk = &row["walk"];
+        assert_eq!((&walk["verdict"], &walk["headline"]), (&alone["model"]["class"], &alone["headline"]));
+        assert_eq!(walk["runs"][0], alone["summary"][0]["eroded_mass_fraction"], "{filter}");
+        let headline = alone["headline"].as_str().unwrap();
+        assert!(said.contains(&format!("{filter}: {headline}; ")), "{said}");
+    }
+    let page = fs::read_to_string(at.join("t/batch.html")).unwrap();
+    assert!(page.contains("Which of these filters hold this base?") && !page.contains("Governing sample"));
+    assert!(!page.contains("a<b>") && page.contains("a&lt;b&gt;"), "{page}");
+    assert!(at.join("t/figures/batch-curves.svg").is_file());
+    let before = (tables(&at.join("t")), moments(&at.join("t")));
+    // The same command finds it done, and an envelope as the base is refused.
+    judged(&at, &words);
+    assert!((tables(&at.join("t")), moments(&at.join("t"))) == before);
+    let envelope = ["judge", "samples.csv", "fine.csv", "coarse.csv", "--out", "n"];
+    refused(&call(&at, &envelope), "holds 5 soils");
 }
 
 #[test]

@@ -267,11 +267,11 @@ fn bash_runs_nothing_of_the_name_of_a_file() {
     files.iter().for_each(|file| fs::write(root.path().join(file), "").unwrap());
     fs::create_dir(root.path().join("v$(touch ran-v)")).unwrap();
     for before in [
-        "compare --base",
+        "judge --out",
         "run --out",
         "soil --d0-mm",
         "soil --figure",
-        "rules --set",
+        "rules --csv",
         "pack",
         "design x --filter",
     ] {

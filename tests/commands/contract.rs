@@ -38,10 +38,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
     let commands: [(Vec<&str>, &str); 13] = [
         (small(&["judge", "base.csv", "fine.csv", "--quick", "--json"]), "outcome"),
         (small(&["run", "--set", "replicates=2", "--set", "record.sensitivity=[]", "--json"]), "outcome"),
-        (
-            small(&["compare", "--base", "base.csv", "fine.csv", "coarse.csv", "--quick", "--json"]),
-            "comparison",
-        ),
+        (small(&["judge", "base.csv", "fine.csv", "coarse.csv", "--quick", "--json"]), "batch"),
         (small(&["check", "--json"]), "check"),
         (
             small(&["design", "base.csv", "--filter", "cu1.5-loose", "--set", "replicates=2", "--json"]),
@@ -136,18 +133,18 @@ fn a_verdict_that_is_not_accepted_ends_with_code_4_and_the_same_output() {
 }
 
 #[test]
-fn judge_and_compare_name_the_cases_that_are_not_accepted() {
+fn judge_names_the_pairs_that_are_not_accepted() {
     let (_root, at) = soils();
     let judge = ["judge", "base.csv", "coarse.csv", "--quick", "-q", "--out", "a", "--fail-on", "some"];
     let (code, said) = ended(&call(&at, &[&judge[..], &SMALL].concat()));
     assert!(code == 4 && said.contains("not accepted: ") && at.join("a/report.html").is_file(), "{said}");
     // A finished folder is refused, whatever its verdict.
     assert_eq!(ended(&call(&at, &[&judge[..], &SMALL].concat())).0, 2);
-    let compare = ["compare", "--base", "base.csv", "fine.csv", "coarse.csv", "--quick", "-q", "--out", "c"];
-    let (code, said) = ended(&call(&at, &[&compare[..], &["--fail-on", "some"], &SMALL].concat()));
-    assert!(code == 4 && said.contains("coarse: "), "{said}");
-    assert!(at.join("c/compare.html").is_file());
-    for command in ["judge", "run", "resume", "compare"] {
+    let filters = ["judge", "base.csv", "fine.csv", "coarse.csv", "--quick", "-q", "--out", "c"];
+    let (code, said) = ended(&call(&at, &[&filters[..], &["--fail-on", "some"], &SMALL].concat()));
+    assert!(code == 4 && said.contains("coarse.csv: "), "{said}");
+    assert!(at.join("c/batch.html").is_file());
+    for command in ["judge", "run", "resume"] {
         let help = text(&call(&at, &[command, "--help"]).stdout);
         assert!(help.contains("--fail-on <VERDICT>") && help.contains("Undecided counts as bad"), "{help}");
     }

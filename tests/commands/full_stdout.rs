@@ -45,7 +45,7 @@ const CALLS: [&str; 40] = [
     "campaign plan.toml --list --out c",
     "campaign plan.toml --out c",
     "campaign plan.toml --slurm --out cj",
-    "compare scene.toml other.toml --out cc",
+    "judge b.csv f.csv g.csv --quick --out jf SMALL",
     "judge b.csv f.csv --quick --out j SMALL",
     "judge b.csv f.csv --quick --each --out je SMALL",
     "design b.csv --steps --out d",
@@ -61,8 +61,8 @@ fn files(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     write("b.csv", "size_mm,percent\n0.1,0\n0.2,50\n0.4,100\n");
     write("f.csv", "size_mm,percent\n0.5,0\n1,50\n2,100\n");
+    write("g.csv", "size_mm,percent\n1,0\n2,50\n4,100\n");
     write("scene.toml", SCENE);
-    write("other.toml", &SCENE.replace("500", "600"));
     write("plan.toml", PLAN);
     let packed = "[packing]\ngrains = 150\nstiffness_ratio = 0.01\n";
     write("filter.toml", &format!("[filter]\ncu = 1.5\ndensity = \"loose\"\n{packed}"));

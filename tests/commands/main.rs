@@ -6,7 +6,6 @@ mod broad;
 mod campaign;
 mod check_and_run;
 mod checkpoints;
-mod compare;
 #[cfg(target_os = "linux")]
 mod completion;
 mod contract;

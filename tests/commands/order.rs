@@ -26,11 +26,9 @@ fn json(path: PathBuf) -> Value {
 #[test]
 fn exchanged_files_are_refused_in_the_same_words_by_every_command_and_nothing_is_written() {
     let (_root, at) = till_and_sand();
-    let words: [&[&str]; 5] = [
+    let words: [&[&str]; 3] = [
         &["rules", "sand.csv", "till.csv"],
         &["judge", "sand.csv", "till.csv", "--out", "x"],
-        &["compare", "--base", "sand.csv", "till.csv", "base.csv", "--out", "x"],
-        &["compare", "--filter", "till.csv", "sand.csv", "fine.csv", "--out", "x"],
         &["design", "sand.csv", "--filter", "till.csv", "--out", "x"],
     ];
     for words in words {
@@ -78,24 +76,13 @@ fn a_base_in_a_table_is_walked_regraded_and_every_d85b_says_which_it_is() {
     assert!(page.contains("D85B 2.59 mm as sampled"), "{page}");
     let words = ["judge", "till.csv", "sand.csv", "--as-sampled", "--set", "base.regrade=practice"];
     refused(&call(&at, &words), "say the same thing twice");
-    // A comparison of tables does the same, and its table says it.
-    let words = ["compare", "--base", "till.csv", "sand.csv", "fine.csv", "--out", "c"];
-    let said = call(&at, &[&words[..], &SMALL, &few].concat());
-    done(&said);
-    assert!(String::from_utf8(said.stdout).unwrap().contains(label));
-    assert!(fs::read_to_string(at.join("c/compare.html")).unwrap().replace('\u{202f}', " ").contains(label));
-    let table = fs::read_to_string(at.join("c/compare.csv")).unwrap();
-    assert!(table.lines().next().unwrap().contains(",d15f_over_d95b,d85b_of,"), "{table}");
-    assert_eq!(table.matches("regraded on 4.75 mm").count(), 2, "{table}");
-    // A scene keeps what it says.
-    let scene = "seed = 1\n[filter]\nsieve = \"sand.csv\"\nestimate = 0.5\n[base]\nsieve = \"till.csv\"\nn_base = 2000\n";
-    fs::write(at.join("s.toml"), scene).unwrap();
-    fs::write(at.join("t.toml"), scene.replace("0.5", "0.6")).unwrap();
-    let words = ["compare", "s.toml", "t.toml", "--quick", "--out", "s"];
-    let said = call(&at, &[&words[..], &SMALL].concat());
-    done(&said);
-    let text = String::from_utf8(said.stdout).unwrap();
-    assert!(text.contains("D85B 2.59 mm as sampled") && !text.contains("(as sampled"), "{text}");
+    // A table of several filters does the same.
+    let words = ["judge", "till.csv", "sand.csv", "fine.csv", "--out", "c"];
+    done(&call(&at, &[&words[..], &SMALL, &few].concat()));
+    let batch = json(at.join("c/batch.json"));
+    for row in batch["rows"].as_array().unwrap() {
+        assert_eq!(row["walk"]["base"]["regraded_at_mm"], 4.75, "{row}");
+    }
 }
 
 /// The till of the third trial, with a hydrometer part: practice allows 1.12 mm, and this walk holds less.

@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
-use std::time::SystemTime;
 
 fn voidwalk(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voidwalk")).args(args).output().unwrap()
@@ -273,7 +272,7 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
     assert!(of_fine[1].starts_with("  governing sample TP1 1.00 1.00: D15F up to "), "{of_fine:?}");
     assert!(of_fine[2].starts_with("  then TP2 ") && of_fine[3].starts_with("  then TP3 "), "{of_fine:?}");
     let walk = of_fine.iter().find(|line| line.starts_with("  Nothing was walked."));
-    assert!(walk.is_some_and(|line| line.contains("compare --filter")), "{of_fine:?}");
+    assert!(walk.is_some_and(|line| line.contains(" --each --governing")), "{of_fine:?}");
     // A row says what the rules say of that pair alone.
     let one = voidwalk(&["rules", &format!("{site}#TP7 1.00 1.00"), &filters[1], "--json"]);
     let one: serde_json::Value = serde_json::from_slice(&one.stdout).unwrap();
@@ -291,95 +290,12 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
     let envelope = voidwalk(&["rules", &site, &filters[0], &filters[1]]);
     let refused = String::from_utf8_lossy(&envelope.stderr);
     assert!(
-        envelope.status.code() == Some(2) && refused.contains("several filters go with --each"),
+        envelope.status.code() == Some(2) && refused.contains("holds 50 soils; name one of"),
         "{refused}"
     );
-}
-
-#[test]
-fn samples_that_govern_are_walked_as_a_comparison_and_not_twice() {
-    let root = tempfile::tempdir().unwrap();
-    let rows = "Sieve (mm),Core,Shell,Till,Sand\n1,100,100,100,100\n0.5,100,80,60,40\n0.25,40,20,10,5\n0.1,0,0,0,0\n";
-    let samples = root.path().join("samples.csv").display().to_string();
-    fs::write(&samples, rows).unwrap();
-    let filter = table(root.path(), "filter.csv", "4,100\n2,50\n1,0\n");
-    let out = root.path().join("walks").display().to_string();
-    let csv = root.path().join("table.csv").display().to_string();
-    let sets = ["network.nx=5", "network.ny=5", "network.nz=5", "replicates=1", "record.sensitivity=[]"];
-    let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
-    let words = [&["rules", &samples, &filter, "--each", "--csv", &csv, "--walk", &out], &sets[..]].concat();
-    let walk = || {
-        let output = voidwalk(&words);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8(output.stdout).unwrap()
-    };
-    let said = walk();
-    let folder = root.path().join("walks/1-filter");
-    let read = || fs::read_to_string(folder.join("compare.csv")).unwrap();
-    let first = read();
-    assert_eq!(first.lines().count(), 4, "{first}");
-    for sample in ["Core", "Shell", "Till"] {
-        assert!(
-            said.contains(&format!("samples.csv#{sample}")) || said.contains(&format!("{sample}: ")),
-            "{said}"
-        );
-    }
-    assert!(folder.join("compare.html").is_file() && !said.contains("Nothing was walked"));
-    let moments = || -> Vec<SystemTime> {
-        let cases = fs::read_dir(folder.join("walks/cases")).unwrap();
-        let outcomes = cases.map(|case| case.unwrap().path().join("outcome.json"));
-        let mut all: Vec<SystemTime> =
-            outcomes.map(|file| fs::metadata(file).unwrap().modified().unwrap()).collect();
-        all.sort();
-        all
-    };
-    let of_first = moments();
-    assert_eq!(of_first.len(), 3);
-    assert_eq!((walk(), read(), moments()), (said, first.clone(), of_first.clone()));
-    // What was begun and not finished goes on, with the cases that are done.
-    fs::write(folder.join(".voidwalk.unfinished"), "{\"kind\": \"comparison\", \"work\": \"other\"}")
-        .unwrap();
-    let refused = |words: &[&str], says: &str| {
-        let output = voidwalk(words);
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.code() == Some(2) && stderr.contains(says), "{stderr}");
-        assert!(output.stdout.is_empty());
-    };
-    refused(&words, "holds another comparison");
-    fs::remove_file(folder.join(".voidwalk.unfinished")).unwrap();
-    fs::remove_file(folder.join("compare.json")).unwrap();
-    walk();
-    assert_eq!((read(), moments()), (first.clone(), of_first.clone()));
-    // A date that is no longer stated stands on another sheet.
-    let record = fs::read_to_string(folder.join("compare.json")).unwrap();
-    let mut dated: serde_json::Value = serde_json::from_str(&record).unwrap();
-    assert!(dated["cover"]["date"].is_string(), "{record}");
-    dated["cover"]["date"] = "1 April 2026".into();
-    fs::write(folder.join("compare.json"), dated.to_string()).unwrap();
-    refused(&words, "holds another comparison");
-    fs::write(folder.join("compare.json"), record).unwrap();
-    // The comparison of another site is not cleared, nor one of other settings, and no table is written.
-    let other = root.path().join("other.csv").display().to_string();
-    fs::write(&other, rows.replace("60,40", "70,40")).unwrap();
-    let csv = root.path().join("other-table.csv").display().to_string();
-    let of_other = [&["rules", &other, &filter, "--each", "--csv", &csv, "--walk", &out], &sets[..]].concat();
-    refused(&of_other, "holds another comparison");
-    let of_seed = [&words[..], &["--set", "seed=7"]].concat();
-    refused(&of_seed, "holds another comparison");
-    assert_eq!((read(), moments()), (first, of_first));
-    // A setting that is wrong, of the second filter's folder too, is found before the table is written.
-    let new = root.path().join("new").display().to_string();
-    let wrong =
-        ["rules", &samples, &filter, "--each", "--csv", &csv, "--walk", &new, "--set", "network.nx=0"];
-    refused(&wrong, "network.nx");
-    assert!(!Path::new(&csv).exists() && !Path::new(&new).exists());
-    // One sample is nothing to compare.
-    let one = ["rules", &format!("{samples}#Core"), &filter, "--each", "--walk", &new];
-    let said = String::from_utf8(voidwalk(&one).stdout).unwrap();
-    assert!(said.contains("Nothing was walked. To walk the one that governs: voidwalk judge "), "{said}");
-    assert!(!Path::new(&new).exists());
-    // --walk and --csv belong to --each.
-    assert_eq!(voidwalk(&["rules", &samples, &filter, "--walk", &out]).status.code(), Some(2));
+    let one = voidwalk(&["rules", &format!("{site}#TP7 1.00 1.00"), &filters[0], &filters[1]]);
+    let said = String::from_utf8(one.stdout).unwrap();
+    assert!(said.contains("fine.csv: of 1 sample") && said.contains("usual.csv: of 1 sample"), "{said}");
 }
 
 #[test]

@@ -16,27 +16,27 @@ fn jobs_are_walked_one_at_a_time_and_both_tabs_see_them() {
     served.two_sheets();
     assert_eq!(served.sheet("coarse.csv", COARSE).0, 200);
     let long = served.judge(&["replicates=5000"]).1["id"].as_u64().unwrap();
-    let quick = json!({ "base": "1", "filter": "2", "filters": ["3"], "quick": true,
+    let quick = json!({ "base": "1", "filters": ["2", "3"], "walks": "filters", "quick": true,
         "changes": ["network.nx=6", "network.ny=6", "network.nz=8"] });
-    let (status, said) = served.post("api/compare", quick.to_string().as_bytes());
-    let compared = said["id"].as_u64().unwrap();
+    let (status, said) = served.post("api/batch", quick.to_string().as_bytes());
+    let table = said["id"].as_u64().unwrap();
     assert_eq!(status, 200);
     let walking = served.until(long, |job| job["live"]["so_far"]["replicates"].as_u64() >= Some(5));
     assert_eq!(walking["state"], "running");
     let so_far = &walking["live"]["so_far"];
     assert!(so_far["class"].is_string() && so_far["runs"][0]["low"].is_number(), "{so_far}");
     assert!(walking["page"].is_null() && walking["result"].is_null(), "no verdict before the end");
-    assert_eq!(served.job(compared)["state"], "waiting");
+    assert_eq!(served.job(table)["state"], "waiting");
     assert_eq!(served.post(&format!("api/stop?id={long}"), b"").0, 200);
     let stopped = served.until(long, |job| job["state"] == "stopped");
     assert!(stopped["message"].as_str().unwrap().contains("voidwalk resume"), "{stopped}");
-    let done = served.until(compared, |job| job["state"] == "done");
-    assert_eq!(done["result"]["cases"].as_array().unwrap().len(), 2);
+    let done = served.until(table, |job| job["state"] == "done");
+    assert_eq!(done["result"]["rows"].as_array().unwrap().len(), 2);
     let page = done["page"].as_str().unwrap();
     let (status, head, body) = served.get(page);
     assert!(status == 200 && head.contains("sha256-") && !head.contains("unsafe"), "{head}");
     assert!(String::from_utf8(body).unwrap().contains("Which of these filters hold this base?"));
-    let (status, head, zip) = served.get(&format!("zip/compare-{compared}.zip"));
+    let (status, head, zip) = served.get(&format!("zip/batch-{table}.zip"));
     assert!(status == 200 && head.contains("attachment") && zip.starts_with(b"PK"), "{head}");
     // It continues from where it was: what was saved of replicates that are done is not written again.
     let checkpoint = served.root().join(format!("served/run-{long}/checkpoint"));
@@ -82,42 +82,42 @@ fn what_a_killed_server_had_begun_continues() {
     assert_eq!((next.get(page).0, next.get(&zip).0), (404, 404));
 }
 
-/// A comparison that was stopped with its server, and one that waited, are done by the next.
+/// A table that was stopped with its server, and one that waited, are done by the next.
 #[test]
-fn what_waited_or_was_compared_when_the_server_ended_is_done_by_the_next() {
+fn what_waited_or_was_begun_when_the_server_ended_is_done_by_the_next() {
     let served = serve();
     served.two_sheets();
     for name in ["a.csv", "b.csv"] {
         assert_eq!(served.sheet(name, COARSE).0, 200);
     }
-    let request = json!({ "base": "1", "filter": "2", "filters": ["3", "4"], "quick": true,
+    let request = json!({ "base": "1", "filters": ["2", "3", "4"], "walks": "filters", "quick": true,
         "changes": ["network.nx=10", "network.ny=10", "network.nz=20", "replicates=40"] });
-    let (_, said) = served.post("api/compare", request.to_string().as_bytes());
-    let compared = said["id"].as_u64().unwrap();
+    let (_, said) = served.post("api/batch", request.to_string().as_bytes());
+    let table = said["id"].as_u64().unwrap();
     let waits = served.judge(&["replicates=4"]).1["id"].as_u64().unwrap();
-    served.until(compared, |job| job["live"]["cases_done"].as_u64() >= Some(1));
-    let title = served.job(compared)["title"].clone();
+    served.until(table, |job| job["live"]["cases_done"].as_u64() >= Some(1));
+    let title = served.job(table)["title"].clone();
     let (code, said, at) = served.end();
     assert_eq!(code, Some(3), "{said}");
-    for words in [&format!("compare-{compared}"), &format!("run-{waits}"), "voidwalk serve --out served"] {
+    for words in [&format!("batch-{table}"), &format!("run-{waits}"), "voidwalk serve --out served"] {
         assert!(said.contains(words), "{said}");
     }
     let next = serve_in(at);
     let state = next.json("api/state");
     let names: Vec<&Value> = state["sheets"].as_array().unwrap().iter().map(|sheet| &sheet["name"]).collect();
     assert_eq!(names, ["base.csv", "fine.csv", "a.csv", "b.csv"]);
-    let job = next.job(compared);
+    let job = next.job(table);
     assert_eq!((&job["state"], &job["can_continue"]), (&"stopped".into(), &true.into()), "{job}");
     assert_eq!((&job["title"], &job["asked"]["base"]), (&title, &"1".into()));
     assert_eq!(next.job(waits)["can_continue"], true);
-    let folder = next.root().join(format!("served/compare-{compared}"));
+    let folder = next.root().join(format!("served/batch-{table}"));
     let cases = written(&folder, "case.json");
     assert!(!cases.is_empty() && cases.len() < 3, "{cases:?}");
-    for id in [compared, waits] {
+    for id in [table, waits] {
         assert_eq!(next.post(&format!("api/continue?id={id}"), b"").0, 200);
     }
-    let job = next.until(compared, |job| job["state"] == "done");
-    assert_eq!(job["result"]["cases"].as_array().unwrap().len(), 3);
+    let job = next.until(table, |job| job["state"] == "done");
+    assert_eq!(job["result"]["rows"].as_array().unwrap().len(), 3);
     assert_eq!(next.get(job["page"].as_str().unwrap()).0, 200);
     let now = written(&folder, "case.json");
     assert!(now.len() == 3 && cases.iter().all(|case| now.contains(case)), "{cases:?} {now:?}");

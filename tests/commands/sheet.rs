@@ -39,7 +39,7 @@ fn site() -> tempfile::TempDir {
 /// Every command with a page that is handed in, its folder and its page.
 const PAGES: [(&str, &str, &str); 7] = [
     ("judge samples.csv#Core fine.csv --quick --out judge", "judge", "report.html"),
-    ("compare --base samples.csv#Core fine.csv coarse.csv --quick --out compare", "compare", "compare.html"),
+    ("judge samples.csv#Core fine.csv coarse.csv --quick --out filters", "filters", "batch.html"),
     ("judge samples.csv fine.csv --each --governing --out batch", "batch", "batch.html"),
     ("design samples.csv#Core --filter cu1.5-loose --bracket 2,12 --out design", "design", "design.html"),
     (
@@ -153,14 +153,14 @@ fn a_page_has_the_day_of_its_results_where_no_date_is_stated() {
         assert!(page.contains("<div class=\"blank\" aria-hidden=\"true\"><dt>Project</dt>"), "{command}");
     }
     // The day of the walks that a table rests on, not of the table.
-    let at = root.path().join("compare");
-    for case in fs::read_dir(at.join("walks/cases")).unwrap() {
+    let at = root.path().join("filters");
+    for case in fs::read_dir(at.join("pairs/cases")).unwrap() {
         let manifest = case.unwrap().path().join("manifest.json");
         let text = fs::read_to_string(&manifest).unwrap().replace(&begun, "2001-02-03");
         fs::write(&manifest, text.replace(&ended, "2001-02-03")).unwrap();
     }
-    fs::remove_file(at.join("compare.json")).unwrap();
-    // It goes on with the comparison, whose walks are done.
+    fs::remove_file(at.join("batch.json")).unwrap();
+    // It goes on with the table, whose walks are done.
     assert!(has(&page(root.path(), PAGES[1], &[]), "Date", "2001-02-03"));
 }
 
@@ -194,19 +194,18 @@ pub fn inches_within(page: &str) -> usize {
 }
 
 #[test]
-fn a_batch_and_a_comparison_show_inches_beside_mm() {
+fn both_tables_show_inches_beside_mm() {
     let root = site();
     let both = [PAGES[1], PAGES[2]];
     let pages = both.map(|of| page(root.path(), of, &["--set", "about.units=us"]));
     for (page, (command, folder, _)) in pages.iter().zip(both) {
         assert!(page.matches("\u{202f}in)").count() > 4, "{command}: {page}");
-        let record = format!("{folder}/{folder}.json");
+        let record = format!("{folder}/batch.json");
         let record: Value = serde_json::from_slice(&fs::read(root.path().join(record)).unwrap()).unwrap();
         assert!(record["inches"] == true, "{command}");
     }
-    let [compare, batch] = &pages;
-    inches_within(compare);
-    assert!(inches_within(batch) > 0, "{batch}");
+    let [filters, batch] = &pages;
+    assert!(inches_within(filters) > 0 && inches_within(batch) > 0, "{batch}");
     // The limit of a sample in the table has the inches of the sentence above it.
     let limit = batch.split("D15F up to ").nth(1).unwrap();
     let (mm, inches) = limit.split_once("\u{202f}in)").unwrap().0.split_once("\u{202f}mm (").unwrap();
@@ -216,9 +215,8 @@ fn a_batch_and_a_comparison_show_inches_beside_mm() {
     assert!(!csv.contains("in)"), "{csv}");
     for (command, ..) in both {
         let words: Vec<&str> = command.split(' ').collect();
-        let overwrite = if command.starts_with("compare") { &["--overwrite"][..] } else { &[] };
         let units = ["--set", "about.units=us"];
-        let said = call(root.path(), &[&words[..], &SMALL, &FEW, &units, overwrite].concat());
+        let said = call(root.path(), &[&words[..], &SMALL, &FEW, &units].concat());
         done(&said);
         assert!(String::from_utf8(said.stdout).unwrap().contains(" in)"), "{command}");
     }

@@ -1,4 +1,4 @@
-//! Studies of several walks: comparisons, designs, percolation; and the soils of a file.
+//! Studies of several walks: designs, percolation; and the soils of a file.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,6 @@ use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
 use voidwalk::outcome::quantity::{SizeUnit, limits};
 use voidwalk::outcome::record::SheetCover;
 use voidwalk::store::format;
-use voidwalk::study::compare::{self as comparisons, ComparePlan, Compared};
 use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
 use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
 use voidwalk::words::specification::{beside_limits, no_band};
@@ -18,7 +17,6 @@ use voidwalk::words::specification::{beside_limits, no_band};
 use crate::notes::plain;
 use crate::problem::{failed, of_run, refused};
 use crate::scenes::Manner;
-use crate::two_tables::Tables;
 use crate::work::at_work;
 
 /// The soils of a file: a JSON list.
@@ -27,35 +25,6 @@ use crate::work::at_work;
 pub fn soils(path: PathBuf, d0_mm: Option<f64>) -> PyResult<String> {
     let soils = soils_in_file(&path, d0_mm).map_err(|error| of_run(&CaseError::from(error).into()))?;
     serde_json::to_string(&soils).map_err(failed)
-}
-
-/// Walks cases side by side into a folder: the JSON of `compare.json`. Without a base `others` are bases on the
-/// filter, without a filter they are filters on the base, without both they are scenes.
-#[pyfunction]
-#[pyo3(signature = (base, filter, others, tables, out, overwrite, packings, manner, progress))]
-#[allow(clippy::too_many_arguments)]
-pub fn compare(
-    py: Python<'_>,
-    base: Option<PathBuf>,
-    filter: Option<PathBuf>,
-    others: Vec<PathBuf>,
-    tables: Tables,
-    out: PathBuf,
-    overwrite: bool,
-    packings: PathBuf,
-    manner: Manner,
-    progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<String> {
-    let compared = match (base, filter) {
-        (Some(base), None) => Compared::Filters { base, filters: others },
-        (None, Some(filter)) => Compared::Bases { filter, bases: others },
-        (None, None) => Compared::Scenes(others),
-        (Some(_), Some(_)) => return Err(refused("base and filter are both given: one of them is compared")),
-    };
-    let plan = ComparePlan::new(&compared, &tables.options()?).map_err(|error| of_run(&error))?;
-    let options = manner.campaign(out, Some(packings))?;
-    let found = at_work(py, progress, |callbacks| comparisons::run(&plan, &options, overwrite, callbacks))?;
-    format::COMPARISON.json(&found).map_err(failed)
 }
 
 /// The shape of a filter, and how its boundaries are searched: densities, whether it is packed, thicknesses, and

@@ -85,9 +85,6 @@ def test_a_result_is_drawn_in_four_ways() -> None:
 
 
 def test_studies_are_drawn() -> None:
-    compared = vw.compare(BASE, {"a": FILTER, "b": ([3, 9], [0, 100])}, density="dense", quick=True, settings=SMALL)
-    ax = compared.plot()
-    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["a", "b"]
     small = {"network.nx": 8, "network.ny": 8}
     design = vw.design(
         BASE, FILTER, density="dense", thickness="10layers", bracket=(4, 16), replicates=2, settings=small

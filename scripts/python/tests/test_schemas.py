@@ -49,7 +49,6 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Path:
     options: Dict[str, Any] = dict(density="dense", quick=True, settings=SMALL)
     vw.judge(BASE, FILTER, place / "run", **options)
     vw.judge(BASE, FILTER, place / "studied", density="dense", replicates=2, settings=SMALL)
-    vw.compare(BASE, {"a": FILTER, "b": ([3, 9], [0, 100])}, place / "compared", **options)
     across = {"network.nx": 8, "network.ny": 8}
     vw.design(BASE, FILTER, place / "designed", thickness="10layers", bracket=(4, 16), replicates=2, settings=across)
     vw.percolation([4, 6, 8, 10], realisations=4, out=place / "percolated")
@@ -65,7 +64,7 @@ def test_every_record_keeps_to_its_schema(folders: Path) -> None:
     for path, record in records(folders):
         keeps(record)
         found.append(str(record["format"]))
-    for form in ("outcome", "manifest", "design", "comparison", "percolation", "campaign", "case"):
+    for form in ("outcome", "manifest", "design", "percolation", "campaign", "case"):
         assert f"voidwalk-{form}/1" in found, (form, set(found))
 
 

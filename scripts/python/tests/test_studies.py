@@ -42,7 +42,7 @@ def said(program: str, folder: Path, *words: str) -> Any:
     """What the command line prints as JSON for the same."""
     settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
     settings = settings[:4] if words[0] == "design" else settings
-    small = settings if words[0] in ("judge", "compare", "design") else []
+    small = settings if words[0] in ("judge", "design") else []
     done = subprocess.run([program, *words, *small, "--json"], capture_output=True, text=True, cwd=folder)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -105,24 +105,6 @@ def test_a_specification_without_a_band_says_why() -> None:
     assert found.outcome["no_band"]["id"] == "limit_not_known"
 
 
-def test_compare_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
-    table(tmp_path, "base", BASE), table(tmp_path, "fine", FILTER), table(tmp_path, "coarse", COARSE)
-    words = ["--quick", "--density", "dense", "--quiet", "--out", "o"]
-    wanted = said(program, tmp_path, "compare", "fine.csv", "coarse.csv", "--base", "base.csv", *words)
-    options: Dict[str, Any] = dict(quick=True, density="dense", settings=SMALL)
-    found = vw.compare(BASE, {"fine": FILTER, "coarse": vw.Gradation(*COARSE)}, **options)
-    assert answer(found.outcome) == answer(wanted) and found.outcome["common"] == "base"
-    assert [case["name"] for case in found.cases] == ["fine", "coarse"] and len(found) == 2
-    assert found.pairs[0]["differ"] is True and list(found.table["case"]) == ["fine", "coarse"]
-    files = [tmp_path / "fine.csv", tmp_path / "coarse.csv"]
-    kept = vw.compare(tmp_path / "base.csv", files, tmp_path / "c", **options)
-    assert answer(kept.cases) == answer(wanted["cases"]) and kept.report().name == "compare.html"
-    again = vw.read(tmp_path / "c")
-    assert isinstance(again, vw.Comparison) and again.outcome == kept.outcome
-    bases = vw.compare({"a": BASE, "b": ([0.05, 0.25], [0, 100])}, FILTER, **options)
-    assert bases.outcome["of"] == "bases"
-
-
 def test_design_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
     table(tmp_path, "base", BASE), table(tmp_path, "filter", FILTER)
     words = ["--filter", "filter.csv", "--density", "dense", "--thickness", "10layers", "--bracket", "4,16"]
@@ -153,7 +135,6 @@ def test_exchanged_tables_are_refused_everywhere(tmp_path: Path) -> None:
     calls: List[Any] = [
         lambda: vw.judge(FILTER, BASE),
         lambda: vw.judge(table(tmp_path, "f", FILTER), table(tmp_path, "b", BASE)),
-        lambda: vw.compare(FILTER, {"a": BASE, "b": FILTER}),
         lambda: vw.rules(FILTER, BASE),
     ]
     for call in calls:
@@ -173,9 +154,6 @@ def test_errors_name_what_python_calls_it() -> None:
         (lambda: vw.design(BASE, density="thick"), "density thick: allowed"),
         (lambda: vw.design(BASE, thickness="thick"), "thickness thick: allowed"),
         (lambda: vw.design(BASE, thickness=50, settings={"network.nz": 10}), "thickness and settings network.nz"),
-        (lambda: vw.compare(BASE, {"a": FILTER}), "filters named: 1; compare 2 to 6"),
-        (lambda: vw.compare(BASE, {"a/b": FILTER, "c": FILTER}), "'a/b' is not allowed as the name"),
-        (lambda: vw.compare(BASE, FILTER), "compare several filters on one base"),
         (lambda: vw.percolation([0]), "sizes = 0 is not allowed"),
         (lambda: vw.run(settings={"base.uc": 3}), "there is no setting `base.uc`"),
         (lambda: vw.Gradation([1, 2], [0, 90]), "percent_finer"),

@@ -53,7 +53,7 @@ fn holds_nothing(folder: &Path) -> bool {
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);
-    let is_ours = ["run-", "compare-", "design-", "batch-"].iter().any(|kind| name.starts_with(kind));
+    let is_ours = ["run-", "design-", "batch-"].iter().any(|kind| name.starts_with(kind));
     if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }

@@ -70,12 +70,12 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
         "run-x",
         "a-2",
         "sheets-1000",
-        "compare-7",
+        "batch-7",
     ] {
         std::fs::create_dir(root.path().join(folder)).unwrap();
     }
     // Of one nobody knows what was asked; another, of which there is only the mark, was never taken.
-    std::fs::write(root.path().join("compare-7/cases.jsonl"), "").unwrap();
+    std::fs::write(root.path().join("batch-7/cases.jsonl"), "").unwrap();
     std::fs::create_dir(root.path().join("run-5")).unwrap();
     std::fs::write(root.path().join("run-5/.voidwalk.lock"), "").unwrap();
     #[cfg(unix)]

@@ -7,7 +7,6 @@ use std::sync::{Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
-use crate::outcome::comparison::Comparison;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
@@ -20,9 +19,8 @@ use crate::serve::batches::of_batch;
 use crate::serve::designs::{KeptDesign, of_design};
 use crate::serve::live::Live;
 use crate::study::batch::{self, BatchPlan};
-use crate::study::compare::{self, ComparePlan};
 use crate::study::design;
-use crate::words::{first_lines, lines_of, sentence};
+use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
 pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
@@ -32,8 +30,6 @@ pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
 pub enum Work {
     /// Walks a scene.
     Judge(Box<Scene>),
-    /// Walks several cases.
-    Compare(Box<ComparePlan>),
     /// Walks every sample against filters.
     Batch(Box<BatchPlan>),
     /// Finds how coarse a filter may be; the networks that are done in its folder are kept.
@@ -50,7 +46,6 @@ impl Work {
     /// With what the name of its folder begins.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Compare(_) => "compare",
             Self::Design(_) => "design",
             Self::Batch(_) => "batch",
             _ => "run",
@@ -106,15 +101,6 @@ impl WorkContext {
                 run::walk_scene((**scene).clone(), &options, &callbacks).map(|run| of_run(&run.outcome))
             }
             Work::Resume => run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome)),
-            Work::Compare(plan) => {
-                let options = of_cases(folder, &self.prepare, &self.command);
-                let callbacks = CampaignCallbacks {
-                    run: callbacks,
-                    on_cases: &|all, done| live().cases(all, done),
-                    on_case: &|case, event| live().tell_case(case, event),
-                };
-                of_comparison(&compare::run(plan, &options, false, &callbacks)?)
-            }
             Work::Batch(plan) => {
                 // Outcomes are read before the page is kept waiting.
                 let rows = plan.so_far(folder);
@@ -159,21 +145,6 @@ pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> Campa
 /// A server that is killed loses no more than this.
 fn often() -> CheckpointInterval {
     "1min".parse().unwrap_or_default()
-}
-
-/// What the page shows of a comparison.
-///
-/// # Errors
-/// A number that is none.
-fn of_comparison(comparison: &Comparison) -> Result<Value, RunError> {
-    let mut value = serde_json::to_value(comparison)?;
-    let cases = value["cases"].as_array_mut().into_iter().flatten();
-    for (shown, case) in cases.zip(&comparison.cases) {
-        let unit = SizeUnit::of(case.scale_free, comparison.inches);
-        shown["lines"] = json!(lines_of(case.headline, case.practice.as_ref(), &case.model, unit));
-        shown["notes"] = json!(case.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>());
-    }
-    Ok(value)
 }
 
 /// What the page shows of an outcome.

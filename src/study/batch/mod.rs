@@ -132,6 +132,7 @@ impl BatchPlan {
         };
         let rows = self.rows.iter().zip(&self.cases).map(of_row).collect();
         let batch = WalkedBatch::new(shown(&self.samples), self.filters.clone(), rows);
+        let base = self.base.clone();
         let (work, notes) = (work.to_owned(), self.notes.clone());
         let seed = self.campaign.cases.first().map_or(0, |case| case.scene.walk.seed);
         let folders =
@@ -139,6 +140,6 @@ impl BatchPlan {
         let folders: Vec<PathBuf> = folders.collect();
         let cover = self.cover().dated(last_day(folders.iter().map(PathBuf::as_path)));
         let (inches, model_leaves_out) = (self.shows_inches(), leaves_out_of_all(modelled));
-        Ok(WalkedBatch { work, seed, notes, cover, inches, model_leaves_out, ..batch })
+        Ok(WalkedBatch { base, work, seed, notes, cover, inches, model_leaves_out, ..batch })
     }
 }

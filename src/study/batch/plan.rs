@@ -30,6 +30,8 @@ pub enum BatchWalks {
     FirstLook,
     /// The three that govern each filter alone, in full.
     GoverningAlone,
+    /// The one base against every filter, as the settings say.
+    OneBase,
 }
 
 /// A batch, its pairs worked out.
@@ -39,6 +41,8 @@ pub struct BatchPlan {
     pub(super) samples: PathBuf,
     /// The filters.
     pub(super) filters: Vec<BatchFilter>,
+    /// The curve of the base as sampled; empty where there are several samples.
+    pub(super) base: Vec<[f64; 2]>,
     /// What practice says of each pair; nothing is walked yet.
     pub(super) rows: Vec<WalkedRow>,
     /// The name of each row's case, whether it is walked or not.
@@ -56,8 +60,8 @@ impl BatchPlan {
     /// besides its two soils. A pair that cannot be walked stays in the table, with the reason.
     ///
     /// # Errors
-    /// A file that cannot be read; a filter that is named twice; cases that do not fit the memory; no pair
-    /// that can be walked.
+    /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
+    /// that do not fit the memory; no pair that can be walked.
     pub fn new(
         samples: &Path,
         filters: &[PathBuf],
@@ -68,12 +72,16 @@ impl BatchPlan {
     ) -> Result<Self, RunError> {
         refuse_twice(filters)?;
         let table = BatchTable::read(samples, filters, rules).map_err(RunError::refused)?;
+        if walks == BatchWalks::OneBase {
+            table.one_base(samples).map_err(RunError::Refused)?;
+        }
         let of_notes = table.notes.iter().map(|(file, note)| format!("{}: {note}", shown(file)));
         let cases = case_names(&table, filters);
         let mut plan = Self {
             samples: samples.to_owned(),
             rows: governed(&table),
             filters: table.filters,
+            base: table.base,
             cases,
             in_full: HashSet::new(),
             notes: of_notes.collect(),
@@ -86,7 +94,11 @@ impl BatchPlan {
         };
         let looks = first_look(tables);
         for (row, case) in plan.rows.iter_mut().zip(&plan.cases) {
-            let in_full = row.governs.is_some() && walks != BatchWalks::FirstLook;
+            let in_full = match walks {
+                BatchWalks::OneBase => !tables.quick,
+                BatchWalks::FirstLook => false,
+                BatchWalks::GoverningInFull | BatchWalks::GoverningAlone => row.governs.is_some(),
+            };
             if walks == BatchWalks::GoverningAlone && !in_full {
                 row.not_walked = match (row.rules.is_refused, row.rules.limit_is_open()) {
                     (true, _) => EXCHANGED,
@@ -96,7 +108,8 @@ impl BatchPlan {
                 .into();
                 continue;
             }
-            match scene(row, &plan.filters, if in_full { tables } else { &looks }) {
+            let as_stated = in_full || walks == BatchWalks::OneBase;
+            match scene(row, &plan.filters, if as_stated { tables } else { &looks }) {
                 Ok(scene) => {
                     let pair = [("sample", &row.rules.sample), ("filter", &row.rules.filter)];
                     let levels = pair.map(|(factor, level)| (factor.to_owned(), level.clone())).to_vec();

@@ -9,7 +9,6 @@ call                                     answer
 =======================================  =====================================================================
 ``judge(base, filter)``                  does this filter hold this base? A :class:`Result`
 ``rules(base, filter)``                  what the rules of practice say, without a walk
-``compare(base, {"a": f1, "b": f2})``    what another filter, or another base, changes: a :class:`Comparison`
 ``specification(base)``                  a filter for this base by practice: a :class:`Specification`
 ``design(base, filter)``                 how coarse a filter may be, by walk and practice: a :class:`Design`
 ``soil(soil)``                           what is understood of a sieve table
@@ -52,13 +51,12 @@ from ._scene import Scene, init_text, scene_text
 from ._schema import schema
 from ._soil import Curve, Gradation
 from ._specification import Specification, specification
-from ._studies import Comparison, Design, compare, design, percolation, study
+from ._studies import Design, design, percolation, study
 from ._voidwalk import Progress, VoidwalkError, __version__
 from ._walk import campaign, replicate_seed, resume, run, walk
 
 __all__ = [
     "CampaignResult",
-    "Comparison",
     "Constrictions",
     "Curve",
     "Design",
@@ -73,7 +71,6 @@ __all__ = [
     "WalkResult",
     "__version__",
     "campaign",
-    "compare",
     "constrictions",
     "design",
     "init_text",

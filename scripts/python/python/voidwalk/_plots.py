@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ints
 from .columns import Counts, Layers, Series, Sizes, Walked
-from .records import Comparison, Design, Outcome, Specification, WalkOutcome
+from .records import Design, Outcome, Specification, WalkOutcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes  # type: ignore[import-not-found,unused-ignore]
@@ -186,30 +186,6 @@ def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
     drawn.invert_yaxis()
     drawn.set_xlabel("Value over limit (for a least value, limit over value); kept up to 1")
     drawn.grid(True, axis="x", which="both", alpha=0.25)
-    return drawn
-
-
-def plot_comparison(outcome: Comparison, ax: Optional[Axes]) -> Axes:
-    """Eroded mass of each case and run, with its 95 % interval."""
-    drawn = axes(ax)
-    cases = outcome["cases"]
-    for run in range(max((len(case["runs"]) for case in cases), default=0)):
-        walked = [(at, case["runs"][run]) for at, case in enumerate(cases) if len(case["runs"]) > run]
-        means = [100 * of["mean"] for _, of in walked]
-        # One replicate has no interval.
-        lows = [of["mean"] if of["low"] is None else of["low"] for _, of in walked]
-        highs = [of["mean"] if of["high"] is None else of["high"] for _, of in walked]
-        errors = [
-            [max(mean - 100 * low, 0.0) for mean, low in zip(means, lows)],
-            [max(100 * high - mean, 0.0) for mean, high in zip(means, highs)],
-        ]
-        places = [at + 0.15 * (run - 0.5) for at, _ in walked]
-        drawn.errorbar(places, means, yerr=errors, fmt="o", capsize=4, label=f"Run {run + 1}, mean and 95 % interval")
-    drawn.axhline(100 * outcome["threshold"], color="black", linestyle="--", linewidth=1, label="Erosion begins")
-    drawn.set_xticks(range(len(cases)), [case["name"] for case in cases])
-    drawn.set_ylabel("Eroded mass (% of the mass inserted)")
-    drawn.set_ylim(bottom=0)
-    drawn.legend()
     return drawn
 
 

@@ -1,4 +1,4 @@
-"""Several walks: filters or bases side by side, how coarse a filter may be, and studies of parameters."""
+"""Several walks: how coarse a filter may be, and studies of parameters."""
 
 from __future__ import annotations
 
@@ -24,12 +24,9 @@ from typing import (
 
 from . import _voidwalk
 from ._arrays import threads_or_none, whole
-from ._plots import Axes, plot_comparison, plot_design
+from ._plots import Axes, plot_design
 from ._progress import Follower, Following
 from .records import (
-    ComparedCase,
-    ComparedPair,
-    Comparison as ComparisonRecord,
     Design as DesignRecord,
     DesignRow,
     PercolationStudy,
@@ -38,93 +35,16 @@ from .records import (
 from ._boxes import box
 from ._result import Result, Row, WalkResult, counted_notes, page_of, read_csv, sentences_of
 from ._scene import Scene, Settings, Stated
-from ._soil import Gradation
-from ._tables import Soil, changes, gradation, told, workplace
+from ._tables import Soil, changes, workplace
 from ._walk import manner, run
-from .columns import Table, Walked
+from .columns import Walked
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-__all__ = ["Comparison", "Design", "compare", "design", "percolation", "study"]
+__all__ = ["Design", "design", "percolation", "study"]
 
 _Path = Union[str, "os.PathLike[str]"]
-
-
-class Comparison:
-    """Several cases side by side, walked with the same seed.
-
-    Attributes
-    ----------
-    outcome : dict
-        Everything that ``compare.json`` says.
-    table : dict of ndarray
-        The columns of ``compare.csv``: a row a case.
-    folder : pathlib.Path or None
-        Folder of the comparison, where it has one.
-    """
-
-    outcome: ComparisonRecord
-    table: Table
-    folder: Optional[Path]
-
-    def __init__(self, outcome: ComparisonRecord, table: Table, folder: Optional[Path] = None) -> None:
-        self.outcome, self.table, self.folder = outcome, table, folder
-
-    @property
-    def cases(self) -> List[ComparedCase]:
-        """The cases, in the order in which they were named, each a dict: name, verdict (the model's class),
-        headline and practice (the answer of practice), model, notes, and in runs the eroded mass
-        (:class:`voidwalk.records.ComparedCase`)."""
-        return self.outcome["cases"]
-
-    @property
-    def pairs(self) -> List[ComparedPair]:
-        """Every two cases by run, each a dict: first, second, run, difference (eroded mass fraction of the first less
-        that of the second, with mean, sd, low and high), and differ (whether all 95 % intervals taken together leave 0
-        out). See :class:`voidwalk.records.ComparedPair`."""
-        return self.outcome["pairs"]
-
-    def to_pandas(self) -> "pandas.DataFrame":
-        """The cases as a pandas.DataFrame: the columns of ``compare.csv``."""
-        frame: pandas.DataFrame = import_module("pandas").DataFrame(self.table)
-        return frame
-
-    def plot(self, ax: Optional[Axes] = None) -> Axes:
-        """Draws the eroded mass of every case and run with its 95 % interval, by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to; a new figure without it.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
-        return plot_comparison(self.outcome, ax)
-
-    def report(self) -> Path:
-        """Writes the page of a comparison that has a folder again, and gives its path."""
-        return page_of(self.folder)
-
-    def __len__(self) -> int:
-        return len(self.cases)
-
-    def __repr__(self) -> str:
-        rows = []
-        for case in self.cases:
-            eroded = " then ".join(f"{100 * run['mean']:.2f} %" for run in case["runs"])
-            practice = f"practice {case['headline']}, " if case.get("headline") else ""
-            rows.append(f"{case['name']}: {practice}model {case['verdict']}, {eroded} eroded")
-        return f"Comparison({'; '.join(rows)})"
-
-    def _repr_html_(self) -> str:
-        rows = []
-        for case in self.cases:
-            first = next((f"{100 * run['mean']:.2f} %" for run in case["runs"]), "")
-            rows.append((case["name"], case.get("headline") or "", case["verdict"], first))
-        return box("Comparison", {}, ("Case", "Practice", "Model (research)", "Mass eroded, run 1"), rows)
 
 
 class Design:
@@ -209,115 +129,6 @@ class Design:
             for row in self.boundaries
         ]
         return box("Design", facts, heading, rows)
-
-
-def compare(
-    base: Union[None, Soil, Mapping[str, Soil], Sequence[Soil]] = None,
-    filter: Union[None, Soil, Mapping[str, Soil], Sequence[Soil]] = None,
-    out: Optional[_Path] = None,
-    threads: Optional[int] = None,
-    *,
-    scenes: Sequence[_Path] = (),
-    density: Optional[str] = None,
-    pack: bool = False,
-    quick: bool = False,
-    as_sampled: bool = False,
-    as_given: bool = False,
-    dispersive: bool = False,
-    joint_mm: Optional[float] = None,
-    seed: Optional[int] = None,
-    replicates: Optional[int] = None,
-    settings: Optional[Settings] = None,
-    overwrite: bool = False,
-    packings: _Path = "voidwalk-packings",
-    memory: Optional[int] = None,
-    checkpoint_every: Optional[str] = None,
-    progress: Follower = None,
-) -> Comparison:
-    """Walks filters on one base, bases on one filter, or scenes side by side, as ``voidwalk compare`` does.
-
-    Parameters
-    ----------
-    base, filter : soil, or several
-        As for :func:`judge`. One of them is a list of two to six files, or a dict of two to six soils by name, as
-        ``{"as built": ([0.5, 2], [0, 100]), "finer": "finer.csv"}``.
-    out : path-like, optional
-        Folder for the results; a comparison that was stopped there goes on. Without it everything stays in
-        memory.
-    scenes : sequence of path-like
-        Files of scenes to compare, instead of soils.
-    threads, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates, settings
-        As for :func:`judge`, the same for all cases.
-    overwrite, packings, memory, checkpoint_every, progress
-        As for :func:`run`; progress counts cases.
-
-    Returns
-    -------
-    Comparison
-
-    Raises
-    ------
-    ValueError
-        Fewer than two cases or more than six; soils that look exchanged; a table that is refused.
-    VoidwalkError
-        Work that failed.
-
-    Examples
-    --------
-    >>> import voidwalk as vw
-    >>> base = vw.Gradation([0.08, 0.3], [0, 100])
-    >>> filters = {"fine": ([0.5, 2.0], [0, 100]), "coarse": ([3.0, 9.0], [0, 100])}
-    >>> small = {"network.nx": 10, "network.ny": 10, "network.nz": 12}
-    >>> found = vw.compare(base, filters, density="dense", quick=True, settings=small)
-    >>> [case["verdict"] for case in found.cases]
-    ['no erosion', 'continuing erosion']
-    """
-    tables = told(
-        settings, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates
-    )
-    how = manner("compare", memory, threads, checkpoint_every)
-    with workplace() as place, Following(progress) as callback:
-
-        def files(name: str, soils: object) -> Optional[List[str]]:
-            """The files of several soils; ``None`` for a single one."""
-            if isinstance(soils, Mapping):
-                return place.tables(name, soils)
-            if isinstance(soils, list):
-                if not all(isinstance(soil, (str, os.PathLike)) for soil in soils):
-                    raise ValueError(f"{name} is a list of files, or a dict of soils by name")
-                return [os.fspath(soil) for soil in soils]
-            return None
-
-        one_base: Optional[str] = None
-        one_filter: Optional[str] = None
-        bases, filters = files("base", base), files("filter", filter)
-        if scenes:
-            if base is not None or filter is not None:
-                raise ValueError("scenes have a base and a filter of their own: give either these or scenes")
-            others = [os.fspath(scene) for scene in scenes]
-        elif filters is not None and bases is None and base is not None:
-            one_base, others = place.table("base", base), filters  # type: ignore[arg-type]
-        elif bases is not None and filters is None and filter is not None:
-            one_filter, others = place.table("filter", filter), bases  # type: ignore[arg-type]
-        else:
-            raise ValueError("compare several filters on one base, several bases on one filter, or scenes")
-        place_of_results = Path(place.out(out))
-        said = _voidwalk.compare(
-            one_base,
-            one_filter,
-            others,
-            tables,
-            place_of_results,
-            bool(overwrite),
-            os.fspath(packings),
-            how,
-            callback,
-        )
-        return Comparison(
-            json.loads(place.named(said)),
-            read_csv(place_of_results / "compare.csv"),
-            None if out is None else place_of_results,
-        )
 
 
 def _words(given: Union[None, str, float, Sequence[Union[str, float]]]) -> List[str]:

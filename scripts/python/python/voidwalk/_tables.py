@@ -71,10 +71,6 @@ class Workplace:
         (inputs / "names.json").write_text(json.dumps(self._names), encoding="utf-8")
         return str(file)
 
-    def tables(self, name: str, soils: Mapping[str, Soil]) -> List[str]:
-        """The files of several soils under their names."""
-        return [self.table(key, gradation(f"{name}[{key!r}]", soil)) for key, soil in soils.items()]
-
     def named(self, record: str) -> str:
         """A record of the library in which soils have their names, not their places here."""
         for file, name in self._names.items():

@@ -47,7 +47,6 @@ __all__ = [
     "run_in_memory",
     "Curve",
     "Gradation",
-    "compare",
     "design",
     "percolation",
     "schema",
@@ -252,17 +251,6 @@ def campaign(
 ) -> None: ...
 def schema(name: str) -> str: ...
 def soils(path: _Path, d0_mm: Optional[float]) -> str: ...
-def compare(
-    base: Optional[_Path],
-    filter: Optional[_Path],
-    others: List[str],
-    tables: _TableOptions,
-    out: _Path,
-    overwrite: bool,
-    packings: _Path,
-    manner: _Manner,
-    progress: _Callback,
-) -> str: ...
 def design(
     base: Optional[_Path],
     filter: Optional[str],
