@@ -1,5 +1,5 @@
 //! Studies: several cases side by side, many samples against filters, how coarse a filter may be; and of the
-//! model itself, error against run time and the percolation threshold of lattices.
+//! model itself, the percolation threshold of lattices.
 
 pub mod batch;
 pub mod compare;
@@ -11,6 +11,5 @@ mod inputs;
 mod kept;
 mod of_cases;
 pub mod percolation;
-pub(crate) mod precision;
 
 pub(crate) use file_names::{numbered, refuse_twice};
