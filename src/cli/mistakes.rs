@@ -206,7 +206,7 @@ mod tests {
         let command = super::super::examples::command();
         let of = |name: &str| instead_of_command(name, &command).unwrap();
         assert_eq!(of("rnu"), "did you mean `voidwalk run`?");
-        assert_eq!(of("campiagn"), "did you mean `voidwalk campaign`?");
+        assert_eq!(of("jugde"), "did you mean `voidwalk judge`?");
         assert_eq!(of("dam.toml"), "to walk a scene: voidwalk run dam.toml");
         assert!(
             of("sand.csv").contains("voidwalk judge BASE FILTER")

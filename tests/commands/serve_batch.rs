@@ -157,7 +157,7 @@ fn a_batch_is_refused_before_anything_is_walked() {
     for (filters, walks, changes, says) in [
         (&[][..], "look", &[][..], "name one to 6 filters"),
         (&["2"; 7], "look", &[], "name one to 6 filters"),
-        (&["2"], "all", &[], "governing, look or alone"),
+        (&["2"], "all", &[], "governing, look, alone or filters"),
         (&["2", "2"], "look", &[], "is named twice"),
         (&["9"], "look", &[], "no such sheet"),
         (&["2"], "look", &["network.nx=0"], "network.nx"),

@@ -205,7 +205,7 @@ class BaseSettings(TypedDict, total=False):
     regrade
         "practice": walk the base as filter practice regrades it (to 100 % finer than 4.75 mm or a gap); needs
         sizes in mm. "no": walk it as sampled. Default: "no" in a scene, "practice" for tables (`voidwalk
-        judge`, `compare`, `design`, `serve`) without --as-sampled.
+        judge`, `design`, `serve`) without --as-sampled.
     dispersive
         Whether the base is a dispersive clay or silt. The rules of practice take stricter limits. The walk
         ignores dispersion, so the verdict is in doubt.
@@ -413,8 +413,8 @@ class SceneSettings(TypedDict, total=False):
     engine
         How passive particles, which can block nothing, move: "counts" (exact counts per void), "particles" (one
         by one), "expected" (their expectation), or "auto": particles if fewer than 6.5 passive ones are
-        inserted on a start node in an increment, else counts; expected in `voidwalk design`. `judge`, `compare`
-        of tables and `serve` set "expected".
+        inserted on a start node in an increment, else counts; expected in `voidwalk design`. `judge` and
+        `serve` set "expected".
     runs
         Number of runs: 1 or 2. The second offers fresh base to the filter as the first left it.
     replicates
