@@ -6,16 +6,15 @@
     scripts/checks/same_bits.py --binary target/release/voidwalk --isa avx2 check results/same-bits.json
 
 For changes of the code that must change no result. `record` writes down what the program gives; `check` works the same scenes and says
-of each `same` or what differs, with exit code 1 where anything does. Run, resume, pack, constrictions, campaign, percolation and
-precision have scenes. Some scenes only vary another in a way that may change nothing (threads, instructions, mapped columns, a kill, the
+of each `same` or what differs, with exit code 1 where anything does. Run, resume, pack, constrictions, campaign and
+percolation have scenes. Some scenes only vary another in a way that may change nothing (threads, instructions, mapped columns, a kill, the
 run's own scene.toml): they have no record of their own, and `record` too fails where they give anything else than the one they vary.
 
 Compared are
 - every byte of CSV files: series, layers, retained, eroded, grains, constrictions, cases, percolation;
-- every number of JSON files, with true, false, null and the words that are results (WORDS);
-- the numbers of precision's tables.
+- every number of JSON files, with true, false, null and the words that are results (WORDS).
 Left out are
-- times and what is worked out from them (figures of merit): no two calls take the same;
+- times: no two calls take the same;
 - names, notes and all other text, that of rules too, and pages and figures: their wording may change, and their numbers are those
   that are compared;
 - rules of practice and what they say of a pair: they read the sieve curves alone, grow in number, and have tests of their own;
@@ -339,12 +338,6 @@ class Program:
         self.call(folder, "percolation", "--sizes", "5,8,12,20", "--realisations", "20", "--out", "out", threads=threads)
         return results(folder / "out", "percolation.csv", "percolation.json")
 
-    def precision(self, folder, tiers, threads=None):
-        self.call(
-            folder, "precision", "small.toml", *settings(LITTLE), "--budget", "100ms", "--out", "out", "-q", "--tier", *tiers,
-            threads=threads)
-        return {path.name: digest(without_times(path)) for path in sorted(folder.glob("out/*.csv"))}
-
 
 def scenes():
     """Every scene: name, the scene whose results it must have, the kind, and what that is given."""
@@ -362,9 +355,7 @@ def scenes():
         for overlap in ["0.1", "0.5"]:
             name = f"constrictions of {grains}, overlap {overlap}"
             yield name, name, Program.constrictions, [grains, overlap], {}
-    yield "precision, exact answers", "precision, exact answers", Program.precision, [["exact"]], {}
     for also, how in [("", {}), (", 3 threads", {"threads": 3})]:
-        yield "precision" + also, "precision", Program.precision, [["sampling", "bias", "decision"]], how
         yield "percolation" + also, "percolation", Program.percolation, [], how
         yield "campaign" + also, "campaign", Program.campaign, [], how
 
@@ -415,20 +406,6 @@ def without_labels(path):
     with open(path, newline="") as file:
         rows = [{k: v for k, v in row.items() if k not in LABELS} for row in csv.DictReader(file)]
     return json.dumps(rows).encode()
-
-
-def without_times(path):
-    """The numbers of a table, row by row, but for columns of times."""
-    def is_number(text):
-        try:
-            return text in ("", "true", "false") or float(text) is not None
-        except ValueError:
-            return False
-
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
-    lines = [{k: v for k, v in row.items() if "seconds" not in k and "merit" not in k and is_number(v)} for row in rows]
-    return json.dumps(lines, sort_keys=True).encode()
 
 
 def differences(was, now, path=""):

@@ -57,7 +57,6 @@ FILES = {
     'engine = "particles"\nrecord = { sensitivity = [] }\n[[factor]]\nname = "cu_b"\nsetting = "base.cu"\nvalues = [1.5, 3]\n',
 }
 EVERY = ["--checkpoint-every", "10increments"]
-STUDY = ["--set", "base.n_base=300", "--set", "network.nx=4", "--set", "network.ny=4", "--set", "network.nz=5", "-q"]
 TABLES = ["--set", "replicates=2", "--set", "base.n_base=20000", "--set", "network.nx=5", "--set", "network.ny=5", "--set",
           "network.nz=6", "--set", "engine=particles", "--set", "record.sensitivity=[]"]
 DESIGN = ["design", "base.csv", "--out", "r", "-q", "--set", "network.nx=5", "--set", "network.ny=5", "--set", "replicates=3"]
@@ -93,12 +92,6 @@ WORKS = {
     "designs": (["design", "samples.csv", "--each", *DESIGN[2:], "--thickness", "6layers"], None, ["r"]),
     "specification": (["design", "base.csv", "--steps", "--out", "r", "-q"], None, ["r"]),
     "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
-    "precision": (["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "bias", "scaling", *STUDY], None, ["r"]),
-    "precision-overwrite": (
-        ["precision", "--out", "r", "--budget", "100ms", "--tier", "sampling", "scaling", "--overwrite", *STUDY],
-        ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
-        ["r"],
-    ),
 }
 # Works of the Python package, each line a call of its own; a run is resumed by the package or by the program.
 PYTHON_WORKS = {
@@ -125,11 +118,10 @@ WORKS |= PYTHON_WORKS
 HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", "other"]
 
 # What a record says of the clock, the machine and the call.
-TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command", "core_seconds", "wall_seconds",
-         "triangulate_seconds", "measure_seconds", "merit", "merit_low", "merit_high", "spent"}
+TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "precision.json", "design.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
-PAGES = ("report.html", "precision.html", "design.html", "specification.html", "batch.html", "designs.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "design.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
+PAGES = ("report.html", "design.html", "specification.html", "batch.html", "designs.html")
 
 
 class Find(Exception):
@@ -153,8 +145,6 @@ def is_clear(done):
 
 def alike(value, name=None):
     """A record with the same times, host, threads and command as every other."""
-    if name == "spent":
-        return [[tier, 1.0] for tier, _ in value]
     if name in TIMES and isinstance(value, (str, int, float)):
         return "alike" if isinstance(value, str) else 1
     if isinstance(value, dict):
@@ -530,7 +520,6 @@ class Trial:
             "batch": ["judge", "base.csv", "filter.csv", "--each", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
-            "precision": ["precision", "--out", "r", "--budget", "100ms", "--tier", "scaling", *STUDY],
             "design": DESIGN,
             "designs": ["design", "samples.csv", "--each", *DESIGN[2:]],
         }

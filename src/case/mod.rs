@@ -368,15 +368,7 @@ impl Case {
     /// # Errors
     /// None that [`Case::new`] has not found.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
-        self.network_of_shape(self.scene.network.source().shape().unwrap_or_default(), seed)
-    }
-
-    /// The network of the replicate with this seed, with `shape` voids along x, y, z in place of the scene's;
-    /// a network from a file has the shape that it has.
-    ///
-    /// # Errors
-    /// A length of 0, or more constrictions than 32 bits can number.
-    pub fn network_of_shape(&self, shape: [u32; 3], seed: u64) -> Result<Network, NetworkError> {
+        let shape = self.scene.network.source().shape().unwrap_or_default();
         match (&self.fixed_network, &self.scene.network.source()) {
             (None, NetworkSource::Cubic(_)) => {
                 self.with_directions(Network::cubic(shape, &self.curve, self.unit_mm, seed)?)

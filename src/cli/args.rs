@@ -5,9 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, WalkArgs};
-pub use super::study_args::{
-    CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs, PrecisionArgs,
-};
+pub use super::study_args::{CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs};
 use super::values::{density, form, length, threads};
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
@@ -69,9 +67,6 @@ pub enum Command {
     Constrictions(ConstrictionsArgs),
     /// Find the percolation threshold of cubic lattices of several sizes
     Percolation(PercolationArgs),
-    /// Measure error against run time for a scene: exact answers, scatter, bias, wrong verdicts, scaling,
-    /// packings
-    Precision(PrecisionArgs),
     /// Write report.html and the figures of a finished run folder again
     Report {
         /// The folder

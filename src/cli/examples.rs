@@ -13,7 +13,7 @@ use super::groups::with_groups;
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 19] = [
+const EXAMPLES: [(&str, [Example; 2]); 18] = [
     (
         "run",
         [
@@ -113,13 +113,6 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
         [
             ["voidwalk percolation", "lattices of 10 to 160 voids along a side"],
             ["voidwalk percolation --sizes 10,20,40x40x60", "two small ones, and the lattice of the paper"],
-        ],
-    ),
-    (
-        "precision",
-        [
-            ["voidwalk precision --budget 1min", "the built-in scene, for a minute of processor time"],
-            ["voidwalk precision dam.toml --tier exact sampling", "two of the tiers"],
         ],
     ),
     (

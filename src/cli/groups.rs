@@ -14,7 +14,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
 ];
 
 /// Commands that are named alone.
-const MORE: [&str; 6] = ["pack", "constrictions", "percolation", "precision", "completions", "man"];
+const MORE: [&str; 5] = ["pack", "constrictions", "percolation", "completions", "man"];
 
 /// The command with a help that lists its commands in groups.
 pub(super) fn with_groups(command: Command) -> Command {

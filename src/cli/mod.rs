@@ -21,7 +21,6 @@ mod judge_each;
 mod mistakes;
 mod pack;
 mod percolation;
-mod precision;
 mod print;
 mod progress;
 mod report;
@@ -110,7 +109,6 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
         Command::Constrictions(args) => constrictions::constrictions(&args),
         Command::Rules(args) => rules::rules(&args),
         Command::Percolation(args) => percolation::percolation(&args),
-        Command::Precision(args) => precision::precision(&args),
         Command::Report { folder } => report::report(&folder),
         Command::Export { folder } => export::export(&folder),
         Command::Completions { shell } => {

@@ -10,9 +10,9 @@ use crate::run::{FolderKind, RunError};
 /// Writes the report of a finished folder again.
 pub fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
-        let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, \
-            percolation.json, precision.json, design.json, designs.json or specification.json; name the \
-            folder of a finished run, packing, campaign, batch, study, design or specification";
+        let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, percolation.json, \
+            design.json, designs.json or specification.json; name the folder of a finished run, packing, \
+            campaign, batch, study, design or specification";
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
@@ -32,7 +32,6 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, ReportError> {
         FolderKind::Packing => report::write_packing(folder),
         FolderKind::Campaign => report::write_campaign(folder),
         FolderKind::Percolation => report::write_percolation(folder),
-        FolderKind::Precision => report::write_precision(folder),
         FolderKind::Batch => report::write_batch(folder),
         FolderKind::Design => report::write_design(folder),
         FolderKind::Designs => report::write_designs(folder),

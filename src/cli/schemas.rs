@@ -12,7 +12,6 @@ use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::percolation::PercolationStudy;
-use crate::outcome::precision::Precision;
 use crate::outcome::record::{Manifest, Outcome};
 use crate::run::Check;
 use crate::scene::SceneReference;
@@ -36,7 +35,6 @@ fn contents() -> Vec<(Format, Schema)> {
         (format::PACKING, of::<PackingRecord>()),
         (format::CONSTRICTIONS, of::<Summary>()),
         (format::PERCOLATION, of::<PercolationStudy>()),
-        (format::PRECISION, of::<Precision>()),
         (format::SERVE, of::<Nothing>()),
         (format::CHECK, of::<Check>()),
         (format::PLAN_CHECK, of::<PlanCheck>()),

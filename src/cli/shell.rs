@@ -19,7 +19,6 @@ use crate::scene::{Density, LibraryDensity, Scene, SheetUnits};
 use crate::schema::KeyInfo;
 use crate::store::format::FORMATS;
 use crate::store::{StoreError, write_whole};
-use crate::study::precision::Tier;
 
 /// Prints a script that completes commands, options and the values of options.
 pub fn completions(shell: Shell) {
@@ -123,7 +122,6 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
         "units" => named(&SheetUnits::ALL.map(SheetUnits::name)),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
         "facets" => named(&FACETS.map(|(word, _)| word)),
-        "tiers" => named(&Tier::ALL.map(Tier::name)),
         "filter" if command == "design" && shell == Shell::Bash => {
             shipped().iter().map(|filter| filter.name.clone()).collect()
         }

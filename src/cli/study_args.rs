@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::shared_args::{SceneArgs, WalkArgs};
+use super::shared_args::WalkArgs;
 use super::values::{assignment, bracket, facets, lattice_size, seed, sheet_units, threads, time};
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
@@ -14,7 +14,6 @@ use crate::packing::{CellOption, LengthUnit};
 use crate::run::machine::bytes_from_words;
 use crate::scene::SheetUnits;
 use crate::study::design::ThicknessList;
-use crate::study::precision::Tier;
 
 /// Which base, and what shape of filter.
 #[derive(Debug, Args)]
@@ -239,33 +238,6 @@ pub struct PercolationArgs {
     #[arg(long)]
     pub json: bool,
     /// Print no summary
-    #[arg(long, short)]
-    pub quiet: bool,
-}
-
-/// Which scene, and how long.
-#[derive(Debug, Args)]
-pub struct PrecisionArgs {
-    /// Which scene.
-    #[command(flatten)]
-    pub scene: SceneArgs,
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "voidwalk-precision")]
-    pub out: PathBuf,
-    /// Replace the results of an earlier call in --out
-    #[arg(long)]
-    pub overwrite: bool,
-    /// What to measure: exact, sampling, bias, decision, scaling, packing [default: all]
-    #[arg(long = "tier", value_name = "NAME", num_args = 1..)]
-    pub tiers: Vec<Tier>,
-    /// Processor time of all cores together. It sets the number of replicates by a count of operations, so
-    /// the same seed and budget give the same errors on any machine
-    #[arg(long, value_name = "TIME", default_value = "4min", value_parser = time)]
-    pub budget: Duration,
-    /// Runs side by side; the result is the same for any number [default: one per core]
-    #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    pub threads: Option<usize>,
-    /// Print no progress and no summary
     #[arg(long, short)]
     pub quiet: bool,
 }

@@ -194,25 +194,6 @@ impl Network {
         }
         Err(NetworkError::NarrowWayOut { sweeps: most })
     }
-
-    /// The network on which a particle that fits everywhere fares as a single particle of diameter `d` does
-    /// on this one: constrictions finer than `d` lead into one more void, which has no exit. Particles there
-    /// cannot block anything, so each of any number of them is a first particle.
-    pub fn as_first_particle_of(&self, d: f32) -> Network {
-        let stop = self.voids() as u32;
-        let end = self.exit_begin[self.voids()];
-        let finer = |c: usize| self.diameter[c] < d && self.diameter[c] > 0.0;
-        let target =
-            (0..self.constrictions()).map(|c| if finer(c) { stop } else { self.target[c] }).collect();
-        let last = self.layer.iter().filter(|&&layer| layer != super::NO_LAYER).max();
-        Network {
-            exit_begin: self.exit_begin.iter().copied().chain([end]).collect(),
-            target,
-            layer: self.layer.iter().copied().chain([last.map_or(0, |l| l + 1)]).collect(),
-            shape: None,
-            ..self.clone()
-        }
-    }
 }
 
 #[cfg(test)]
@@ -280,21 +261,5 @@ mod tests {
         assert!(about(lattice.moves_to_an_end(1 << 22), 120.0));
         let few = lattice.moves_to_an_end(0);
         assert!(about(few, 120.0), "{few}");
-    }
-
-    /// The probability to leave of a stopped particle is that of one that fits everywhere on the network made
-    /// for it.
-    #[test]
-    fn the_network_of_a_first_particle_has_its_answer() {
-        let diameters: Vec<f32> = (0..3 * 3 * 4 * 5).map(|i| 0.2 + 0.01 * (i * 37 % 61) as f32).collect();
-        let network = Network::cubic_from_diameters([3, 4, 5], diameters, 1.0).unwrap();
-        let direct = network.first_passage(0.3, |_| false).unwrap();
-        let made = network.as_first_particle_of(0.3);
-        let passage = made.first_passage(0.0, |_| false).unwrap();
-        assert!(direct.leaves[0] > 0.0 && direct.leaves[0] < 0.9);
-        for void in 0..network.voids() {
-            assert!((direct.leaves[void] - passage.leaves[void]).abs() < 1e-12);
-        }
-        assert_eq!((made.voids(), made.exits(60).len(), made.layers()), (61, 0, 6));
     }
 }

@@ -24,7 +24,6 @@ mod listed;
 mod passage;
 mod percolation;
 mod reach;
-mod stratified;
 mod twins;
 mod undirected;
 

@@ -55,7 +55,7 @@ pub struct Recorded {
 ///
 /// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the
 /// base has none.
-pub(crate) fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
+fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
         // The same masses added in two orders may differ in their last bits.
         true => (tally.eroded_mass / end.inserted_mass).min(1.0),

@@ -17,7 +17,6 @@
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`undecided`] is what leaves a verdict open.
-//! - [`precision`] is error against run time.
 //! - [`design`] is how coarse a filter may be, and the band of a specification.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
 //!   [`quantity`] is the way from a number to text.
@@ -42,7 +41,6 @@ pub mod number_rows;
 pub mod packing;
 pub(crate) mod paper;
 pub mod percolation;
-pub mod precision;
 pub mod quantity;
 pub mod record;
 mod recorder;
@@ -60,8 +58,7 @@ pub mod verdict;
 pub use crate::gradation::CurvePoint;
 pub use base_size::BaseSize;
 pub use infiltration::infiltration;
-pub(crate) use least_squares::{Straight, log_log_slope};
-pub(crate) use metrics::eroded_mass_fraction;
+pub(crate) use least_squares::Straight;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
 pub use model_limit::{Modelled, leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};

@@ -1,8 +1,8 @@
 //! A table, described once, for its file and for a page: a column has a name in the file, a heading on the
 //! page if it stands there, and one way in which its cell is taken from a row.
 //!
-//! Rows whose fields are the columns of a file are declared with the headings of a page by `table_rows!`, and
-//! written by [`csv_of()`]. Of others each column is described: [`Columns`].
+//! Rows whose fields are the columns of a file are written by [`csv_of()`]. Of others each column is
+//! described: [`Columns`].
 //!
 //! ```
 //! use voidwalk::outcome::table::Columns;
@@ -360,30 +360,6 @@ cells! {
     usize: true, |count| whole(count as u64);
     f64: true, significant;
 }
-
-/// Declares rows whose fields are the columns of a CSV file ([`csv_of()`]); what follows `=>` is how a page
-/// shows a field, as of [`Columns`]. The type gets a function `columns`.
-macro_rules! table_rows {
-    ($($(#[$about:meta])* pub struct $row:ident {
-        $($(#[$what:meta])* pub $field:ident: $kind:ty $(=> $show:ident($($with:tt)*))?,)*
-    })*) => { $(
-        $(#[$about])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-        #[cfg_attr(test, derive(schemars::JsonSchema))]
-        pub struct $row {
-            $($(#[$what])* pub $field: $kind,)*
-        }
-
-        impl $row {
-            /// The columns of its table.
-            pub fn columns() -> crate::outcome::table::Columns<'static, Self> {
-                crate::outcome::table::Columns::default()
-                    $(.column(stringify!($field), |row: &Self| row.$field.clone()) $(.$show($($with)*))?)*
-            }
-        }
-    )* };
-}
-pub(crate) use table_rows;
 
 /// A cell that no spreadsheet takes for a formula.
 fn inert(cell: String) -> String {

@@ -3,11 +3,10 @@
 //! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`,
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
-//! [`write_percolation()`] that of a percolation study, and [`write_precision()`] that of a study of error
-//! against run time; [`write_batch()`] that of many samples against filters, [`write_design()`] that of a
-//! design, [`write_designs()`] that of the designs of many samples, and [`write_specification()`] that of a specification by
-//! practice alone. They write
-//! `figures/*.svg`, each a file of its own, and `report.html`.
+//! [`write_percolation()`] that of a percolation study, [`write_batch()`] that of many samples against
+//! filters, [`write_design()`] that of a design, [`write_designs()`] that of the designs of many samples, and
+//! [`write_specification()`] that of a specification by practice alone. They write `figures/*.svg`, each a
+//! file of its own, and `report.html`.
 //!
 //! # Pages without a folder
 //! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
@@ -55,7 +54,6 @@ mod network_walk;
 mod packing;
 mod page;
 mod percolation;
-mod precision;
 mod results;
 mod rules;
 mod run_figures;
@@ -86,7 +84,6 @@ pub use network_walk::{network_walk_brief, network_walk_page};
 pub use packing::write_packing;
 pub use page::{run_brief, run_page, write};
 pub use percolation::{percolation_spread, write_percolation};
-pub use precision::{precision_judgements, write_precision};
 pub use soils::soils_figure;
 pub use specification::write_specification;
 #[cfg(feature = "xlsx")]

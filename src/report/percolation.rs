@@ -5,9 +5,7 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::error::ReportError;
-use super::figures::{
-    Across, Axis, BLUE, Chart, Dash, Figure, GREY, Line, PURPLE, Point, Role, Rule, SeriesLook, Shape, Tick,
-};
+use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
 use super::files::json;
 use super::section::Sections;
 use super::shell::Drawn;
@@ -89,21 +87,23 @@ fn fits(study: &PercolationStudy) -> Markup {
 /// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
 pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let sd = |of: &SizeThreshold| of.threshold.sd.unwrap_or(0.0);
-    let interval = move |of: &SizeThreshold| {
+    let ends = |of: &SizeThreshold| {
         let half = 1.96 * of.sd_error.unwrap_or(0.0);
-        Some((sd(of) - half, sd(of) + half))
+        (sd(of) - half, sd(of) + half)
     };
-    let words = [
-        "Scatter of the percolation threshold",
-        "Standard deviation of the percolation threshold against the size of the lattice",
-    ];
-    let x =
-        Role::linear("Size of the lattice, L (voids along each side)", |of: &SizeThreshold| of.size as f64);
-    let y = Role::linear("Standard deviation of the threshold (–)", sd).interval(interval);
-    let rows = study.sizes.iter().filter(|of| of.threshold.sd.is_some());
-    let figure = Chart::of(rows, words, x.also([0.0, 1.0]), y.also([0.0, 0.001]))
-        .by(|_| [""], |_| SeriesLook::line(BLUE, Shape::Circle))
-        .figure();
+    let rows: Vec<&SizeThreshold> = study.sizes.iter().filter(|of| of.threshold.sd.is_some()).collect();
+    let widest = rows.iter().map(|of| of.size as f64).fold(1.0, f64::max);
+    let lowest = rows.iter().map(|of| ends(of).0).fold(0.0, f64::min);
+    let highest = rows.iter().map(|of| ends(of).1).fold(0.001, f64::max);
+    let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
+    let y = Axis::linear("Standard deviation of the threshold (–)", lowest, highest);
+    let what = "Standard deviation of the percolation threshold against the size of the lattice";
+    let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
+    figure.add(Line::new(rows.iter().map(|of| (of.size as f64, sd(of))).collect(), BLUE).width(1.5));
+    for of in rows {
+        let point = Point::new(of.size as f64, sd(of), BLUE, Shape::Circle);
+        figure.add(point.y_interval(Some(ends(of))));
+    }
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
                    the paper. Bars: 95 % intervals, for normal thresholds.";
     Drawn::new("percolation-sd", figure, caption)

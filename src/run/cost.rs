@@ -32,8 +32,7 @@ const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-
 /// With engine `expected` the counts of a void take so many times as long: on a lattice by area, whose rows
 /// move at once, and on other networks.
 const EXPECTED: [f64; 2] = [0.06, 0.55];
-/// Of a walk of which only the number of voids is known, empty ones included. A study of precision plans by
-/// these: another number changes what it walks.
+/// Of a walk of which only the number of voids is known, empty ones included.
 const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
 /// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
 /// times as long.
@@ -46,8 +45,6 @@ const SPREAD: f64 = 24.0;
 const MOVES_A_LAYER: f64 = 3.0;
 /// Parts of the curve and of the base in which the moves of a particle are worked out.
 const PARTS: usize = 64;
-/// Seconds to draw a constriction of a cubic lattice, its place in the tables included.
-const CONSTRICTION_S: f64 = 3.5e-8;
 /// Seconds to build a network, by its voids and constrictions.
 const NETWORK_S: f64 = 1e-7;
 /// Seconds to write a case's files and page ...
@@ -88,8 +85,6 @@ const WIDE_STEPS: f64 = 0.55;
 const GIVING_WAY: f64 = 1.8;
 /// Seconds to measure the constrictions around a grain, and to write it.
 const MEASURED_GRAIN_S: f64 = 5e-5;
-/// Seconds to compress a grain of a small packing of a precision study, with friction and without.
-const SMALL_PACKING_GRAIN_S: [f64; 2] = [6.5e-4, 2.4e-3];
 /// Seconds to read a packing and measure its constrictions.
 pub const MEASURING_S: f64 = 5.0;
 /// Seconds to collect a case into a campaign's ledger.
@@ -298,38 +293,6 @@ struct Guess {
     solved: f64,
 }
 
-/// What a first run did, counted: the same on every machine.
-#[derive(Clone, Copy, Debug)]
-pub struct CountedWork {
-    /// Increments.
-    pub increments: u64,
-    /// Moves of particles.
-    pub particle_moves: u64,
-    /// Base particles that were walked by themselves.
-    pub one_by_one: u64,
-    /// Whether that is all of them.
-    pub all_one_by_one: bool,
-    /// Voids of the network.
-    pub voids: usize,
-    /// Constrictions of the network.
-    pub constrictions: usize,
-}
-
-impl CountedWork {
-    /// Seconds of one thread that this work takes, the network included: the same on every machine, about
-    /// right on one of 2024.
-    pub fn core_seconds(&self) -> f64 {
-        let each = self.one_by_one as f64;
-        // Where the others are counts, the coarse ones are soon stopped.
-        let (moves, voids) = match self.all_one_by_one {
-            true => (self.particle_moves as f64, 0.0),
-            false => (each * 4.0, self.voids as f64),
-        };
-        let network_s = CONSTRICTION_S * self.constrictions as f64;
-        network_s + COUNTED.seconds(self.increments as f64 * voids, 0.0, each, moves)
-    }
-}
-
 impl PackingPlan {
     /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever
     /// it is asked for.
@@ -368,11 +331,6 @@ impl PackingPlan {
     pub fn program_bytes(&self) -> u64 {
         PROGRAM_BYTES + self.compression.grains as u64 * GRAIN_BYTES
     }
-}
-
-/// Seconds to compress a grain of a small packing (some thousands of grains) at default stiffness.
-pub fn small_packing_grain_seconds(friction: f64) -> f64 {
-    SMALL_PACKING_GRAIN_S[usize::from(friction == 0.0)]
 }
 
 /// Seconds that a case takes on so many threads of its own.

@@ -13,9 +13,6 @@ use crate::text::plain;
 /// The files of the checkpoint of a compression that is not finished.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
-/// The files of the checkpoint of a precision study that is not finished.
-pub(crate) const STUDY: [&str; 2] = ["study.0", "study.1"];
-
 /// The files of the checkpoint of a design that is not finished.
 pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
 
@@ -44,8 +41,6 @@ pub enum FolderKind {
     Campaign,
     /// A study of the percolation threshold.
     Percolation,
-    /// A study of error against run time.
-    Precision,
     /// Many samples against filters.
     Batch,
     /// How coarse a filter may be.
@@ -62,12 +57,11 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind; a packing holds constrictions of its own and so comes before them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 10] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
         Self::Percolation,
-        Self::Precision,
         Self::Batch,
         Self::Design,
         Self::Designs,
@@ -83,7 +77,6 @@ impl FolderKind {
             Self::Packing => "packing",
             Self::Campaign => "campaign",
             Self::Percolation => "percolation study",
-            Self::Precision => "precision study",
             Self::Batch => "batch",
             Self::Design => "design",
             Self::Designs => "set of designs",
@@ -100,7 +93,6 @@ impl FolderKind {
             Self::Packing => format::PACKING,
             Self::Campaign => format::CAMPAIGN,
             Self::Percolation => format::PERCOLATION,
-            Self::Precision => format::PRECISION,
             Self::Batch => format::BATCH,
             Self::Design => format::DESIGN,
             Self::Designs => format::DESIGNS,
@@ -132,7 +124,6 @@ impl FolderKind {
             Self::Packing => &STATES,
             Self::Campaign => &["cases"],
             Self::Percolation => &LATTICES,
-            Self::Precision => &STUDY,
             Self::Batch => &["pairs"],
             Self::Design => &DESIGN,
             Self::Designs => &["samples"],
@@ -177,24 +168,6 @@ impl FolderKind {
             Self::Percolation => {
                 &["percolation.json", "report.html", "percolation.csv", LATTICES[0], LATTICES[1]]
             }
-            Self::Precision => &[
-                "precision.json",
-                "precision.html",
-                "exact.csv",
-                "exact_slopes.csv",
-                "exact_closed.csv",
-                "exact_networks.csv",
-                "sampling.csv",
-                "sampling_merit.csv",
-                "bias.csv",
-                "decision.csv",
-                "decision_cases.csv",
-                "scaling.csv",
-                "packing.csv",
-                "triangulation.csv",
-                STUDY[0],
-                STUDY[1],
-            ],
             // Its cases stay, as all that a campaign holds.
             Self::Batch => &["batch.json", "batch.html", "batch.csv"],
             Self::Design => &[
@@ -229,19 +202,6 @@ impl FolderKind {
             Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "slice"],
             Self::Packing => &["curves", "slice", "connectivity"],
             Self::Percolation => &["percolation-sd", "percolation-threshold"],
-            Self::Precision => &[
-                "exact-particles",
-                "exact-time",
-                "sampling-new-networks",
-                "sampling-one-network",
-                "bias",
-                "bias-base-particles",
-                "decision",
-                "scaling-base-particles",
-                "scaling-voids",
-                "packing",
-                "triangulation",
-            ],
             Self::Batch => &["batch-curves", "batch-limits", "batch-eroded"],
             Self::Design => &["design", "specification"],
             Self::Designs => &["designs"],

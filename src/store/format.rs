@@ -65,8 +65,6 @@ formats! {
     CONSTRICTIONS = "constrictions" / 1, "constrictions.json";
     /// The percolation threshold.
     PERCOLATION = "percolation" / 1, "percolation.json";
-    /// Error against run time.
-    PRECISION = "precision" / 1, "precision.json";
     /// The folder of a page on this machine.
     SERVE = "serve" / 1, "serve.json";
     /// What a run would do.

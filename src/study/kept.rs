@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{DESIGN, FolderKind, LATTICES, STUDY, clear, shown};
+use crate::run::folder::{DESIGN, FolderKind, LATTICES, clear, shown};
 use crate::run::results::json;
 use crate::run::unfinished::{self, Unfinished};
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
@@ -106,7 +106,6 @@ impl<'a> Kept<'a> {
     pub fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = hash_of(work);
         let (name, files, parts) = match kind {
-            FolderKind::Precision => ("study", &STUDY, "tiers"),
             FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),
             _ => ("networks", &DESIGN, "networks"),
         };

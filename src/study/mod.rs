@@ -1,5 +1,5 @@
-//! Studies: many samples against filters, how coarse a filter may be; and of the
-//! model itself, error against run time and the percolation threshold of lattices.
+//! Studies: many samples against filters, how coarse a filter may be; and of the model itself, the
+//! percolation threshold of lattices.
 
 pub mod batch;
 mod days;
@@ -10,6 +10,5 @@ mod inputs;
 mod kept;
 mod of_cases;
 pub mod percolation;
-pub(crate) mod precision;
 
 pub(crate) use file_names::{numbered, refuse_twice};

@@ -24,7 +24,6 @@ mod openings;
 mod order;
 mod pack;
 mod pan;
-mod precision;
 mod program;
 mod rules;
 mod scene;

@@ -116,5 +116,4 @@ fn what_openings_cannot_be_with_is_refused() {
     let exponent = [&with("walk.conductance_exponent=3")[..], &["--set", "walk.exit=flux"]].concat();
     refusal("run", &exponent, "walk.conductance_exponent says nothing where walk.blocked is");
     refusal("run", &with("base.sieve=b.csv"), "needs the sizes of the whole base");
-    refusal("precision", &open, "walk.blocked");
 }

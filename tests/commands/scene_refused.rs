@@ -164,12 +164,11 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         grains += &format!("{}.5{},{}.5{},{}.5,0.9\n", i % 3, 37 * i % 11, i / 3 % 3, 17 * i % 7, i / 9);
     }
     write("grains.csv", &grains);
-    let commands: [(&str, &[&str]); 7] = [
+    let commands: [(&str, &[&str]); 6] = [
         ("run", &["run"]),
         ("packing", &["pack", "filter.toml"]),
         ("campaign", &["campaign", "plan.toml"]),
         ("percolation study", &["percolation", "--sizes", "4", "--realisations", "2"]),
-        ("precision study", &["precision"]),
         ("design", &["design"]),
         ("set of constrictions", &["constrictions", "grains.csv"]),
     ];
@@ -180,7 +179,6 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         ("packing", "compression.0"),
         ("campaign", "cases"),
         ("percolation study", "percolation.json"),
-        ("precision study", "precision.json"),
         ("design", "design.json"),
         ("design", "networks.1"),
         ("set of constrictions", "constrictions.json"),

@@ -73,39 +73,6 @@ fn what_is_replaced_leaves_nothing_but_what_is_not_the_programs_own() {
 }
 
 #[test]
-fn a_study_that_is_replaced_leaves_the_files_of_the_new_one() {
-    let (_root, at) = with_files(&[]);
-    let precision = |out: &'static str, tier: &'static str| {
-        vec![
-            "precision",
-            "--tier",
-            tier,
-            "--budget",
-            "100ms",
-            "--out",
-            out,
-            "-q",
-            "--set",
-            "network.nx=4",
-            "--set",
-            "network.ny=4",
-            "--set",
-            "network.nz=5",
-            "--set",
-            "base.n_base=500",
-        ]
-    };
-    let overwrite = |mut args: Vec<&'static str>| {
-        args.push("--overwrite");
-        args
-    };
-    done(&call(&at, &precision("b", "sampling")));
-    done(&call(&at, &overwrite(precision("b", "bias"))));
-    done(&call(&at, &precision("clean", "bias")));
-    assert_eq!(names(&at.join("b")), names(&at.join("clean")));
-}
-
-#[test]
 fn constrictions_of_ones_own_grains_are_no_part_of_a_packing() {
     let grains = "# cell_mm = 5, 5, 5\nx_mm,y_mm,z_mm,diameter_mm\n".to_owned()
         + &(0..200u64)
@@ -294,72 +261,4 @@ fn a_resumed_run_follows_no_link_to_packings() {
     assert!(names(&at.join("elsewhere")).is_empty());
     fs::remove_file(at.join("r/packings")).unwrap();
     done(&call(&at, &["resume", "r", "-q"]));
-}
-
-/// Kills a precision study in `p` when its first tier is kept, then stops it when its second is; whether both came in time.
-fn is_broken_off_twice(at: &Path, args: &[&str]) -> bool {
-    let kept = |slot: &str| at.join("p").join(slot).exists();
-    let until = |slot: &str| {
-        let mut child = voidwalk(at, args).spawn().unwrap();
-        while !kept(slot) && child.try_wait().unwrap().is_none() {}
-        child
-    };
-    let mut child = until("study.1");
-    let _ = child.kill();
-    if child.wait().unwrap().success() || kept("study.0") {
-        return false;
-    }
-    let child = until("study.0");
-    let id = child.id().to_string();
-    let _ = std::process::Command::new("kill").args(["-TERM", &id]).status().unwrap();
-    let output = child.wait_with_output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(!stderr.contains("sampling: the scatter"), "{stderr}");
-    if output.status.success() {
-        return false;
-    }
-    assert_eq!(output.status.code(), Some(3), "{stderr}");
-    let message = "after 2 of 3 tiers, which are kept in p; continue with the same command";
-    assert!(stderr.contains(message), "{stderr}");
-    true
-}
-
-/// But for what a clock says, the tables of a study that was killed and stopped are those of one that was not.
-#[test]
-fn a_precision_study_that_is_killed_goes_on_with_the_tier_it_was_at() {
-    let (_root, at) = with_files(&[]);
-    let args = |out: &'static str| {
-        let small = ["network.nx=4", "network.ny=4", "network.nz=5", "base.n_base=500"];
-        let mut args =
-            vec!["precision", "--tier", "sampling", "bias", "scaling", "--budget", "200ms", "--out", out];
-        args.extend(small.iter().flat_map(|set| ["--set", set]));
-        args
-    };
-    done(&call(&at, &args("whole")));
-    // On a busy machine it may be done before it is looked at.
-    let is_broken = (0..20).any(|_| {
-        let _ = fs::remove_dir_all(at.join("p"));
-        is_broken_off_twice(&at, &args("p"))
-    });
-    assert!(is_broken, "it is too short to be killed");
-    let other = [&args("p")[..], &["--seed", "9"]].concat();
-    refused(&call(&at, &other), "the unfinished precision study there cannot be continued");
-    refused(&call(&at, &["percolation", "--sizes", "3", "--out", "p"]), "holds a precision study");
-    let last = call(&at, &args("p"));
-    done(&last);
-    assert!(!String::from_utf8_lossy(&last.stderr).contains("bias: settings"));
-    assert_eq!(names(&at.join("p")), names(&at.join("whole")));
-    let clocks = ["core_seconds", "merit", "merit_low", "merit_high"];
-    for table in ["sampling.csv", "sampling_merit.csv", "bias.csv"] {
-        let rows = |folder: &str| -> Vec<BTreeMap<String, String>> {
-            let mut reader = csv::Reader::from_path(at.join(folder).join(table)).unwrap();
-            let rows = reader.deserialize().map(Result::unwrap);
-            rows.map(|mut row: BTreeMap<String, String>| {
-                clocks.iter().for_each(|clock| drop(row.remove(*clock)));
-                row
-            })
-            .collect()
-        };
-        assert!(rows("p") == rows("whole") && !rows("p").is_empty(), "{table}");
-    }
 }

@@ -133,7 +133,6 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, AnyError> {
         FolderKind::Packing => report::write_packing(folder)?,
         FolderKind::Campaign => report::write_campaign(folder)?,
         FolderKind::Percolation => report::write_percolation(folder)?,
-        FolderKind::Precision => report::write_precision(folder)?,
         FolderKind::Batch => report::write_batch(folder)?,
         FolderKind::Design => report::write_design(folder)?,
         FolderKind::Designs => report::write_designs(folder)?,

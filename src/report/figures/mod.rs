@@ -17,7 +17,6 @@
 //! ```
 
 mod axis;
-mod chart;
 mod colour;
 mod curves;
 mod draw;
@@ -32,7 +31,6 @@ mod svg;
 
 pub use crate::text::shorten;
 pub use axis::{Axis, Scale, Tick, positive_range};
-pub use chart::{Chart, Role, SeriesLook};
 pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
 pub use figure::{Figure, Naming, Size};
 pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};

@@ -39,7 +39,7 @@
 //! |---|---|
 //! | a run under way | `done`, and those that `walk::SavedState` names |
 //! | a finished replicate | `done`: a record of its figures and rows, `run::checkpoints::Done` |
-//! | a study | `found`: a record of its tiers, networks or lattices that are done |
+//! | a study | `found`: a record of its networks or lattices that are done |
 //! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
 //!
 //! # Slots

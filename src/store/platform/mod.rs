@@ -53,7 +53,7 @@ pub(super) use files::{
 };
 pub(super) use machine::allocate;
 
-pub use files::{THREAD_SECONDS_STEP, free_bytes, host_name, process_seconds, thread_seconds};
+pub use files::{THREAD_SECONDS_STEP, free_bytes, host_name, thread_seconds};
 pub use machine::{memory, mounts, processor, processors, stay_on};
 
 /// Memory of the machine; `None` where the system does not tell.

@@ -66,11 +66,6 @@ pub fn thread_seconds() -> f64 {
     0.0
 }
 
-/// Not known: no time passes.
-pub fn process_seconds() -> f64 {
-    0.0
-}
-
 /// Not known.
 pub fn processors() -> Vec<usize> {
     Vec::new()

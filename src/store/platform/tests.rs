@@ -79,17 +79,17 @@ fn a_process_runs_until_it_has_ended() {
     }
 }
 
-/// Only work passes processor time; the thread's is part of the process's.
+/// Only work passes processor time.
 #[test]
 #[cfg_attr(miri, ignore = "Miri knows no such calls")]
 fn processor_time_passes_while_there_is_work() {
-    let (thread, process) = (thread_seconds(), process_seconds());
+    let thread = thread_seconds();
     let begun = Instant::now();
     while thread_seconds() - thread < 0.05 && begun.elapsed() < Duration::from_secs(60) {
         std::hint::black_box((0..10_000u64).fold(1u64, |a, b| a.wrapping_mul(b | 1)));
     }
     let worked = thread_seconds() - thread;
-    assert!((0.05..60.0).contains(&worked) && process_seconds() - process > 0.8 * worked, "{worked}");
+    assert!((0.05..60.0).contains(&worked), "{worked}");
 }
 
 #[test]

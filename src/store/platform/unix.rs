@@ -68,11 +68,6 @@ pub fn thread_seconds() -> f64 {
     seconds(ClockId::ThreadCPUTime)
 }
 
-/// Processor time of all threads of the program (s).
-pub fn process_seconds() -> f64 {
-    seconds(ClockId::ProcessCPUTime)
-}
-
 fn seconds(clock: ClockId) -> f64 {
     let time = clock_gettime(clock);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

@@ -21,8 +21,8 @@ use windows_sys::Win32::System::Console::{CTRL_BREAK_EVENT, CTRL_C_EVENT, SetCon
 use windows_sys::Win32::System::IO::{OVERLAPPED, OVERLAPPED_0, OVERLAPPED_0_0};
 use windows_sys::Win32::System::SystemInformation::{GlobalMemoryStatusEx, MEMORYSTATUSEX};
 use windows_sys::Win32::System::Threading::{
-    GetCurrentProcess, GetCurrentThread, GetExitCodeProcess, GetProcessAffinityMask, GetProcessTimes,
-    GetThreadTimes, OpenProcess, PROCESS_QUERY_LIMITED_INFORMATION, SetThreadAffinityMask,
+    GetCurrentProcess, GetCurrentThread, GetExitCodeProcess, GetProcessAffinityMask, GetThreadTimes,
+    OpenProcess, PROCESS_QUERY_LIMITED_INFORMATION, SetThreadAffinityMask,
 };
 
 use super::Memory;
@@ -136,12 +136,6 @@ pub const THREAD_SECONDS_STEP: f64 = 0.016;
 pub fn thread_seconds() -> f64 {
     // SAFETY: the handle stands for this thread, and the system writes into the four places that it gets.
     seconds(|[a, b, c, d]| unsafe { GetThreadTimes(GetCurrentThread(), a, b, c, d) })
-}
-
-/// Processor time of all threads of the program (s).
-pub fn process_seconds() -> f64 {
-    // SAFETY: the handle stands for this process, and the system writes into the four places that it gets.
-    seconds(|[a, b, c, d]| unsafe { GetProcessTimes(GetCurrentProcess(), a, b, c, d) })
 }
 
 /// Seconds in the system and outside of it, the last two of the times that `ask` fills in: created, ended,
