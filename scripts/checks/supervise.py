@@ -89,7 +89,7 @@ WORKS = {
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
     "design": ([*DESIGN, "--thickness", "6layers"], None, ["r"]),
-    "designs": (["design", "samples.csv", "--each", *DESIGN[2:], "--thickness", "6layers"], None, ["r"]),
+    "designs": (["design", "samples.csv", "--each", "--out", "r", "-q"], None, ["r"]),
     "specification": (["design", "base.csv", "--steps", "--out", "r", "-q"], None, ["r"]),
     "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
 }
@@ -521,7 +521,7 @@ class Trial:
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
             "design": DESIGN,
-            "designs": ["design", "samples.csv", "--each", *DESIGN[2:]],
+            "designs": ["design", "samples.csv", "--each", "--out", "r", "-q"],
         }
         if not os.path.exists(os.path.join(self.out, MARK)) and not self.is_campaign:
             return False

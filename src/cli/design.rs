@@ -27,17 +27,21 @@ const UNITS: &str = "about.units";
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     let of_steps = [About::texts(), vec![UNITS.into()]].concat();
     let is_taken = |set: &str| of_steps.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
-    if let Some(other) = args.settings.iter().find(|set| args.steps && !is_taken(set)) {
+    let by_practice = args.steps || args.each;
+    if let Some(other) = args.settings.iter().find(|set| by_practice && !is_taken(set)) {
         let takes = of_steps.join(", ");
-        let problem = format!("--steps walks nothing, and takes no other settings than {takes}");
+        let option = if args.each { "--each" } else { "--steps" };
+        let problem = format!("{option} walks nothing, and takes no other settings than {takes}");
         return Err(RunError::Refused(format!("--set {other}: {problem}")));
     }
     let seed = args.seed.map(|seed| format!("seed={seed}"));
     let [dispersive, _] = of_soils(args.dispersive, None);
     let units = args.units.map(|units| format!("about.units={}", units.name()));
     let settings = with_options(&args.settings, [("--seed", seed), dispersive, ("--units", units)])?;
-    if let (true, false, Some(base)) = (args.steps, args.each, &args.base) {
-        return specification(args, base, &settings);
+    match &args.base {
+        Some(samples) if args.each => return design_each(args, samples, &settings),
+        Some(base) if args.steps => return specification(args, base, &settings),
+        Some(_) | None => {}
     }
     let out = args.out.clone().unwrap_or_else(|| DesignOptions::default().out);
     let options = DesignOptions {
@@ -59,9 +63,6 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
             threads: args.threads,
         },
     };
-    if let (true, Some(samples)) = (args.each, &args.base) {
-        return design_each(args, samples, options);
-    }
     let found = followed(args.quiet, |callbacks| design::run(&options, callbacks))?;
     if args.json {
         as_it_is(&json(format::DESIGN, &found)?);

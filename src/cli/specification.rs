@@ -24,25 +24,34 @@ const FOLDER: &str = "voidwalk-specification";
 
 /// Makes the specification for a base and writes it into a folder; of the settings those of the sheet count.
 pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String]) -> Result<(), RunError> {
+    let options = asked(args, base, FOLDER, settings)?;
+    let found = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
+    if args.json {
+        as_it_is(&json(format::SPECIFICATION, &found)?);
+    } else if !args.quiet {
+        to_stdout(&format!("{}report: {}\n", words(&found), shown(&options.out.join("specification.html"))));
+    }
+    Ok(())
+}
+
+/// What is asked for this base, into this folder where none is named.
+pub(super) fn asked(
+    args: &DesignArgs,
+    base: &Path,
+    folder: &str,
+    settings: &[String],
+) -> Result<SpecifyOptions, RunError> {
     let about = Scene::built_in(settings)?.about;
-    let out = args.out.clone().unwrap_or_else(|| FOLDER.into());
-    let options = SpecifyOptions {
+    Ok(SpecifyOptions {
         base: base.to_owned(),
         dispersive: args.dispersive,
         finer: args.finer,
         sieves: args.sieves,
         cover: about.cover(),
         inches: about.shows_inches(),
-        out: out.clone(),
+        out: args.out.clone().unwrap_or_else(|| folder.into()),
         overwrite: args.overwrite,
-    };
-    let found = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
-    if args.json {
-        as_it_is(&json(format::SPECIFICATION, &found)?);
-    } else if !args.quiet {
-        to_stdout(&format!("{}report: {}\n", words(&found), shown(&out.join("specification.html"))));
-    }
-    Ok(())
+    })
 }
 
 /// What to do where a base is found to be dispersive, with the option that does it.

@@ -22,10 +22,11 @@ pub struct DesignArgs {
     /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope;
     /// with --each also a folder of tables
     pub base: Option<PathBuf>,
-    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: a
-    /// design for each, one table and the samples that govern in --out [default: voidwalk-designs]. The same
-    /// command continues what was stopped or killed. With --steps nothing is walked
-    #[arg(long, requires = "base")]
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder:
+    /// what practice specifies for each, one table and the samples that govern in --out [default:
+    /// voidwalk-designs]. Nothing is walked
+    #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
+          "as_sampled", "as_given", "seed", "bracket", "packings", "memory", "threads"])]
     pub each: bool,
     /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
     /// sieve and standard products
@@ -34,7 +35,7 @@ pub struct DesignArgs {
     pub steps: bool,
     /// With --steps: place the band at the finer end of what is allowed: its maximum D15F is lowered, not its
     /// minimum raised
-    #[arg(long, requires = "steps", conflicts_with = "each")]
+    #[arg(long, requires = "steps")]
     pub finer: bool,
     /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]

@@ -114,7 +114,7 @@ impl FolderKind {
 
     /// Whether it holds cases that continue by themselves, each in a folder of its own.
     pub(crate) fn has_cases(self) -> bool {
-        matches!(self, Self::Batch | Self::Designs)
+        self == Self::Batch
     }
 
     /// What else marks such a folder, finished or not.
@@ -126,7 +126,6 @@ impl FolderKind {
             Self::Percolation => &LATTICES,
             Self::Batch => &["pairs"],
             Self::Design => &DESIGN,
-            Self::Designs => &["samples"],
             // Versions that wrote no record had them.
             Self::Serve => &["sheets"],
             _ => &[],

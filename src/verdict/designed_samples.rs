@@ -1,5 +1,4 @@
-//! Many samples and how coarse a filter may be for each by practice, with the ratio that the model holds in
-//! columns of its own.
+//! Many samples, and how coarse a filter may be for each by practice.
 
 use std::path::PathBuf;
 
@@ -7,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::NAMED;
 use crate::gradation::SoilSample;
+use crate::outcome::design::Specification;
 use crate::outcome::design::specification::{NoBand, SizeBand};
-use crate::outcome::design::{Design, Specification};
-use crate::outcome::record::{IfDispersive, InputFile, ModelLimit, Note, SheetCover, commit};
+use crate::outcome::record::{IfDispersive, InputFile, Note, SheetCover, commit};
 
 /// The whole of `designs.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,12 +19,8 @@ pub struct DesignedSamples {
     /// The commit that it was built from; `None` where that is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// Hash of everything that the rows follow from: samples, shape of the filter and settings.
-    pub work: String,
     /// The samples, as they were named.
     pub samples: String,
-    /// The shape of the filter that was walked; empty where nothing was.
-    pub filter: String,
     /// Whether the samples were said to be dispersive.
     pub dispersive: bool,
     /// Whether inches stand beside mm on page and terminal.
@@ -34,9 +29,6 @@ pub struct DesignedSamples {
     /// What the sheet says of itself.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
-    /// What was walked for every sample; `None` where nothing was.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub walks: Option<DesignedWalks>,
     /// Every file that was read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
@@ -44,49 +36,6 @@ pub struct DesignedSamples {
     pub rows: Vec<DesignedSample>,
     /// What was assumed of the files, a sentence each.
     pub notes: Vec<String>,
-    /// What no walk contains; empty where nothing was walked.
-    pub model_leaves_out: Vec<ModelLimit>,
-}
-
-/// What was walked for every sample alike.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct DesignedWalks {
-    /// The filter's shape and its constrictions, in words.
-    pub filter: String,
-    /// Size (mm) and percent finer by mass of the filter as it was given; empty where its sizes are not
-    /// given.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub filter_gradation: Vec<[f64; 2]>,
-    /// How densely the filter is packed, in the order in which it was asked for.
-    pub densities: Vec<String>,
-    /// The thicknesses that were asked for, in words.
-    pub thicknesses: Vec<String>,
-    /// Networks of each boundary.
-    pub networks: u64,
-    /// The user's seed.
-    pub seed: u64,
-    /// Settings that were given, as on the command line.
-    pub settings: Vec<String>,
-}
-
-impl DesignedWalks {
-    /// Of the design of one of the samples, with the settings that all have.
-    pub fn of(design: &Design, settings: &[String]) -> Self {
-        let asked = || design.boundaries.iter().filter(|row| row.end_of.is_none());
-        let mut densities: Vec<String> = asked().map(|row| row.density.clone()).collect();
-        let mut thicknesses: Vec<String> = Vec::new();
-        densities.dedup();
-        for row in asked() {
-            if !thicknesses.contains(&row.thickness) {
-                thicknesses.push(row.thickness.clone());
-            }
-        }
-        let (filter, networks, seed) = (design.filter.clone(), design.replicates, design.seed);
-        let filter_gradation = design.filter_gradation.clone();
-        let settings = settings.to_vec();
-        Self { filter, filter_gradation, densities, thicknesses, networks, seed, settings }
-    }
 }
 
 /// How coarse a filter may be for one sample. Sizes are in mm.
@@ -136,27 +85,10 @@ pub struct DesignedSample {
     pub no_band: Option<NoBand>,
     /// 1 for the sample that governs, 2 and 3 for those next to it: by `d15f_max_mm`.
     pub governs: Option<u64>,
-    /// What the model says of it; `None` where it was not walked.
-    pub design: Option<SampleDesign>,
-    /// Why it was not walked, though the others were; empty otherwise.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub not_walked: String,
-}
-
-/// What the model says of one sample.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SampleDesign {
-    /// Folder of its results, inside that of all.
-    pub folder: String,
-    /// D15F/D85B that nearly all networks hold, of the base as it was walked; `None` where none is known.
-    pub model_d15f_over_d85b: Option<f64>,
-    /// The D15F (mm) of that ratio.
-    pub model_d15f_mm: Option<f64>,
 }
 
 impl DesignedSample {
-    /// What practice says of a sample; nothing is walked yet.
+    /// What practice says of a sample.
     pub fn of(sample: &SoilSample, practice: &Specification) -> Self {
         let curve = &practice.curves[0];
         Self {
@@ -178,20 +110,7 @@ impl DesignedSample {
             notes: practice.notes.iter().map(|row| row.note.clone()).collect(),
             no_band: practice.no_band.clone(),
             governs: None,
-            design: None,
-            not_walked: String::new(),
         }
-    }
-
-    /// The same with its design, whose results are in this folder.
-    pub fn designed(self, design: &Design, folder: String) -> Self {
-        let ratio = design.least_held().map(|(_, ratio)| ratio);
-        let model = SampleDesign {
-            folder,
-            model_d15f_over_d85b: ratio,
-            model_d15f_mm: ratio.zip(design.base.d85_mm).map(|(ratio, d85)| ratio * d85),
-        };
-        Self { design: Some(model), ..self }
     }
 
     /// Whether practice has a maximum D15F and a band for it.
@@ -213,17 +132,13 @@ impl DesignedSamples {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: commit(),
-            work: String::new(),
             samples,
-            filter: String::new(),
             dispersive: false,
             inches: false,
             cover: SheetCover::default(),
-            walks: None,
             inputs: Vec::new(),
             rows,
             notes: Vec::new(),
-            model_leaves_out: Vec::new(),
         }
     }
 

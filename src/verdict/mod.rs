@@ -38,7 +38,7 @@ mod worse_soils;
 pub use answer::ordered;
 pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
-pub use designed_samples::{DesignedSample, DesignedSamples, DesignedWalks, SampleDesign};
+pub use designed_samples::{DesignedSample, DesignedSamples};
 pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;

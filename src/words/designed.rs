@@ -2,11 +2,11 @@
 
 use super::dispersion::{beside_dispersive, dispersive_limit, test};
 use super::specification::no_band;
-use crate::outcome::quantity::{NumberRole, SizeUnit, length, limits, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length, limits};
 use crate::outcome::record::IfDispersive;
 use crate::outcome::record::Note;
 use crate::outcome::rules::WIDEST_BAND;
-use crate::outcome::table::{Columns, TableCell};
+use crate::outcome::table::Columns;
 use crate::verdict::{DesignedSample, DesignedSamples, least_of_band, no_band_between};
 
 /// Whether a note is of a kind.
@@ -132,8 +132,7 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     }
 }
 
-/// Samples that govern, whose limits they have, those that are open and those that were not walked: sentences
-/// without their ends; `again` is what to do where a sample is dispersive, as
+/// Samples that govern, whose limits they have, and those that are open: sentences without their ends; `again` is what to do where a sample is dispersive, as
 /// [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut said = vec![for_all(all, unit)];
@@ -156,11 +155,6 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     said.extend(open.into_iter().map(|row| {
         format!("May govern, as no maximum D15F is known: {}: {}", row.sample, without_band(row, unit))
     }));
-    let not_walked = all.rows.iter().filter(|row| !row.not_walked.is_empty());
-    let not_walked: Vec<&str> = not_walked.map(|row| row.sample.as_str()).collect();
-    if !not_walked.is_empty() {
-        said.push(format!("Not walked: {}", not_walked.join(", ")));
-    }
     said
 }
 
@@ -218,24 +212,12 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
 }
 
 /// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 10] = [
-    "sample",
-    "group",
-    "d85b_mm",
-    "d15f_max_mm",
-    "rule",
-    "d15f_min_mm",
-    "band_d15f_max_mm",
-    "governs",
-    "model_d15f_over_d85b",
-    "model_d15f_mm",
-];
+const SHOWN: [&str; 8] =
+    ["sample", "group", "d85b_mm", "d15f_max_mm", "rule", "d15f_min_mm", "band_d15f_max_mm", "governs"];
 
 /// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
 /// unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
-    let design = |row: &DesignedSample| row.design.clone();
-    let why_not = |row: &DesignedSample| Some(row.not_walked.clone()).filter(|why| !why.is_empty());
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
         row.d15f_min_mm
@@ -270,21 +252,6 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .column("governs", |row: &DesignedSample| row.governs)
         .headed("Governs")
         .column("no_band", move |row: &DesignedSample| row.no_band.as_ref().map(|why| no_band(why, unit)))
-        .digits("model_d15f_over_d85b", 3, move |row| design(row)?.model_d15f_over_d85b)
-        .number("Model (research): D15F/D85B", move |row| {
-            let ratio = design(row)
-                .and_then(|of| of.model_d15f_over_d85b)
-                .map(|limit| significant(limit).role(NumberRole::Greatest));
-            ratio.shown().below(why_not(row))
-        })
-        .digits("model_d15f_mm", 4, move |row| design(row)?.model_d15f_mm)
-        .number("Model (research): D15F, mm", move |row| {
-            design(row)
-                .and_then(|of| of.model_d15f_mm)
-                .map(|mm| length(mm, unit).role(NumberRole::Greatest).in_cell())
-        })
-        .column("not_walked", |row: &DesignedSample| row.not_walked.clone())
-        .column("folder", move |row| design(row).map(|of| of.folder))
         .only(&SHOWN)
 }
 
@@ -295,7 +262,6 @@ mod tests {
     use crate::gradation::SoilSample;
     use crate::outcome::design::Specification;
     use crate::outcome::quantity::SizeUnit;
-    use crate::verdict::SampleDesign;
     use crate::verdict::SpecificationOptions;
     use crate::words::specification::DESIGN_EACH_AGAIN;
 
@@ -306,14 +272,8 @@ mod tests {
         DesignedSample::of(&sample, &of)
     }
 
-    /// With a model that holds this D15F (mm); without a number where it holds none.
-    fn walked(row: DesignedSample, model_d15f_mm: Option<f64>) -> DesignedSample {
-        let model = SampleDesign { folder: "samples/x".into(), model_d15f_over_d85b: None, model_d15f_mm };
-        DesignedSample { design: Some(model), ..row }
-    }
-
     #[test]
-    fn the_least_d15f_of_practice_governs_whatever_the_model_holds() {
+    fn the_least_d15f_of_practice_governs() {
         // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
@@ -329,12 +289,7 @@ mod tests {
             said[0].starts_with("A filter for all 2 samples: D15F from ")
                 && said[0].ends_with("0.700\u{202f}mm")
         );
-        for held in [None, Some(0.1), Some(9.0)] {
-            let rows = [&sand, &core].map(|row| walked(row.clone(), held)).to_vec();
-            let all = DesignedSamples::new("s".into(), rows);
-            assert_eq!(lines(&all, DESIGN_EACH_AGAIN, SizeUnit::Mm), said);
-            assert_eq!(all.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
-        }
+        assert_eq!(by_practice.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
         let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&by_practice.rows)).unwrap();
         assert!(
             csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_max_mm,rule,")

@@ -72,24 +72,6 @@ pub fn check(options: &DesignOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options).map(drop))
 }
 
-/// What a design would be of, before any work.
-pub(super) struct DesignIdentity {
-    /// The filter.
-    pub filter: String,
-    /// Hash of everything that the results follow from; of a filter that is still to be packed its plan.
-    pub work: String,
-}
-
-/// What a design would be of; refuses whatever [`run`] would before any work.
-///
-/// # Errors
-/// The same.
-pub(super) fn identity(options: &DesignOptions) -> Result<DesignIdentity, RunError> {
-    let rows: Vec<Row> = drafts(options)?.into_iter().map(|drafted| drafted.row).collect();
-    let filter = rows.first().map_or_else(String::new, |row| row.case.record().filter.name);
-    Ok(DesignIdentity { filter, work: work(&rows, options.bracket) })
-}
-
 fn run_here(options: &DesignOptions, callbacks: &Callbacks) -> Result<Design, RunError> {
     let begun = Instant::now();
     let drafts = drafts(options)?;

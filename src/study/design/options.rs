@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 
 use crate::outcome::design::SieveSeries;
-use crate::outcome::record::SheetCover;
 use crate::run::prepare::PrepareOptions;
-use crate::scene::Scene;
 use crate::schema::length::{LENGTHS, millimetres};
 
 /// D15F/D85B between which boundaries are searched where the user does not say.
@@ -60,34 +58,6 @@ impl Default for DesignOptions {
             overwrite: false,
             prepare: PrepareOptions::default(),
         }
-    }
-}
-
-impl DesignOptions {
-    /// Whether the base is dispersive, as the settings say; `None` where they do not.
-    pub(in crate::study) fn dispersive(&self) -> Option<bool> {
-        self.scene_of("base.dispersive")?.base.dispersive
-    }
-
-    /// Whether the settings ask for inches beside mm.
-    pub(in crate::study) fn shows_inches(&self) -> bool {
-        self.scene_of("about.units").is_some_and(|scene| scene.about.shows_inches())
-    }
-
-    /// What the settings say of the sheet.
-    pub(in crate::study) fn cover(&self) -> SheetCover {
-        self.scene_of("about").map(|scene| scene.about.cover()).unwrap_or_default()
-    }
-
-    /// What the scene reads of the settings of one key or section; what it refuses is refused where the whole
-    /// of it is read.
-    fn scene_of(&self, key: &str) -> Option<Scene> {
-        let is_of = |setting: &&String| {
-            let name = setting.split('=').next().unwrap_or_default().trim();
-            name == key || name.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'))
-        };
-        let said: Vec<String> = self.settings.iter().filter(is_of).cloned().collect();
-        Scene::built_in(&said).ok()
     }
 }
 
@@ -167,19 +137,6 @@ impl std::fmt::Display for Thickness {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_base_is_dispersive_as_the_scene_says() {
-        let of = |settings: &[&str]| {
-            let settings = settings.iter().map(ToString::to_string).collect();
-            DesignOptions { settings, ..DesignOptions::default() }.dispersive()
-        };
-        assert_eq!(of(&["base.dispersive=true"]), Some(true));
-        assert_eq!(of(&["base.cu=3", " base.dispersive = true "]), Some(true));
-        assert_eq!([of(&[]), of(&["base.dispersive=false"])], [None, Some(false)]);
-        // The last counts.
-        assert_eq!(of(&["base.dispersive=true", "base.dispersive=false"]), Some(false));
-    }
 
     #[test]
     fn a_thickness_says_what_it_is_in() {
