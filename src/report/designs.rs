@@ -131,7 +131,7 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
         Point::new(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
     };
     figure.add_points("limit of practice", practice.iter().map(point));
-    let caption = "The strictest limit of practice of each sample. Square: the sample that governs. The dashed \
-                   line is the D15F beyond which that sample is not served.";
+    let caption = "The strictest limit of practice of each sample. Square: the sample that governs. The \
+                   dashed line is the D15F beyond which that sample is not served.";
     Some(Drawn::new("designs", figure, caption))
 }

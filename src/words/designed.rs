@@ -132,7 +132,8 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     }
 }
 
-/// Samples that govern, whose limits they have, and those that are open: sentences without their ends; `again` is what to do where a sample is dispersive, as
+/// Samples that govern, whose limits they have, and those that are open: sentences without their ends;
+/// `again` is what to do where a sample is dispersive, as
 /// [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut said = vec![for_all(all, unit)];
