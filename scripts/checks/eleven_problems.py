@@ -29,7 +29,7 @@ from trial_sheets import csv, d, design_limit, no_erosion_limit
 
 BROWSER = pathlib.Path(__file__).resolve().parents[1] / "browser" / "look_at_report.sh"
 
-# (sheets {file: soil}, the call, what the base and the filter are; of a comparison the filters, of a design none)
+# (sheets {file: soil}, the call, what the base and the filter are; of a design no filter)
 PROBLEMS = {
     "a": ("dispersive clay core on C33, coarse side", "CLAY_CORE", ["C33_COARSE"], ["judge", "--dispersive"]),
     "b": ("till on 0-32 gravel", "TILL", ["GRAVEL_0_32"], ["judge"]),

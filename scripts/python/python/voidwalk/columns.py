@@ -1,4 +1,4 @@
-"""The types of tables: the columns of the CSV files of a run, a design, a comparison and a campaign."""
+"""The types of tables: the columns of the CSV files of a run, a design and a campaign."""
 
 from __future__ import annotations
 
