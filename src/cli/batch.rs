@@ -98,5 +98,8 @@ fn to_walk(args: &RulesArgs, rows: &[BatchRow], filter: &Path) -> String {
             ("those that govern", format!("{samples} {} --each --governing", to_copy(filter)))
         }
     };
-    format!("  Nothing was walked. To walk {which}: voidwalk judge {walk}\n")
+    let dispersive = if args.dispersive { " --dispersive" } else { "" };
+    let as_given = if args.as_given { " --as-given" } else { "" };
+    let joint = args.joint_mm.map_or_else(String::new, |mm| format!(" --joint-mm {mm}"));
+    format!("  Nothing was walked. To walk {which}: voidwalk judge {walk}{dispersive}{joint}{as_given}\n")
 }

@@ -105,13 +105,13 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
         }
     }
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
-    for filter in batch.filters.iter().filter(|_| batch.base.is_empty()) {
+    for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
         for said in walks(batch, &filter.name, unit) {
             let _ = writeln!(text, "  {}", plain(&said));
         }
-        for row in batch.governing(&filter.name) {
+        for row in batch.governing(&filter.name).iter().filter(|_| batch.base.is_empty()) {
             let said = format!("{}: {}", row.rules.sample, answer(row));
             let _ = writeln!(text, "  {}", plain(&said));
         }

@@ -35,7 +35,7 @@ pub struct DesignArgs {
     pub steps: bool,
     /// With --steps: place the band at the finer end of what is allowed: its maximum D15F is lowered, not its
     /// minimum raised
-    #[arg(long, requires = "steps")]
+    #[arg(long, requires = "steps", conflicts_with = "each")]
     pub finer: bool,
     /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]

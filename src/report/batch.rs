@@ -151,6 +151,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                 @for row in batch.of_filter(&filter.name) {
                     li { (limit_and_answer(folder, row, batch.inches)) }
                 }
+                @for said in walks.iter().skip(1) { li { (clean(&capital(said))) "." } }
             }
             @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
