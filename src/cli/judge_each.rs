@@ -98,7 +98,7 @@ fn name(row: &WalkedRow) -> String {
 fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     let unit = SizeUnit::of(false, batch.inches);
     let mut text = aligned(walked_columns(unit), &batch.rows) + &in_notes(&batch.notes);
-    if !batch.base.is_empty() {
+    if batch.has_one_base() {
         text.push('\n');
         for row in &batch.rows {
             let _ = writeln!(text, "{}", plain(&format!("{}: {}", row.rules.filter, answer(row))));
@@ -111,7 +111,7 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
         for said in walks(batch, &filter.name, unit) {
             let _ = writeln!(text, "  {}", plain(&said));
         }
-        for row in batch.governing(&filter.name).iter().filter(|_| batch.base.is_empty()) {
+        for row in batch.governing(&filter.name).iter().filter(|_| !batch.has_one_base()) {
             let said = format!("{}: {}", row.rules.sample, answer(row));
             let _ = writeln!(text, "  {}", plain(&said));
         }

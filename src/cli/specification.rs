@@ -34,7 +34,7 @@ pub(super) fn specification(args: &DesignArgs, base: &Path, settings: &[String])
     Ok(())
 }
 
-/// What is asked for this base, into this folder where none is named.
+/// The options for this base, with this folder where none is named.
 pub(super) fn asked(
     args: &DesignArgs,
     base: &Path,

@@ -81,7 +81,8 @@ pub struct DesignArgs {
     #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
           allow_hyphen_values = true)]
     pub bracket: (f64, f64),
-    /// Folder for the results [default: voidwalk-design; with --steps voidwalk-specification]
+    /// Folder for the results [default: voidwalk-design; with --steps voidwalk-specification, with
+    /// --each voidwalk-designs]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace the results of an earlier call in --out
@@ -96,7 +97,7 @@ pub struct DesignArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Print design.json; with --steps specification.json
+    /// Print design.json; with --steps specification.json, with --each designs.json
     #[arg(long)]
     pub json: bool,
     /// Print no progress and no summary

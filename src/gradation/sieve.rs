@@ -195,6 +195,11 @@ impl Gradation {
         points
     }
 
+    /// The same as rows of a record: size, percent finer by mass.
+    pub fn rows(&self) -> Vec<[f64; 2]> {
+        self.points().into_iter().map(CurvePoint::row).collect()
+    }
+
     fn tail_percent(&self) -> f64 {
         if self.size_mm.len() == 1 { 0.0 } else { self.percent[0] }
     }

@@ -84,7 +84,7 @@ fn key(batch: &WalkedBatch) -> Markup {
 
 fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
     let names = html! {
-        (titled(if batch.base.is_empty() { "Samples" } else { "Base" }, &batch.samples))
+        (titled(if batch.has_one_base() { "Base" } else { "Samples" }, &batch.samples))
         @match &batch.filters[..] {
             [only] => @if is_named("filter", &only.name) { ", " (titled("filter", &only.name)) },
             all => {
@@ -108,9 +108,9 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
          of its own with its report; " code { "batch.json" } " holds this page’s numbers, "
         code { "batch.csv" } " its table with further columns."
     } };
-    let (kind, question) = match batch.base.is_empty() {
-        true => ("Samples against filters", "Which samples do these filters hold?"),
-        false => ("Filters of one base", "Which of these filters hold this base?"),
+    let (kind, question) = match batch.has_one_base() {
+        true => ("Filters of one base", "Which of these filters hold this base?"),
+        false => ("Samples against filters", "Which samples do these filters hold?"),
     };
     Sections::new(kind, question, &names)
         .model()
@@ -134,7 +134,12 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
         p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
             (d15f(&rules).unwrap_or("not known".into())) }
         ul {
-            @if batch.base.is_empty() {
+            @if batch.has_one_base() {
+                @for row in batch.of_filter(&filter.name) {
+                    li { (limit_and_answer(folder, row, batch.inches)) }
+                }
+                @for said in walks.iter().skip(1) { li { (clean(&capital(said))) "." } }
+            } @else {
                 li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
                 @for (at, said) in walks.iter().enumerate() {
                     li {
@@ -147,11 +152,6 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                         bdi { (name(&row.rules.sample)) } ": " (limit_and_answer(folder, row, batch.inches))
                     }
                 }
-            } @else {
-                @for row in batch.of_filter(&filter.name) {
-                    li { (limit_and_answer(folder, row, batch.inches)) }
-                }
-                @for said in walks.iter().skip(1) { li { (clean(&capital(said))) "." } }
             }
             @for said in besides { li { (clean(&capital(&said))) "." } }
             @if filter.curves.len() > 1 {
@@ -222,17 +222,20 @@ fn notes(batch: &WalkedBatch) -> Markup {
 
 /// The curves of one base and of its filters, with the limits of D15F by practice; none of many samples.
 fn curves(batch: &WalkedBatch) -> Option<Drawn> {
-    let filters =
-        || batch.filters.iter().flat_map(|filter| filter.gradations.iter().map(move |of| (filter, of)));
-    let limit = batch.rows.iter().filter_map(|row| row.rules.limit_mm).reduce(f64::min);
-    let drains = batch.rows.iter().filter_map(|row| row.rules.d15f_min_mm).reduce(f64::max);
-    let marked = [(limit, "limit", VERMILLION), (drains, "drains", GREEN)];
-    let marked = || marked.iter().filter_map(|(mm, name, colour)| Some(((*mm)?, *name, *colour)));
-    if batch.base.is_empty() {
+    if !batch.has_one_base() {
         return None;
     }
-    let sizes = batch.base.iter().chain(filters().flat_map(|(_, rows)| rows)).map(|row| row[0]);
-    let x = size_axis(false, sizes.chain(marked().map(|(mm, ..)| mm)));
+    let rules = || batch.rows.iter().map(|row| &row.rules);
+    let most = rules().filter_map(|row| Some((row.limit_mm?, row.limit_at_most)));
+    let least = rules().filter_map(|row| Some((row.d15f_min_mm?, row.d15f_min_at_most)));
+    let marks = [
+        (most.min_by(|a, b| a.0.total_cmp(&b.0)), "limit", VERMILLION),
+        (least.max_by(|a, b| a.0.total_cmp(&b.0)), "drains", GREEN),
+    ];
+    let marks = || marks.iter().filter_map(|(mark, name, colour)| Some(((*mark)?, *name, *colour)));
+    let gradations = || batch.filters.iter().flat_map(|filter| &filter.gradations);
+    let sizes = batch.base.iter().chain(gradations().flatten()).map(|row| row[0]);
+    let x = size_axis(false, sizes.chain(marks().map(|((mm, _), ..)| mm)));
     let what = "Percent finer by mass against size of the base as sampled and of every filter, with the \
                 limits of D15F";
     let mut figure = Figure::new("Gradations", what, "", x, Axis::percent("Percent finer (%)"))
@@ -240,14 +243,17 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
         .sheet((680.0, 350.0))
         .sieves();
     figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
-    for (mm, name, colour) in marked() {
+    for ((mm, is_at_most), name, colour) in marks() {
         let line = Line::new(vec![(mm, 11.0), (mm, 19.0)], colour);
-        figure.add(line.width(3.0).stays().label(name));
+        let at_most = if is_at_most { " at most" } else { "" };
+        figure.add(line.width(3.0).stays().label(&format!("{name}{at_most}")));
     }
     figure.add(Line::of_rows(&batch.base, VERMILLION).width(2.6).label("base, as sampled"));
-    for ((filter, rows), (colour, dash)) in filters().zip(LINES.iter().cycle()) {
+    for (filter, (colour, dash)) in batch.filters.iter().zip(LINES.iter().cycle()) {
         let label = shorten(&filter_name(batch, &filter.name), 24);
-        figure.add(Line::of_rows(rows, *colour).width(2.0).dash(*dash).label(&label));
+        for rows in &filter.gradations {
+            figure.add(Line::of_rows(rows, *colour).width(2.0).dash(*dash).label(&label));
+        }
     }
     let caption = "Gradations by mass. Short lines: the maximum D15F that retains the base (limit), and the \
                    minimum D15F that drains it (drains).";
@@ -262,7 +268,7 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
     let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
     let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
-    if rows.is_empty() || !batch.base.is_empty() {
+    if rows.is_empty() || batch.has_one_base() {
         return None;
     }
     let filters =

@@ -166,7 +166,6 @@ function setUpSheets() {
     $(".which select", box).addEventListener("change", (event) => take(role, event.target.value));
   }
   for (const button of $$("#try button")) button.addEventListener("click", () => tryExample(button));
-  for (const as of $$("input[name=as]")) as.addEventListener("change", showPair);
   for (const field of ["#dispersion", "#joint", "#as-given"]) $(field).addEventListener("change", showPair);
   for (const kind of ["dragover", "drop"]) document.addEventListener(kind, (event) => event.preventDefault());
 }
@@ -492,7 +491,7 @@ async function check() {
   const into = $("#checked");
   into.hidden = true;
   try {
-    const check = await ask("api/check", asked(false));
+    const check = await ask("api/check", asked());
     const rows = [["base particles", whole(check.n_base) + " a run"], ["runs to walk", whole(check.runs_to_walk)],
       ["voids", whole(check.inputs.network.voids)], ["memory", check.memory],
       ["time to walk", `about ${number(check.core_seconds)} s of one core, a rough guess`]];

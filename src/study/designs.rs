@@ -37,7 +37,7 @@ pub fn each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedS
     let files = samples.iter().map(|sample| sample.path.as_path());
     let (notes, inputs) = (notes(&files_of(files.clone()))?, input_files(files)?);
     let samples_at = shown(&options.base);
-    let curves: Vec<_> = samples.iter().map(|sample| sample.curve.points()).collect();
+    let curves: Vec<_> = samples.iter().map(|sample| (&sample.name, sample.curve.points())).collect();
     let work = format!("{samples_at} {dispersive} {finer} {sieves} {inches} {cover:?} {curves:?}");
     let table = DesignedSamples::new(samples_at, samples.iter().map(row).collect());
     let (dispersive, inches, cover) = (*dispersive, *inches, cover.clone().dated(today()));

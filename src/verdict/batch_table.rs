@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::BatchRow;
 use super::pair::PairOptions;
-use crate::gradation::{Gradation, GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
+use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_file, samples_in};
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,7 +53,7 @@ impl BatchTable {
     pub fn read(samples: &Path, filters: &[PathBuf], options: PairOptions) -> Result<Self, GradationError> {
         let of_base = samples_in(samples)?;
         let base = match &of_base[..] {
-            [sample] => number_rows(&sample.curve),
+            [sample] => sample.curve.rows(),
             _ => Vec::new(),
         };
         let mut table = Self { rows: Vec::new(), filters: Vec::new(), base, notes: Vec::new() };
@@ -64,7 +64,7 @@ impl BatchTable {
             let rows: Vec<BatchRow> = rows.collect();
             let d15f_mm = rows.iter().find_map(|row| row.d15f_mm);
             table.rows.extend(rows);
-            let gradations = curves.iter().map(|(_, curve)| number_rows(curve)).collect();
+            let gradations = curves.iter().map(|(_, curve)| curve.rows()).collect();
             let curves = curves.into_iter().map(|(name, _)| name).collect();
             table.filters.push(BatchFilter { name, curves, d15f_mm, gradations });
         }
@@ -92,9 +92,4 @@ impl BatchTable {
             )),
         }
     }
-}
-
-/// A curve in rows of (size in mm, percent finer by mass).
-fn number_rows(curve: &Gradation) -> Vec<[f64; 2]> {
-    curve.points().iter().map(|point| [point.size, point.percent]).collect()
 }

@@ -26,8 +26,8 @@ pub struct WalkedBatch {
     pub samples: String,
     /// The filters.
     pub filters: Vec<BatchFilter>,
-    /// The curve of the base as sampled, rows of (size in mm, percent finer by mass); left out where there
-    /// are several samples.
+    /// The curve of the one base as sampled, rows of (size in mm, percent finer by mass); left out where each
+    /// soil is a sample.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub base: Vec<[f64; 2]>,
     /// A row for each filter and sample, filter by filter.
@@ -128,6 +128,11 @@ impl WalkedBatch {
             inches: false,
             model_leaves_out: Vec::new(),
         }
+    }
+
+    /// Whether it is of one base and several filters, not of samples.
+    pub fn has_one_base(&self) -> bool {
+        !self.base.is_empty()
     }
 
     /// The rows of a filter.

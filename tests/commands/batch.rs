@@ -229,6 +229,11 @@ fn several_filters_of_one_base_make_one_table() {
     assert!(!page.contains("a<b>") && page.contains("a&lt;b&gt;"), "{page}");
     assert!(at.join("t/figures/batch-curves.svg").is_file());
     let before = (tables(&at.join("t")), moments(&at.join("t")));
+    // With --each one soil is a sample as any other.
+    let each = ["judge", base, "fine.csv", "--each", "--quick", "--out", "each"];
+    judged(&at, &[&each[..], &SMALL].concat());
+    let page = fs::read_to_string(at.join("each/batch.html")).unwrap();
+    assert!(page.contains("Which samples do these filters hold?") && page.contains("Governing sample"));
     // The same command finds it done, and an envelope as the base is refused.
     judged(&at, &words);
     assert!((tables(&at.join("t")), moments(&at.join("t"))) == before);

@@ -51,40 +51,4 @@ impl SheetCover {
     pub fn dated(self, day: Option<String>) -> Self {
         Self { date: self.date.or(day), ..self }
     }
-
-    /// What several covers say alike.
-    pub fn in_common(all: impl IntoIterator<Item = Self>) -> Self {
-        let same = |a: Option<String>, b: Option<String>| a.filter(|a| Some(a) == b.as_ref());
-        let both = |a: Self, b: Self| Self {
-            project: same(a.project, b.project),
-            number: same(a.number, b.number),
-            purpose: same(a.purpose, b.purpose),
-            client: same(a.client, b.client),
-            author: same(a.author, b.author),
-            checker: same(a.checker, b.checker),
-            revision: same(a.revision, b.revision),
-            date: same(a.date, b.date),
-        };
-        all.into_iter().reduce(both).unwrap_or_default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn several_covers_have_in_common_what_all_of_them_say() {
-        let of = |project: &str, client: Option<&str>| SheetCover {
-            project: Some(project.into()),
-            client: client.map(str::to_owned),
-            ..SheetCover::default()
-        };
-        let common = SheetCover::in_common([of("Dam", Some("Board")), of("Dam", Some("Board"))]);
-        assert_eq!(common, of("Dam", Some("Board")));
-        let common = SheetCover::in_common([of("Dam", Some("Board")), of("Dam", None)]);
-        assert_eq!(common, of("Dam", None));
-        assert!(SheetCover::in_common([of("Dam", None), of("Weir", None)]).is_unset());
-        assert!(SheetCover::in_common([]).is_unset());
-    }
 }

@@ -41,7 +41,7 @@ pub struct BatchPlan {
     pub(super) samples: PathBuf,
     /// The filters.
     pub(super) filters: Vec<BatchFilter>,
-    /// The curve of the base as sampled; empty where there are several samples.
+    /// The curve of the one base as sampled; empty where each soil is a sample.
     pub(super) base: Vec<[f64; 2]>,
     /// What practice says of each pair; nothing is walked yet.
     pub(super) rows: Vec<WalkedRow>,
@@ -81,7 +81,7 @@ impl BatchPlan {
             samples: samples.to_owned(),
             rows: governed(&table),
             filters: table.filters,
-            base: table.base,
+            base: if walks == BatchWalks::OneBase { table.base } else { Vec::new() },
             cases,
             in_full: HashSet::new(),
             notes: of_notes.collect(),

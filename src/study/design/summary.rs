@@ -8,7 +8,6 @@ use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
 use crate::case::Input;
-use crate::gradation::{CurvePoint, Gradation};
 use crate::outcome::design::{
     BETWEEN_STEPS, BaseStated, Beyond, Boundary, Design, DesignRow, NetworkBoundaries, RowNote,
     Specification, WalkRow, spread,
@@ -89,7 +88,7 @@ pub(super) fn design(
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
         filter_cu: first.case.filter.cu(),
         filter_d15_mm: first.filter_has_size.then(|| first.d15f()),
-        filter_gradation: if first.filter_has_size { pairs(&first.case.filter) } else { Vec::new() },
+        filter_gradation: if first.filter_has_size { first.case.filter.rows() } else { Vec::new() },
         inputs: inputs(first),
         threshold: THRESHOLD,
         replicates: first.case.scene.walk.replicates,
@@ -295,18 +294,14 @@ fn inputs(row: &Row) -> Vec<InputFile> {
     files
 }
 
-fn pairs(soil: &Gradation) -> Vec<[f64; 2]> {
-    soil.points().into_iter().map(CurvePoint::row).collect()
-}
-
 fn base(row: &Row, name: &str) -> BaseStated {
     let walked = &row.stated.gradation;
     let given = row.stated.regraded_from.as_ref().map_or(walked, |(given, _)| given);
     // Of a base without a size nothing in mm is known.
     let cut = row.stated.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
-        gradation: if row.d85_mm.is_some() { pairs(given) } else { Vec::new() },
-        regraded: if cut.is_some() { pairs(walked) } else { Vec::new() },
+        gradation: if row.d85_mm.is_some() { given.rows() } else { Vec::new() },
+        regraded: if cut.is_some() { walked.rows() } else { Vec::new() },
         name: name.into(),
         cu: walked.cu(),
         d15_mm: row.d85_mm.and(given.d(15.0)),

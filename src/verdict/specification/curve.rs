@@ -1,6 +1,6 @@
 //! A curve of the base as the rules of retention and drainage read it.
 
-use crate::gradation::{CurvePoint, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
+use crate::gradation::{FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 use crate::outcome::design::RowNote;
 use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::design::specification::SpecifiedCurve;
@@ -56,8 +56,8 @@ impl ReadCurve {
             dispersive,
             of: SpecifiedCurve {
                 curve: name.clone(),
-                gradation: rows(base),
-                regraded: soil.regraded_at_mm.map(|_| rows(&soil.gradation)).unwrap_or_default(),
+                gradation: base.rows(),
+                regraded: soil.regraded_at_mm.map(|_| soil.gradation.rows()).unwrap_or_default(),
                 d15_mm: base.d(15.0),
                 regraded_at_mm: soil.regraded_at_mm,
                 d85_mm: soil.gradation.d(85.0),
@@ -116,10 +116,6 @@ impl ReadCurve {
     pub fn least(&self) -> f64 {
         self.of.d15f_min_mm.unwrap_or(0.0)
     }
-}
-
-fn rows(curve: &Gradation) -> Vec<[f64; 2]> {
-    curve.points().into_iter().map(CurvePoint::row).collect()
 }
 
 /// What a reader must know of a base of these curves, with the name of the curve where there are several.
