@@ -516,7 +516,6 @@ class Trial:
             "run": ["run", "run.toml", "--out", "r", "-q"],
             "pack": ["pack", "pack.toml", "--out", "r", "-q"],
             "campaign": ["campaign", "plan.toml", "--out", "r", "-q"],
-            "filters": ["judge", "base.csv", "filter.csv", "other.csv", "--out", "r", "-q", *TABLES],
             "batch": ["judge", "base.csv", "filter.csv", "--each", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
@@ -528,7 +527,8 @@ class Trial:
         if self.is_campaign and not os.path.isdir(os.path.join(self.out, "cases")):
             return False
         own = next(word for word in WORKS[self.command][0] if word != "python").replace("judge", "run")
-        own = self.command if self.command in ("batch", "designs") else own
+        # Folders of these kinds are made by commands that also make others.
+        own = {"filters": "batch", "batch": "batch", "designs": "designs"}.get(self.command, own)
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}
