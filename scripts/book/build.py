@@ -29,7 +29,7 @@ ROOT = HERE.parent.parent
 TUTORIALS = ["engineer", "researcher", "granular", "cluster", "developer", "gallery"]
 
 # In the order of the book; a page of src/docs that is missing here is an error.
-DOCS = ["soils", "rules", "design", "uncertainty", "graph", "arches", "campaigns", "long_runs", "files", "stability", "serve", "python"]
+DOCS = ["soils", "rules", "design", "boundary", "uncertainty", "graph", "arches", "campaigns", "long_runs", "files", "stability", "serve", "python"]
 
 # What the results are too large for, or no reader's.
 NOT_SHOWN = shutil.ignore_patterns("same-bits.json")

@@ -333,37 +333,15 @@ def look(browser, url, pictures, workbook, root, process, binary):
     if size < 20_000:
         raise SystemExit(f"the folder to take away has {size} bytes")
 
-    # How coarse: a mistake in the words of the command line; then the boundaries, and the design's own page.
-    tab.run("document.querySelector('#shape').value = 'shire2016-cu1.5-loose';"
-            "document.querySelector('#shape').dispatchEvent(new Event('change'))")
-    tab.run("document.querySelector('#design-density').value = 'loose'")
-    tab.click("#design")
-    tab.until("document.querySelector('#design-problem').textContent.includes('keep one')")
-    tab.run("document.querySelector('#design-density').value = ''; document.querySelector('[data-design=replicates]').value = '3';"
-            "document.querySelector('#design-free').value = 'network.nx=5\\nnetwork.ny=5'; document.querySelector('#design-thickness').value = '8layers,4mm'")
-    tab.click("#design")
-    tab.until("document.querySelectorAll('.job').length === 4")
-    tab.job(0, "done", 120)
-    tab.picture("16-how-coarse")
-    tab.readable("16-how-coarse")
-    if tab.run("document.querySelectorAll('.job')[0].querySelectorAll('.boundaries tbody tr').length") != 2:
-        raise SystemExit("not a row a thickness")
-    other.until("document.querySelectorAll('.job').length === 4 && document.querySelector('.boundaries')")
-    other.picture("17-how-coarse-on-a-telephone")
-    page = tab.run("document.querySelectorAll('.job')[0].querySelector('.actions a').href")
-    report.browser.show(report.tab, page, 1280, 900)
-    if not report.run("document.body.innerText.includes('Boundaries of the model')"):
-        raise SystemExit("the page of the design is not there")
-
     quiet(browser)
     process.send_signal(signal.SIGTERM)
     code = process.wait(timeout=30)
     if code not in (0, 3):
         raise SystemExit(f"ended with {code}")
     tab.until("!document.querySelector('#gone').hidden", 15)
-    tab.picture("18-the-program-has-ended")
+    tab.picture("16-the-program-has-ended")
     left = sorted(entry.name for entry in (root / "served").iterdir() if not entry.name.startswith("."))
-    if left != ["batch-3", "design-4", "run-1", "run-2", "serve.json", "sheets"]:
+    if left != ["batch-3", "run-1", "run-2", "serve.json", "sheets"]:
         raise SystemExit(f"left behind: {left}")
 
 

@@ -59,7 +59,7 @@ FILES = {
 EVERY = ["--checkpoint-every", "10increments"]
 TABLES = ["--set", "replicates=2", "--set", "base.n_base=20000", "--set", "network.nx=5", "--set", "network.ny=5", "--set",
           "network.nz=6", "--set", "engine=particles", "--set", "record.sensitivity=[]"]
-DESIGN = ["design", "base.csv", "--out", "r", "-q", "--set", "network.nx=5", "--set", "network.ny=5", "--set", "replicates=3"]
+BOUNDARY = ["boundary", "base.csv", "--out", "r", "-q", "--set", "network.nx=5", "--set", "network.ny=5", "--set", "replicates=3"]
 PERCOLATION = ["percolation", "--out", "r", "--sizes", "4,6,8", "--realisations", "40"]
 
 # Command: the work; what was done in the folder before; the folders that are compared.
@@ -88,10 +88,10 @@ WORKS = {
     ),
     "percolation": (PERCOLATION, None, ["r"]),
     "percolation-overwrite": ([*PERCOLATION, "--overwrite"], [*PERCOLATION[:3], "--sizes", "5", "--realisations", "2"], ["r"]),
-    "design": ([*DESIGN, "--thickness", "6layers"], None, ["r"]),
+    "boundary": ([*BOUNDARY, "--thickness", "6layers"], None, ["r"]),
     "designs": (["design", "samples.csv", "--each", "--out", "r", "-q"], None, ["r"]),
-    "specification": (["design", "base.csv", "--steps", "--out", "r", "-q"], None, ["r"]),
-    "design-overwrite": ([*DESIGN, "--thickness", "6layers", "--overwrite"], [*DESIGN, "--thickness", "5layers"], ["r"]),
+    "specification": (["design", "base.csv", "--out", "r", "-q"], None, ["r"]),
+    "boundary-overwrite": ([*BOUNDARY, "--thickness", "6layers", "--overwrite"], [*BOUNDARY, "--thickness", "5layers"], ["r"]),
 }
 # Works of the Python package, each line a call of its own; a run is resumed by the package or by the program.
 PYTHON_WORKS = {
@@ -120,8 +120,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 # What a record says of the clock, the machine and the call.
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "design.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
-PAGES = ("report.html", "design.html", "specification.html", "batch.html", "designs.html")
+RECORDS = ("outcome.json", "packing.json", "percolation.json", "boundary.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
+PAGES = ("report.html", "boundary.html", "specification.html", "batch.html", "designs.html")
 
 
 class Find(Exception):
@@ -519,7 +519,7 @@ class Trial:
             "batch": ["judge", "base.csv", "filter.csv", "--each", "--out", "r", "-q", *TABLES],
             "constrictions": ["constrictions", "fewer.csv", "--out", "r"],
             "percolation": ["percolation", "--sizes", "3", "--realisations", "2", "--out", "r"],
-            "design": DESIGN,
+            "boundary": BOUNDARY,
             "designs": ["design", "samples.csv", "--each", "--out", "r", "-q"],
         }
         if not os.path.exists(os.path.join(self.out, MARK)) and not self.is_campaign:
@@ -528,7 +528,7 @@ class Trial:
             return False
         own = next(word for word in WORKS[self.command][0] if word != "python").replace("judge", "run")
         # Folders of these kinds are made by commands that also make others.
-        own = {"filters": "batch", "batch": "batch", "designs": "designs"}.get(self.command, own)
+        own = {"filters": "batch", "batch": "batch", "designs": "designs", "specification": "specification"}.get(self.command, own)
         other = self.chance.choice(sorted(set(kinds) - {own}))
         more = ["--overwrite"] if other != "campaign" and self.chance.random() < 0.5 else []
         kept = lambda: {n: d for n, d in files_of(self.out).items() if os.path.basename(n) != LOCK and PART not in n}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints how long a user waits for `judge` and `design` of real pairs, from two sheets to the page, in Markdown.
+"""Prints how long a user waits for `judge` and `boundary` of real pairs, from two sheets to the page, in Markdown.
 
     scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
 
@@ -35,7 +35,7 @@ def commands(folder):
     return {
         "judge --quick": ["judge", base, of_filter, "--quick"],
         "judge": ["judge", base, of_filter],
-        "design": ["design", base, "--filter", of_filter],
+        "boundary": ["boundary", base, "--filter", of_filter],
         "judge, three filters": ["judge", base, *others, "--quick"],
     }
 

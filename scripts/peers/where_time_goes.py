@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints where the time of `judge`, `design`, `judge --each` and `serve` goes, from the sheets to the page: all tables of
+"""Prints where the time of `judge`, `boundary`, `judge --each` and `serve` goes, from the sheets to the page: all tables of
 `results/where-time-goes.md`, in Markdown.
 
     scripts/peers/where_time_goes.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 5] [--first]
@@ -260,7 +260,7 @@ def main():
             "judge": ["judge", *pair],
             "judge --quick": ["judge", *pair, "--quick"],
             "judge, three filters": ["judge", base, *others, "--quick"],
-            "design": ["design", base, "--filter", of_filter],
+            "boundary": ["boundary", base, "--filter", of_filter],
             f"judge --each, {words.samples} samples and three filters": ["judge", work / "site.ags", *filters, "--each"],
         }
 

@@ -22,7 +22,8 @@ SETTINGS = WRITTEN.with_name("settings.py")
 ROOTS = {
     "outcome": "Outcome",
     "network-walk": "WalkOutcome",
-    "design": "Design",
+    "specification": "Specification",
+    "boundary": "Boundaries",
     "percolation": "PercolationStudy",
     "rules": "PairRules",
     "soils": "Soils",

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Charts of how coarse a filter may be: both boundaries of `voidwalk design` against Cu of filter and base.
+"""Charts of how coarse a filter may be: both boundaries of `voidwalk boundary` against Cu of filter and base.
 
     scripts/studies/charts.py [--out target/charts-DATE] [--binary target/release/voidwalk] [--threads N] [--until 13:05]
     scripts/studies/charts.py --cu-f 1.5 --cu-b 1.5,3 --densities loose --thicknesses 60layers --networks 3     # a part of it
@@ -100,11 +100,11 @@ def folder_of(args, thickness, cu_f, cu_b, density):
 
 
 def is_done(folder):
-    return (folder / "design.json").exists() and not (folder / ".voidwalk.unfinished").exists()
+    return (folder / "boundary.json").exists() and not (folder / ".voidwalk.unfinished").exists()
 
 
 def asked(args, thickness, cu_f, cu_b, density):
-    """What the program is asked for, and the settings that design.json names."""
+    """What the program is asked for, and the settings that boundary.json names."""
     curve = SHIPPED.get((cu_f, density))
     parts = ["--filter", curve or f"{cu_f:g}"] + ([] if curve else ["--density", density]) + ["--thickness", thickness]
     settings = [f"base.cu={cu_b:g}", f"base.d85_mm={args.d85_mm:g}", f"replicates={args.networks}"]
@@ -119,11 +119,11 @@ def walk(args, row):
     folder = folder_of(args, *row)
     parts, settings = asked(args, *row)
     if is_done(folder):
-        of_done = [said.removeprefix("--set ") for said in json.loads((folder / "design.json").read_text())["settings"] if said.startswith("--set ")]
+        of_done = [said.removeprefix("--set ") for said in json.loads((folder / "boundary.json").read_text())["settings"] if said.startswith("--set ")]
         if of_done != settings:
             sys.exit(f"{folder}: was walked with {of_done}, not {settings}: give these, or another --out")
         return
-    command = [args.binary, "design", *parts, "--out", folder, "--packings", args.out / "packings"]
+    command = [args.binary, "boundary", *parts, "--out", folder, "--packings", args.out / "packings"]
     if args.threads:
         command += ["--threads", str(args.threads)]
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -162,10 +162,10 @@ def collect(args):
             cu_f, cu_b, density, thickness = name.groups()
             found.append((thickness.endswith("mm"), thickness, density != "loose", density, number(cu_f), number(cu_b), folder))
     for _, thickness, _, density, cu_f, cu_b, folder in sorted(found):
-        design = json.loads((folder / "design.json").read_text())
+        record = json.loads((folder / "boundary.json").read_text())
         # Of a curve that is known within a range, the end that holds least.
-        known = [row for row in design["boundaries"] if row["no_erosion"] and row["no_erosion"]["low"] is not None]
-        found = min(known, key=lambda row: row["no_erosion"]["low"], default=design["boundaries"][0])
+        known = [row for row in record["boundaries"] if row["no_erosion"] and row["no_erosion"]["low"] is not None]
+        found = min(known, key=lambda row: row["no_erosion"]["low"], default=record["boundaries"][0])
         for name in BOUNDARIES:
             boundary = found[name] or {"median": None, "low": None, "high": None}
             lines.append(
@@ -180,7 +180,7 @@ def collect(args):
                     "not_monotone": found["not_monotone"],
                     "networks": len(found["networks"]),
                     "constrictions": SHIPPED.get((cu_f, density), "packed"),
-                    "settings": " ".join(said.removeprefix("--set ") for said in design["settings"] if said.startswith("--set ")),
+                    "settings": " ".join(said.removeprefix("--set ") for said in record["settings"] if said.startswith("--set ")),
                     "processor_s": round(seconds.get(folder.name, 0.0), 1),
                     "note": "; ".join(note["id"] for note in found.get(f"{name}_notes", [])),
                 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How coarse may the filter be, for ten bases: the boundaries of `voidwalk design`, and what they cost.
+"""How coarse may the filter be, for ten bases: the boundaries of `voidwalk boundary`, and what they cost.
 
     scripts/studies/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2] [--set KEY=VALUE]
     scripts/studies/ten_bases.py --only "linear, Cu 1.5"          # one of them
@@ -32,7 +32,7 @@ TABLES = {
 
 
 def bases(args):
-    """Name, and how design is told."""
+    """Name, and how boundary is told."""
     for cu in LINEAR:
         yield f"linear, Cu {cu:g}", ["--set", f"base.cu={cu:g}", "--set", "base.d85_mm=0.2"]
     for name, points in TABLES.items():
@@ -42,19 +42,19 @@ def bases(args):
 
 
 def walk(args, name, told):
-    folder = args.out / "design"
+    folder = args.out / "boundary"
     shutil.rmtree(folder, ignore_errors=True)
-    command = [args.binary, "design", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
+    command = [args.binary, "boundary", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
     command += [part for setting in args.set for part in ("--set", setting)]
     load, before, begun = os.getloadavg()[0], resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     code = subprocess.call([str(part) for part in command])
     wall, after = time.monotonic() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
     if code:
         sys.exit(f"{name}: voidwalk ended with {code}")
-    walks = (folder / "design.csv").read_text().splitlines()[1:]
+    walks = (folder / "boundary.csv").read_text().splitlines()[1:]
     return {
         "base": name,
-        "design": json.loads((folder / "design.json").read_text()),
+        "boundary": json.loads((folder / "boundary.json").read_text()),
         "walks": len(walks) + sum(not line.endswith(",") for line in walks),
         "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
         "wall_s": wall,
@@ -74,7 +74,7 @@ def table(done):
     print("| base | Cu | no erosion up to D15F/D85B (5 to 95 %) | continuing from | not monotone | walks | processor s | wall s | load |")
     print("|---|---|---|---|---|---|---|---|---|")
     for one in done:
-        row, cu = one["design"]["boundaries"][0], one["design"]["base"]["cu"]
+        row, cu = one["boundary"]["boundaries"][0], one["boundary"]["base"]["cu"]
         print(f"| {one['base']} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_notes', []))} "
               f"| {words(row['continuing'], row.get('continuing_notes', []))} | {row['not_monotone']} of {len(row['networks'])} "
               f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |")

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, WalkArgs};
-pub use super::study_args::{CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs};
+pub use super::study_args::{
+    BoundaryArgs, CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs,
+};
 use super::values::{density, form, length, threads};
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
@@ -57,8 +59,10 @@ pub enum Command {
         /// Folder for the files: a new one, or one that has none of them
         folder: PathBuf,
     },
-    /// Find how coarse a filter may be for a base: both boundaries of erosion, and the specification band
+    /// Specify a filter for a base by the rules of practice, without a walk: steps, band, limits, products
     Design(DesignArgs),
+    /// Find the boundaries of the model, for research: D15F/D85B from which it erodes, once and twice
+    Boundary(BoundaryArgs),
     /// Walk the cases of a plan that are not finished, and compare them all
     Campaign(CampaignArgs),
     /// Pack a filter's grains from its gradation and density, and measure the constrictions

@@ -5,28 +5,25 @@ use std::path::Path;
 
 use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
+use super::design::by_option;
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::specification::{asked, by_option};
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
 use crate::study::designs::each;
+use crate::study::specified::SpecifyOptions;
 use crate::verdict::DesignedSamples;
 use crate::words::designed::{columns, lines};
 use crate::words::specification::DESIGN_EACH_AGAIN;
 
-/// The folder of the results, where nobody names one.
-const FOLDER: &str = "voidwalk-designs";
-
 /// Specifies a filter for every sample and writes the table into a folder.
-pub(super) fn design_each(args: &DesignArgs, samples: &Path, settings: &[String]) -> Result<(), RunError> {
-    let options = asked(args, samples, FOLDER, settings)?;
-    let found = followed(args.quiet, |callbacks| each(&options, callbacks))?;
+pub(super) fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result<(), RunError> {
+    let all = followed(args.quiet, |callbacks| each(options, callbacks))?;
     if args.json {
-        as_it_is(&json(format::DESIGNS, &found)?);
+        as_it_is(&json(format::DESIGNS, &all)?);
     } else if !args.quiet {
-        to_stdout(&words(&found, &options.out));
+        to_stdout(&words(&all, &options.out));
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use super::groups::with_groups;
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
-const EXAMPLES: [(&str, [Example; 2]); 18] = [
+const EXAMPLES: [(&str, [Example; 2]); 19] = [
     (
         "run",
         [
@@ -83,8 +83,15 @@ const EXAMPLES: [(&str, [Example; 2]); 18] = [
     (
         "design",
         [
-            ["voidwalk design base.csv --filter 1.5", "how coarse a loose filter with Cu 1.5 may be"],
-            ["voidwalk design base.csv --steps", "the specification by practice, step by step, at once"],
+            ["voidwalk design base.csv", "the specification of a filter, step by step"],
+            ["voidwalk design site.ags --each", "for every sample of a file, and which governs"],
+        ],
+    ),
+    (
+        "boundary",
+        [
+            ["voidwalk boundary base.csv --filter 1.5", "of a filter with Cu 1.5, loose to dense"],
+            ["voidwalk boundary --set base.cu=3 --density loose", "without sizes"],
         ],
     ),
     (

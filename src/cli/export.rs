@@ -11,7 +11,7 @@ use crate::run::{FolderKind, RunError};
 pub fn export(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Serve) else {
         let problem = "holds no finished work; name the folder of a run, a packing, constrictions, a \
-                       campaign, a batch, a study or a design";
+                       campaign, a batch, a study or a specification";
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;

@@ -10,7 +10,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("To begin", &["examples", "serve", "soil"]),
     ("Two sieve tables", &["rules", "judge", "design"]),
     ("A scene", &["init", "check", "run", "resume"]),
-    ("Many cases, and results", &["campaign", "report", "export"]),
+    ("Many cases, and results", &["campaign", "boundary", "report", "export"]),
 ];
 
 /// Commands that are named alone.

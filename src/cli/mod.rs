@@ -4,6 +4,7 @@
 
 mod args;
 mod batch;
+mod boundary;
 mod campaign;
 mod case_progress;
 mod check;
@@ -33,7 +34,6 @@ mod serve;
 mod shared_args;
 mod shell;
 mod soil;
-mod specification;
 mod start;
 mod study_args;
 mod values;
@@ -104,6 +104,7 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
         Command::Init { path, plan, json, schema } => init::init(path.as_deref(), plan, json, schema),
         Command::Examples { folder } => write_examples::examples(&folder),
         Command::Design(args) => design::design(&args),
+        Command::Boundary(args) => boundary::boundary(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
         Command::Constrictions(args) => constrictions::constrictions(&args),

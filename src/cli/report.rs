@@ -11,8 +11,8 @@ use crate::run::{FolderKind, RunError};
 pub fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
         let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, percolation.json, \
-            design.json, designs.json or specification.json; name the folder of a finished run, packing, \
-            campaign, batch, study, design or specification";
+            boundary.json, designs.json or specification.json; name the folder of a finished run, packing, \
+            campaign, batch, study or specification";
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
@@ -33,7 +33,7 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, ReportError> {
         FolderKind::Campaign => report::write_campaign(folder),
         FolderKind::Percolation => report::write_percolation(folder),
         FolderKind::Batch => report::write_batch(folder),
-        FolderKind::Design => report::write_design(folder),
+        FolderKind::Boundary => report::write_boundary(folder),
         FolderKind::Designs => report::write_designs(folder),
         FolderKind::Specification => report::write_specification(folder),
         FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),

@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 use super::soil::Soils;
 use crate::campaign::PlanCheck;
 use crate::constrictions::Summary;
-use crate::outcome::design::{Design, Specification};
+use crate::outcome::boundary::Boundaries;
+use crate::outcome::design::Specification;
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::packing::PackingRecord;
@@ -26,7 +27,7 @@ fn contents() -> Vec<(Format, Schema)> {
     vec![
         (format::OUTCOME, of::<Outcome>()),
         (format::MANIFEST, of::<Manifest>()),
-        (format::DESIGN, of::<Design>()),
+        (format::BOUNDARY, of::<Boundaries>()),
         (format::DESIGNS, of::<DesignedSamples>()),
         (format::SPECIFICATION, of::<Specification>()),
         (format::BATCH, of::<WalkedBatch>()),

@@ -122,7 +122,7 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
         "units" => named(&SheetUnits::ALL.map(SheetUnits::name)),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
         "facets" => named(&FACETS.map(|(word, _)| word)),
-        "filter" if command == "design" && shell == Shell::Bash => {
+        "filter" if command == "boundary" && shell == Shell::Bash => {
             shipped().iter().map(|filter| filter.name.clone()).collect()
         }
         _ => return arg,
@@ -199,7 +199,7 @@ mod tests {
         );
         // What may be a file is no list of words there.
         let of_filter =
-            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l filter ");
+            |line: &&str| line.contains("using_subcommand boundary") && line.contains(" -l filter ");
         let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!(lines[0].ends_with(" -r") && !lines[0].contains("shire2016"), "{lines:?}");

@@ -6,46 +6,61 @@ use std::time::Duration;
 use clap::Args;
 
 use super::shared_args::WalkArgs;
-use super::values::{assignment, bracket, facets, lattice_size, seed, sheet_units, threads, time};
+use super::values::{assignment, facets, lattice_size, seed, sheet_units, threads, time};
 use crate::campaign::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::outcome::design::SieveSeries;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::machine::bytes_from_words;
 use crate::scene::SheetUnits;
-use crate::study::design::ThicknessList;
+use crate::study::boundary::ThicknessList;
 
-/// Which base, and what shape of filter.
+/// For which base, and where the specification goes.
 #[derive(Debug, Args)]
 pub struct DesignArgs {
-    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
-    /// the settings, for example --set base.cu=3]; with --steps several soils are the curves of an envelope;
-    /// with --each also a folder of tables
-    pub base: Option<PathBuf>,
-    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder:
-    /// what practice specifies for each, one table and the samples that govern in --out [default:
-    /// voidwalk-designs]. Nothing is walked
-    #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
-          "as_sampled", "as_given", "seed", "bracket", "packings", "memory", "threads"])]
+    /// The base: a sieve table (FILE#NAME for one of several soils); several soils are the curves of an
+    /// envelope; with --each also a folder of tables
+    pub base: PathBuf,
+    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: what
+    /// practice specifies for each, one table and the samples that govern
+    #[arg(long)]
     pub each: bool,
-    /// Without a walk: the specification by the rules of practice alone, step by step, with limits sieve by
-    /// sieve and standard products
-    #[arg(long, requires = "base", conflicts_with_all = ["filter", "densities", "pack", "thicknesses",
-          "as_sampled", "as_given", "seed", "bracket", "packings", "memory", "threads"])]
-    pub steps: bool,
-    /// With --steps: place the band at the finer end of what is allowed: its maximum D15F is lowered, not its
-    /// minimum raised
-    #[arg(long, requires = "steps", conflicts_with = "each")]
+    /// Place the band at the finer end of what is allowed: its maximum D15F is lowered, not its minimum
+    /// raised
+    #[arg(long, conflicts_with = "each")]
     pub finer: bool,
-    /// Sieves at which the specification states its limits: us (ASTM E11) or iso (mm)
+    /// Sieves at which the limits are stated: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]
     pub sieves: SieveSeries,
     /// Units of page and terminal: us has inches beside mm, metric has none (about.units)
     #[arg(long, value_name = "UNITS", value_parser = sheet_units)]
     pub units: Option<SheetUnits>,
-    /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
+    /// The base is dispersive: stricter limits if it has many fines
     #[arg(long)]
     pub dispersive: bool,
+    /// What the page says of itself, for example --set about.project="Main dam"; can be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub settings: Vec<String>,
+    /// Folder for the results [default: voidwalk-specification; with --each voidwalk-designs]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in --out
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Print specification.json; with --each designs.json
+    #[arg(long)]
+    pub json: bool,
+    /// Print no progress and no summary
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Which base, and what shape of filter.
+#[derive(Debug, Args)]
+pub struct BoundaryArgs {
+    /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
+    /// the settings, for example --set base.cu=3]
+    pub base: Option<PathBuf>,
     /// The shape of the filter, whose size is searched: a sieve table, a Cu, or a shipped curve [default:
     /// shire2016-cu1.5-loose, or from --set]
     #[arg(long, value_name = "SHAPE", allow_hyphen_values = true)]
@@ -76,15 +91,9 @@ pub struct DesignArgs {
     /// Seed: the same seed gives the same bits
     #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
-    /// Range of D15F/D85B to search, rounded outwards to steps of 8 %; boundaries close to an end may be
-    /// missed
-    #[arg(long, value_name = "LOW,HIGH", default_value = "0.5,100", value_parser = bracket,
-          allow_hyphen_values = true)]
-    pub bracket: (f64, f64),
-    /// Folder for the results [default: voidwalk-design; with --steps voidwalk-specification, with
-    /// --each voidwalk-designs]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "voidwalk-boundary")]
+    pub out: PathBuf,
     /// Replace the results of an earlier call in --out
     #[arg(long)]
     pub overwrite: bool,
@@ -97,7 +106,7 @@ pub struct DesignArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
     pub threads: Option<usize>,
-    /// Print design.json; with --steps specification.json, with --each designs.json
+    /// Print boundary.json
     #[arg(long)]
     pub json: bool,
     /// Print no progress and no summary

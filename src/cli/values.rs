@@ -9,15 +9,6 @@ use crate::scene::{Density, SheetUnits};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::format::{FORMATS, Format};
 
-/// Two ratios.
-pub(super) fn bracket(text: &str) -> Result<(f64, f64), String> {
-    let parts = text.split_once(',').map(|(low, high)| (low.trim().parse(), high.trim().parse()));
-    match parts {
-        Some((Ok(low), Ok(high))) => Ok((low, high)),
-        _ => Err("write two D15F/D85B, as 0.5,100".into()),
-    }
-}
-
 /// A setting and its value.
 pub(super) fn assignment(text: &str) -> Result<String, String> {
     match text.split_once('=') {

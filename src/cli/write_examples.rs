@@ -13,7 +13,7 @@ const TO_TRY: [[&str; 2]; 9] = [
     ["voidwalk rules borrow-area.ags filter-fine.csv filter.csv --each", "many samples, two filters"],
     ["voidwalk judge base.csv filter.csv --quick", "rules and walk, and a page"],
     ["voidwalk judge base.csv filter-fine.csv filter.csv --quick", "two filters, in one table"],
-    ["voidwalk design base.csv --filter filter.csv", "how coarse such a filter may be"],
+    ["voidwalk design base.csv", "the specification of a filter for it"],
     ["voidwalk run scene.toml --out scene", "the scene"],
     ["voidwalk campaign plan.toml", "the plan"],
     ["jupyter notebook notebook.ipynb", "with the Python packages voidwalk and matplotlib"],

@@ -18,6 +18,9 @@ pub mod rules {}
 #[doc = include_str!("design.md")]
 pub mod design {}
 
+#[doc = include_str!("boundary.md")]
+pub mod boundary {}
+
 #[doc = include_str!("campaigns.md")]
 pub mod campaigns {}
 

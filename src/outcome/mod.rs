@@ -17,12 +17,13 @@
 //! - [`network_walk`] is what comes of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`undecided`] is what leaves a verdict open.
-//! - [`design`] is how coarse a filter may be, and the band of a specification.
+//! - [`design`] is the specification of a filter by practice, [`boundary`] the boundaries of the model.
 //! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
 //!   [`quantity`] is the way from a number to text.
 
 mod applied;
 mod base_size;
+pub mod boundary;
 pub mod by_connectivity;
 pub(crate) mod by_void;
 mod curve_range;

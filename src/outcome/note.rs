@@ -152,50 +152,47 @@ notes! {
 
     // The search of a boundary.
     /// One layer of voids thicker than the filter that was asked for.
-    LayerThicker { ratio: f64, layer_mm: f64, thickness: String } "thickness" "design.md"
+    LayerThicker { ratio: f64, layer_mm: f64, thickness: String } "thickness" "boundary.md"
         "At D15F/D85B {ratio} one layer of voids is {layer_mm} thick; a filter of {thickness} holds less.";
     /// A boundary that few particles decide.
-    Unsteady { networks_held: u64, networks_eroding: u64 } "scatter" "design.md"
+    Unsteady { networks_held: u64, networks_eroding: u64 } "scatter" "boundary.md"
         "The boundary is noisy: {networks_held} of the {networks_eroding} eroding networks held at a larger \
          D15F/D85B \
          than one that failed.";
     /// A search in which nothing could be walked.
-    NothingWalked {} "search" "design.md"
+    NothingWalked {} "search" "boundary.md"
         "No D15F/D85B of the search could be walked.";
     /// Networks that erode at every ratio.
-    ErodesEverywhere { networks_eroding: u64, networks: u64 } "search" "design.md"
+    ErodesEverywhere { networks_eroding: u64, networks: u64 } "search" "boundary.md"
         "{networks_eroding} of {networks:network} erode 7.5 % or more at every ratio of the search.";
     /// Networks that hold at every ratio.
-    HoldsEverywhere { ratio: f64 } "search" "design.md"
-        "Nearly all networks hold to D15F/D85B {ratio}, where the search ends; the boundary is not known."
-        "A higher end of --bracket may find it.";
+    HoldsEverywhere { ratio: f64 } "search" "boundary.md"
+        "Nearly all networks hold to D15F/D85B {ratio}, where the search ends; the boundary is not known.";
     /// A median beyond the search.
-    MedianBeyond { ratio: f64, networks_eroding: u64, networks: u64 } "search" "design.md"
+    MedianBeyond { ratio: f64, networks_eroding: u64, networks: u64 } "search" "boundary.md"
         "{networks_eroding} of {networks:network} erode up to D15F/D85B {ratio}, where the search ends; the \
-         median lies \
-         beyond it."
-        "A higher end of --bracket may find it.";
+         median lies beyond it.";
     /// A search that ends while the base erodes.
-    ErodesToEnd { ratio: f64, networks: u64 } "search" "design.md"
+    ErodesToEnd { ratio: f64, networks: u64 } "search" "boundary.md"
         "At least 7.5 % of the base erodes down to D15F/D85B {ratio}, where the search ends \
          ({networks:network}).";
     /// Ratios below which nothing can be walked.
-    ErodesTo { ratio: f64, networks: u64, reason: String } "search" "design.md"
+    ErodesTo { ratio: f64, networks: u64, reason: String } "search" "boundary.md"
         "At least 7.5 % of the base erodes down to D15F/D85B {ratio} ({networks:network}); smaller ratios: \
          {reason}.";
     /// A search that ends while the filter holds.
-    HoldsToEnd { run: u64, ratio: f64, networks: u64 } "search" "design.md"
+    HoldsToEnd { run: u64, ratio: f64, networks: u64 } "search" "boundary.md"
         "Less than 7.5 % erodes in run {run} up to D15F/D85B {ratio}, where the search ends \
          ({networks:network}).";
     /// Ratios beyond which nothing can be walked.
-    NotWalked { networks: u64, reason: String } "search" "design.md"
+    NotWalked { networks: u64, reason: String } "search" "boundary.md"
         "The search could go no further ({networks:network}): {reason}.";
     /// An end of the range of a density that was not searched.
-    SparedEnd { density: String, ratio: f64 } "search" "design.md"
+    SparedEnd { density: String, ratio: f64 } "search" "boundary.md"
         "The end {density} holds clearly more (D15F/D85B {ratio} on its first network); its boundary was \
          not searched.";
     /// A finest part of the base that is enough to erode.
-    PanErodes { finest_percent: f64 } "below the last sieve" "design.md"
+    PanErodes { finest_percent: f64 } "below the last sieve" "boundary.md"
         "{finest_percent} of the base is finer than its finest sieve, which is enough to count as erosion."
         "Finer sieves would tell, or base.d0_mm.";
 
@@ -308,7 +305,7 @@ notes! {
          not given."
         "filter.grains_per_void says how many grains the filter has for each void.";
     /// A number of particles that does not follow a search.
-    AmountHeld { particles: u64 } "amount of base" "design.md"
+    AmountHeld { particles: u64 } "amount of base" "boundary.md"
         "At most {particles} base particles are walked at every ratio; where more are needed, filters can \
          seem to hold."
         "base.n_base and base.cap hold it.";
@@ -405,7 +402,7 @@ notes! {
         "There are only {replicates:replicate}, whose scatter is hardly known."
         "replicates = 10, say.";
     /// Few networks of a search.
-    FewNetworks { networks: u64 } "networks" "design.md"
+    FewNetworks { networks: u64 } "networks" "boundary.md"
         "The search has only {networks:network}; a range of 5 to 95 % needs 5 at least, better 20."
         "--set replicates=20.";
 
@@ -521,7 +518,7 @@ notes! {
          end."
         "Give those ways out a diameter of 0, so that what circles counts as trapped, or a wider one.";
     /// Ratios that hold above one that erodes.
-    NotMonotone { networks: u64 } "search" "design.md"
+    NotMonotone { networks: u64 } "search" "boundary.md"
         "On {networks:network} a larger ratio held than one that eroded; the smallest that eroded counts.";
     /// Particles that circle.
     Trapped { particles: u64 } "trapped" "uncertainty.md"

@@ -1,18 +1,19 @@
-//! What soils a specification or a design is for: drawn on the form of gradations, with the band where there
+//! What soils a specification is for: drawn on the form of gradations, with the band where there
 //! is one, and in an appendix with their sizes and their gradations.
 
 use maud::{Markup, html};
 
-use super::appendix::{BETWEEN, TWO_SOILS, TabledSoil, gradations};
-use super::figures::{
-    Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten,
-};
+use super::appendix::{BETWEEN, TabledSoil, gradations};
+use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
 use super::names::{as_sampled, is_named};
 use super::quantity::SizeUnit;
 use super::shell::Drawn;
 use super::sizes::{SizedSoil, of_few, of_many};
+use crate::outcome::design::Specification;
 use crate::outcome::design::specification::{SizeBand, SpecifiedCurve};
-use crate::outcome::design::{Design, Specification};
+
+/// The file that has every row.
+const RECORD: &str = "specification.json";
 
 /// Most curves of a base that are drawn, and of which every row is shown.
 const CURVES: usize = 12;
@@ -26,51 +27,28 @@ struct GivenCurve<'a> {
     regraded: &'a [[f64; 2]],
 }
 
-/// The soils of a specification or of a design.
+/// The soils of a specification.
 pub(super) struct GivenSoils<'a> {
     curves: Vec<GivenCurve<'a>>,
-    /// The filter's name and its gradation as it was given, in mm.
-    filter: Option<(&'a str, &'a [[f64; 2]])>,
-    /// The file that has every row.
-    record: &'static str,
     inches: bool,
-    /// What a search scales, where there is one.
-    scaled: Option<&'static str>,
 }
 
 impl<'a> GivenSoils<'a> {
-    /// Those of a specification without a walk.
     pub(super) fn of_specification(of: &'a Specification) -> Self {
-        let curves = of.curves.iter().map(GivenCurve::of).collect();
-        Self { curves, filter: None, record: "specification.json", inches: of.inches, scaled: None }
-    }
-
-    /// Those of a design.
-    pub(super) fn of_design(of: &'a Design) -> Self {
-        let specified = of.specification.iter().flat_map(|of| &of.curves);
-        let mut curves: Vec<GivenCurve> = specified.map(GivenCurve::of).collect();
-        let base = &of.base;
-        if curves.is_empty() && !base.gradation.is_empty() {
-            let (sampled, regraded) = (&base.gradation[..], &base.regraded[..]);
-            curves.push(GivenCurve { name: &base.name, sampled, regraded });
-        }
-        let filter = (!of.filter_gradation.is_empty()).then_some((&*of.filter, &of.filter_gradation[..]));
-        let scaled = Some("filter");
-        Self { curves, filter, record: "design.json", inches: of.inches, scaled }
+        Self { curves: of.curves.iter().map(GivenCurve::of).collect(), inches: of.inches }
     }
 
     /// What the appendix is called.
     pub(super) fn heading(&self) -> &'static str {
-        match (self.curves.len(), self.filter) {
-            (1, Some(_)) => TWO_SOILS,
-            (1, None) => "Appendix: the gradation of the base",
+        match self.curves.len() {
+            1 => "Appendix: the gradation of the base",
             _ => "Appendix: the gradations",
         }
     }
 
     /// Sizes and gradations of every soil; nothing where none is known.
     pub(super) fn appendix(&self) -> Markup {
-        if self.curves.is_empty() && self.filter.is_none() {
+        if self.curves.is_empty() {
             return html! {};
         }
         let unit = SizeUnit::of(false, self.inches);
@@ -82,15 +60,11 @@ impl<'a> GivenSoils<'a> {
                     " and as regraded for the rules of practice"
                 }
                 "; " (BETWEEN)
-                @if let Some(soil) = self.scaled.filter(|_| self.filter.is_some()) {
-                    " The " (soil) " is shown as it was given. The search scales it to many sizes, and it \
-                     keeps its shape."
-                }
             }
             @if self.curves.len() > 1 { (of_many(&self.sized())) } @else { (of_few(&self.sized(), unit)) }
-            (gradations(&self.tabled(drawn), unit, self.record))
+            (gradations(&self.tabled(drawn), unit, RECORD))
             @if drawn.len() < self.curves.len() {
-                p.small { "The other " (self.curves.len() - drawn.len()) " curves are in " (self.record) "." }
+                p.small { "The other " (self.curves.len() - drawn.len()) " curves are in " (RECORD) "." }
             }
         }
     }
@@ -110,7 +84,6 @@ impl<'a> GivenSoils<'a> {
                 soils.push(SizedSoil::new(regraded, curve.regraded));
             }
         }
-        soils.extend(self.filter.map(|(_, rows)| SizedSoil::new("Filter, as given", rows)));
         soils
     }
 
@@ -127,10 +100,6 @@ impl<'a> GivenSoils<'a> {
                 soils.push(TabledSoil { kind: "Base, regraded", name, rows: curve.regraded });
             }
         }
-        soils.extend(self.filter.map(|(name, rows)| {
-            let name = name.split(", ").next().unwrap_or(name);
-            TabledSoil { kind: "Filter, as given", name: named("filter", name), rows }
-        }));
         soils
     }
 
@@ -140,9 +109,8 @@ impl<'a> GivenSoils<'a> {
         let drawn = &self.curves[..self.curves.len().min(CURVES)];
         let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));
         let bases = drawn.iter().flat_map(|curve| curve.sampled.iter().chain(curve.regraded));
-        let filter = self.filter.map_or(&[][..], |(_, rows)| rows);
         let of_sides = sides.iter().flat_map(|(fine, coarse)| fine.iter().chain(*coarse));
-        let sizes: Vec<f64> = bases.chain(filter).chain(of_sides).map(|row| row[0]).collect();
+        let sizes: Vec<f64> = bases.chain(of_sides).map(|row| row[0]).collect();
         if sizes.is_empty() {
             return None;
         }
@@ -165,10 +133,6 @@ impl<'a> GivenSoils<'a> {
         for curve in drawn {
             curve.draw(&mut figure, if self.curves.len() == 1 { "base" } else { curve.name });
         }
-        if !filter.is_empty() {
-            let line = Line::of_rows(filter, BLACK).width(1.4).dash(Dash::Dotted);
-            figure.add(line.label("filter,\nas given"));
-        }
         Some(Drawn::new("specification", figure, self.caption(band.is_some(), words, drawn.len())))
     }
 
@@ -182,14 +146,6 @@ impl<'a> GivenSoils<'a> {
             ),
             false => "Gradations by mass. There is no band to draw.".to_owned(),
         };
-        match self.scaled.filter(|_| self.filter.is_some()) {
-            Some("filter") => {
-                said += " Dotted: the filter as it was given. Only its shape was walked, in many sizes; it \
-                         is not the filter to specify.";
-            }
-            Some(_) => said += " Dotted: the filter as it was given.",
-            None => {}
-        }
         let left_out = self.curves.len() - drawn;
         if left_out > 0 {
             said += &format!(" {left_out} more curves of the base are not drawn.");

@@ -4,8 +4,8 @@
 //! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, [`write_batch()`] that of many samples against
-//! filters, [`write_design()`] that of a design, [`write_designs()`] that of the designs of many samples, and
-//! [`write_specification()`] that of a specification by practice alone. They write `figures/*.svg`, each a
+//! filters, [`write_boundary()`] that of the model's boundaries, [`write_specification()`] that of a
+//! specification and [`write_designs()`] that of the specifications for many samples. They write `figures/*.svg`, each a
 //! file of its own, and `report.html`.
 //!
 //! # Pages without a folder
@@ -33,13 +33,13 @@
 mod appendix;
 mod batch;
 mod boundaries;
+mod boundary;
 mod by_void;
 mod campaign;
 mod campaign_cases;
 mod cases;
 mod connectivity;
 mod cover;
-mod design;
 mod designs;
 mod error;
 mod export;
@@ -73,8 +73,8 @@ mod written;
 
 pub use crate::outcome::quantity;
 pub use batch::write_batch;
+pub use boundary::write_boundary;
 pub use campaign::{campaign_page, write_campaign};
-pub use design::write_design;
 pub use designs::write_designs;
 pub use error::ReportError;
 pub use export::{Exported, export};

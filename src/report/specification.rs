@@ -1,6 +1,5 @@
 //! The page of a specification: what to watch, both sides of the band on the form of gradations, limits
-//! sieve by sieve, standard products, the steps with their numbers, and the base. The page of a design has
-//! the same.
+//! sieve by sieve, standard products, the steps with their numbers, and the base.
 
 use std::path::Path;
 
@@ -20,14 +19,13 @@ use super::written::Written;
 use crate::outcome::design::specification::ProductMargin;
 use crate::outcome::design::{Specification, SpecificationStep};
 use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
-use crate::words::design::limit;
 use crate::words::products::{
     FITS, not_kept, product as product_result, products as products_line, to_be_checked,
 };
 use crate::words::row_note;
 use crate::words::specification::{
-    DESIGN_AGAIN, band, beside_limits, if_dispersive, no_band, raised, step_name, step_notes, step_value,
-    still_to_set as still_to_set_line, without_margin,
+    DESIGN_AGAIN, band, beside_limits, if_dispersive, limit, no_band, raised, step_name, step_notes,
+    step_value, still_to_set as still_to_set_line, without_margin,
 };
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
@@ -55,7 +53,10 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
         .words(&html! { section.sheet { (answer(&of)) } })
         .figures(soils.figure(of.band.as_ref(), band(&of, SizeUnit::of(false, of.inches)).as_deref()));
-    with_details(page, &of)
+    page.section("More warnings", &more_warnings(&of))
+        .section("Limits sieve by sieve", &limits(&of))
+        .section("Standard products", &products(&of))
+        .section("Step by step", &steps(&of))
         .section(soils.heading(), &soils.appendix())
         .section(
             "How this was made",
@@ -68,16 +69,8 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "specification.html", &footer)
 }
 
-/// Adds what a page says of a specification below its first sheet.
-pub(super) fn with_details(page: Sections, of: &Specification) -> Sections {
-    page.section("More warnings", &more_warnings(of))
-        .section("Limits sieve by sieve", &limits(of))
-        .section("Standard products", &products(of))
-        .section("Step by step", &steps(of))
-}
-
 /// The answer of practice.
-pub(super) fn answer(of: &Specification) -> Markup {
+fn answer(of: &Specification) -> Markup {
     let unit = SizeUnit::of(false, of.inches);
     html! {
         section.verdict {

@@ -13,8 +13,8 @@ use crate::text::plain;
 /// The files of the checkpoint of a compression that is not finished.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
-/// The files of the checkpoint of a design that is not finished.
-pub(crate) const DESIGN: [&str; 2] = ["networks.0", "networks.1"];
+/// The files of the checkpoint of a search of boundaries that is not finished.
+pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
 
 /// The files of the checkpoint of a percolation study that is not finished.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
@@ -43,9 +43,9 @@ pub enum FolderKind {
     Percolation,
     /// Many samples against filters.
     Batch,
-    /// How coarse a filter may be.
-    Design,
-    /// How coarse a filter may be for each of many samples.
+    /// Boundaries of the model.
+    Boundary,
+    /// Specifications for many samples.
     Designs,
     /// The specification of a filter by practice alone.
     Specification,
@@ -63,7 +63,7 @@ impl FolderKind {
         Self::Campaign,
         Self::Percolation,
         Self::Batch,
-        Self::Design,
+        Self::Boundary,
         Self::Designs,
         Self::Specification,
         Self::Serve,
@@ -78,7 +78,7 @@ impl FolderKind {
             Self::Campaign => "campaign",
             Self::Percolation => "percolation study",
             Self::Batch => "batch",
-            Self::Design => "design",
+            Self::Boundary => "study of boundaries",
             Self::Designs => "set of designs",
             Self::Specification => "specification",
             Self::Serve => "page's sheets and jobs",
@@ -94,7 +94,7 @@ impl FolderKind {
             Self::Campaign => format::CAMPAIGN,
             Self::Percolation => format::PERCOLATION,
             Self::Batch => format::BATCH,
-            Self::Design => format::DESIGN,
+            Self::Boundary => format::BOUNDARY,
             Self::Designs => format::DESIGNS,
             Self::Specification => format::SPECIFICATION,
             Self::Serve => format::SERVE,
@@ -125,7 +125,7 @@ impl FolderKind {
             Self::Campaign => &["cases"],
             Self::Percolation => &LATTICES,
             Self::Batch => &["pairs"],
-            Self::Design => &DESIGN,
+            Self::Boundary => &NETWORKS,
             // Versions that wrote no record had them.
             Self::Serve => &["sheets"],
             _ => &[],
@@ -169,17 +169,7 @@ impl FolderKind {
             }
             // Its cases stay, as all that a campaign holds.
             Self::Batch => &["batch.json", "batch.html", "batch.csv"],
-            Self::Design => &[
-                "design.json",
-                "design.html",
-                "design.csv",
-                SPECIFIED[0],
-                SPECIFIED[1],
-                SPECIFIED[2],
-                SPECIFIED[3],
-                DESIGN[0],
-                DESIGN[1],
-            ],
+            Self::Boundary => &["boundary.json", "boundary.html", "boundary.csv", NETWORKS[0], NETWORKS[1]],
             Self::Designs => &["designs.json", "designs.html", "designs.csv"],
             Self::Specification => &[
                 "specification.json",
@@ -202,7 +192,7 @@ impl FolderKind {
             Self::Packing => &["curves", "slice", "connectivity"],
             Self::Percolation => &["percolation-sd", "percolation-threshold"],
             Self::Batch => &["batch-curves", "batch-limits", "batch-eroded"],
-            Self::Design => &["design", "specification"],
+            Self::Boundary => &["boundary"],
             Self::Designs => &["designs"],
             Self::Specification => &["specification"],
             Self::Campaign | Self::Serve | Self::Constrictions => &[],

@@ -22,7 +22,7 @@ section! {
         /// How passive particles, which can block nothing, move: "counts" (exact counts per void),
         /// "particles" (one by one), "expected" (their expectation), or "auto": particles if fewer than 6.5
         /// passive ones are inserted on a start node in an increment, else counts; expected in `voidwalk
-        /// design`. `judge` and `serve` set "expected".
+        /// boundary`. `judge` and `serve` set "expected".
         pub engine: Engine = Engine::Auto, set, words(&Engine::ALL.map(Engine::name));
         /// Number of runs: 1 or 2. The second offers fresh base to the filter as the first left it.
         pub runs: u64 = 2, set, whole(1..=2);
@@ -128,7 +128,7 @@ section! {
         pub d0_mm: Option<f64> = None, off "0.01", length();
         /// "practice": walk the base as filter practice regrades it (to 100 % finer than 4.75 mm or a gap);
         /// needs sizes in mm. "no": walk it as sampled. Default: "no" in a scene, "practice" for tables
-        /// (`voidwalk judge`, `design`, `serve`) without --as-sampled.
+        /// (`voidwalk judge`, `boundary`, `serve`) without --as-sampled.
         pub regrade: Option<Regrade> = None, off "\"practice\"",
             any("\"practice\" or \"no\"").offering(&["practice", "no"]);
         /// Whether the base is a dispersive clay or silt. The rules of practice take stricter limits. The

@@ -1,6 +1,6 @@
 //! What the page has asked for: one job is walked at a time, the others wait.
 //!
-//! A job is a call of the library into a folder of its own, which is that of a run, a batch or a design
+//! A job is a call of the library into a folder of its own, which is that of a run or a batch
 //! as of the command line. What it was asked for is kept there before any work (`job_file.rs`), so that a
 //! later server on the same folder can do it. A kind of job more is a variant of [`Work`], what it does in
 //! `WorkContext::work`, and how its request is read (`Routes::planned`).
@@ -39,6 +39,8 @@ const LISTED: usize = 200;
 pub struct JobQueue {
     context: WorkContext,
     all: Mutex<Vec<Job>>,
+    /// Held while a request of a job is written, one after another; other requests do not wait for a disk.
+    writing: Mutex<()>,
     wake: Condvar,
     /// Nothing more is begun.
     ends: AtomicBool,
@@ -49,11 +51,16 @@ impl JobQueue {
     pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
         let all = Mutex::new(earlier(root, LISTED));
         let context = WorkContext { root: root.to_owned(), prepare, command, on_results };
-        Self { context, all, wake: Condvar::new(), ends: AtomicBool::new(false) }
+        let writing = Mutex::new(());
+        Self { context, all, writing, wake: Condvar::new(), ends: AtomicBool::new(false) }
     }
 
     fn locked(&self) -> MutexGuard<'_, Vec<Job>> {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn writing(&self) -> MutexGuard<'_, ()> {
+        self.writing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether one job more may wait.
@@ -72,17 +79,24 @@ impl JobQueue {
     /// # Errors
     /// Too many wait, which is a refusal; its folder cannot be written.
     pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
-        let mut all = self.locked();
-        self.has_room(&all).map_err(RunError::Refused)?;
-        let first = all.iter().map(|job| job.id).max().unwrap_or(0) + 1;
+        let _writing = self.writing();
+        let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
+        let first = {
+            let all = self.locked();
+            has_room(&all)?;
+            all.iter().map(|job| job.id).max().unwrap_or(0) + 1
+        };
         let path = |id: &usize| self.context.root.join(format!("{}-{id}", work.name()));
         let is_free = |id: &usize| path(id).symlink_metadata().is_err();
         let id = (first..=LAST).find(is_free);
         let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
-        if let Err(error) = file.write(&path(&id)) {
+        let written = file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()));
+        let mut all = self.locked();
+        // Meanwhile the server may have been told to end.
+        if let Err(error) = written.and_then(|()| has_room(&all)) {
             // It was free, so what is there is of this job, which is none.
             let _ = remove_folder(&path(&id));
-            return Err(RunError::failed(error.to_string()));
+            return Err(error);
         }
         let folder = format!("{}-{id}", work.name());
         let JobFile { title, asked, .. } = file;
@@ -114,16 +128,23 @@ impl JobQueue {
     /// # Errors
     /// There is none of this number that could continue.
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
-        let all = self.locked();
-        let job = all.iter().find(|job| job.id == id).ok_or("there is no such job")?;
-        let folder = self.context.root.join(&job.folder);
-        match (job.can_continue(&self.context.root), &job.work) {
-            (false, _) => Err("this job cannot continue".into()),
-            (true, Work::Resume) => Ok(None),
-            (true, _) => match JobFile::read(&folder) {
+        let (folder, resumes) = self.that_continues(id)?;
+        match resumes {
+            true => Ok(None),
+            false => match JobFile::read(&folder) {
                 None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
                 file => Ok(file),
             },
+        }
+    }
+
+    /// The folder of a job that can continue, and whether that is to resume the run in it.
+    fn that_continues(&self, id: usize) -> Result<(PathBuf, bool), String> {
+        let all = self.locked();
+        let job = all.iter().find(|job| job.id == id).ok_or("there is no such job")?;
+        match job.can_continue(&self.context.root) {
+            true => Ok((self.context.root.join(&job.folder), matches!(job.work, Work::Resume))),
+            false => Err("this job cannot continue".into()),
         }
     }
 
@@ -138,17 +159,15 @@ impl JobQueue {
     /// # Errors
     /// There is none of this number that could continue; too many wait.
     pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
-        let mut all = self.locked();
-        self.has_room(&all)?;
-        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
-        if !job.can_continue(&self.context.root) {
-            return Err("this job cannot continue".into());
-        }
+        let _writing = self.writing();
+        self.has_room(&self.locked())?;
+        let (folder, _) = self.that_continues(id)?;
         // How it ended before is no longer so.
-        let folder = self.context.root.join(&job.folder);
         if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
             let _ = JobFile { ended: None, ..file }.write(&folder);
         }
+        let mut all = self.locked();
+        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
         (job.work, job.state, job.message) = (work, JobState::Waiting, String::new());
         job.stop.store(false, Ordering::Relaxed);
         *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
@@ -215,10 +234,6 @@ impl JobQueue {
             let (state, message, result) = match walked {
                 Ok(result) => (JobState::Done, String::new(), result),
                 Err(error) => match error.exit() {
-                    // A design says how much of it is kept.
-                    Exit::Stopped if matches!(work, Work::Design(_)) => {
-                        (JobState::Stopped, error.to_string(), Value::Null)
-                    }
                     Exit::Stopped => (JobState::Stopped, how_to_continue(&folder), Value::Null),
                     exit => {
                         let state = if exit == Exit::Refused { JobState::Refused } else { JobState::Failed };

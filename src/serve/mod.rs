@@ -4,15 +4,14 @@
 //! address, by this machine's own name, and no page of another origin (`guard.rs`). Requests are bounded
 //! (`http.rs`), the page fetches nothing from outside and runs its own script only.
 //!
-//! Every answer is a call of the library (`routes.rs`); what is walked is a folder of a run, a batch or
-//! a design in the server's folder (`jobs.rs`), as the command line makes them. What was asked is kept there
+//! Every answer is a call of the library (`routes.rs`); what is walked is a folder of a run or a batch
+//! in the server's folder (`jobs.rs`), as the command line makes them. What was asked is kept there
 //! too, so that a later server on the folder lists every job and continues it; `voidwalk resume` continues a
 //! run that has begun to walk.
 
 mod archive;
 mod batches;
 mod connections;
-mod designs;
 mod downloads;
 mod guard;
 mod http;

@@ -55,7 +55,7 @@ async function ask(path, body, type) {
   return said;
 }
 
-const state = { sheets: [], jobs: [], curves: [], shape: null, base: "", filter: "", more: [], largest: 32, seen: "", samples: "", examples: {} };
+const state = { sheets: [], jobs: [], base: "", filter: "", more: [], largest: 32, seen: "", samples: "", examples: {} };
 
 // --- What is taken: kept in the address, so that a page that is loaded again has it.
 
@@ -192,7 +192,6 @@ function showSheets() {
     onclick: () => { state.more = state.more.filter((one) => one !== key); take("none", ""); },
   }, "×"))));
   $("#judge-all").disabled = state.more.length === 0;
-  showShapes();
 }
 
 // --- Curves and rules.
@@ -205,7 +204,6 @@ async function showPair() {
   const any = state.base || state.filter || state.more.length;
   $("#seen").hidden = !any;
   $("#how").hidden = !both;
-  $("#coarse").hidden = !state.base;
   $("#judge-all").title = state.more.length ? "" : "add further filters";
   const query = new URLSearchParams();
   if (state.base) query.set("base", state.base);
@@ -378,7 +376,6 @@ const FIRST = [["replicates", "Replicates"], ["seed", "Seed"], ["network.nz", "L
 
 async function setUpForm() {
   const form = await ask("api/form");
-  setUpDesign(form);
   const about = Object.fromEntries(form.keys.map((key) => [key.name, key]));
   const input = (key) => el("input", { type: "text", "data-key": key.name, title: key.doc, autocomplete: "off",
     placeholder: (key.is_set ? "" : "e.g. ") + key.shown });
@@ -442,47 +439,6 @@ async function start(kind) {
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {
     show($("#form-problem"), error.message);
-  }
-}
-
-// --- How coarse: the base, and the form of a filter.
-
-const CU = "Cu";
-
-function setUpDesign(form) {
-  state.curves = form.curves;
-  $("#shape").addEventListener("change", () => { state.shape = $("#shape").value; $("#cu-of").hidden = state.shape !== CU; });
-  $("#design-form").addEventListener("submit", (event) => { event.preventDefault(); design(); });
-  showShapes();
-}
-
-/** The filter's sheet where there is one, else a curve that ships with the program. */
-function showShapes() {
-  const select = $("#shape");
-  const filter = state.filter && soilOf(state.filter);
-  select.replaceChildren(
-    ...(filter ? [el("option", { value: "" }, `the filter's sheet: ${filter.label}`)] : []),
-    ...state.curves.map((curve) => el("option", { value: curve.name }, `${curve.name}: ${curve.title}`)),
-    el("option", { value: CU }, "a Cu, which is packed"));
-  if (state.shape !== null && [...select.options].some((one) => one.value === state.shape)) select.value = state.shape;
-  $("#cu-of").hidden = select.value !== CU;
-}
-
-async function design() {
-  show($("#design-problem"), "");
-  const [shape, cu] = [$("#shape").value, $("#shape-cu").value.trim()];
-  const changes = $$("[data-design]").filter((field) => field.value.trim())
-    .map((field) => `${field.dataset.design}=${field.value.trim()}`);
-  changes.push(...ofSoils());
-  changes.push(...$("#design-free").value.split("\n").map((line) => line.trim()).filter(Boolean));
-  try {
-    if (shape === CU && !cu) throw new Error("give the Cu of the filter");
-    await ask("api/design", { base: state.base, filter: shape ? "" : state.filter, shape: shape === CU ? cu : shape,
-      density: $("#design-density").value, pack: $("#design-pack").checked, thickness: $("#design-thickness").value, ...taken(), changes });
-    await poll();
-    $("#results").scrollIntoView({ block: "start" });
-  } catch (error) {
-    show($("#design-problem"), error.message);
   }
 }
 
@@ -575,36 +531,6 @@ function soFar(job) {
   return parts;
 }
 
-/** Nothing of one network, nor where both ends lie beyond the search. */
-const between = (range) => (range.low === null && range.high === null ? ""
-  : `${number(range.low)} to ${number(range.high)}`);
-
-/** A boundary over networks, or why there is none; in bold where the walk decides. */
-function boundary(of, notes = []) {
-  const words = notes.join(" ");
-  if (!of) return [el("b", {}, "no number"), el("br"), el("span", { class: "small" }, words || "it lies beyond the search")];
-  return [
-    ...(of.d15f_mm ? [`D15F ${number(of.d15f_mm.median)} mm`, el("br"), between(of.d15f_mm), el("br")] : []),
-    `D15F/D85B ${number(of.median)}`, el("br"), between(of),
-    words ? el("span", { class: "small" }, el("br"), words) : null];
-}
-
-function boundariesOf(job) {
-  const done = job.result;
-  const rows = done.boundaries.map((row) => el("tr", {}, el("th", {}, row.end_of ? `${row.density} (an end of the range of ${row.end_of})` : row.density, el("br"), row.thickness),
-    el("td", {}, boundary(row.no_erosion, row.no_erosion_notes)), el("td", {}, boundary(row.continuing, row.continuing_notes),
-    row.not_monotone ? [el("br"), el("span", { class: "small" }, `not monotone on ${row.not_monotone} network${row.not_monotone === 1 ? "" : "s"}: the smallest ratio seen to erode counts`)] : null)));
-  return [...answer(done.lines),
-    ...(done.beside || []).filter(Boolean).map((said) => el("p", {}, `${said}.`)),
-    ...(done.cautions || []).map((said) => el("p", {}, el("b", {}, "Warning"), `: ${said}`)),
-    done.products ? el("p", {}, `${done.products}.`) : null,
-    el("p", {}, `Base ${done.base}${done.d85b ? ` (${done.d85b})` : ""}, filter ${done.filter}; ${done.replicates === 1 ? "one network" : `median of ${done.replicates} networks, below it ${done.share_of_networks}`}.`),
-    scrolling(`the boundaries of job ${job.id}`, el("table", { class: "boundaries" },
-      el("thead", {}, el("tr", {}, ...["Density, thickness", "In the model: no erosion up to", "continuing erosion from"].map((text) => el("th", {}, text)))), el("tbody", {}, ...rows))),
-    done.warnings.length ? el("details", {}, el("summary", {}, `${done.warnings.length} to know`), list(done.warnings)) : null,
-    el("p", { class: "small" }, `The model leaves out: ${done.model_leaves_out.map((one) => one.split(":")[0]).join("; ")}.`)].filter(Boolean);
-}
-
 /** The lines that every face begins with. */
 const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
 
@@ -614,7 +540,6 @@ const notes = (all) => [list(all.slice(0, 3)),
 
 function verdictOf(job) {
   const done = job.result;
-  if (job.kind === "design") return boundariesOf(job);
   if (job.kind === "batch") {
     return [...done.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")), samplesTable(job, done),
       list(done.notes), el("p", { class: "small" }, done.leaves_out)];
@@ -632,7 +557,7 @@ function card(job) {
   };
   const isDone = job.state === "done" && job.result;
   const kind = isDone && job.kind === "judge" ? COLOURS[job.result.colour] || ""
-    : isDone && job.kind === "design" ? "" : job.state;
+    : job.state;
   const words = { waiting: `waits, ${job.before} before it`, running: job.stopping ? "stops, and saves what is done" : "is walked", stopped: "stopped",
     done: "", refused: "refused", failed: "failed" }[job.state];
   const parts = [el("h3", {}, job.title, words ? el("span", { class: "small" }, ` ${words}`) : "")];

@@ -10,7 +10,6 @@ use serde_json::{Value, json};
 
 use super::archive::archive;
 use super::batches::{self, AskedBatch};
-use super::designs::AskedDesign;
 use super::downloads::example;
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
@@ -30,7 +29,6 @@ use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
 use crate::study::batch::BatchPlan;
-use crate::study::design;
 use crate::text::is_plain_part;
 use crate::verdict::{PairOptions, PairRules};
 use crate::words::sentence;
@@ -188,7 +186,7 @@ impl Routes {
                 let sheet = self.sheets.add(&name, body).map_err(wrong)?;
                 Ok(Answer::json(200, json!(*sheet)))
             }
-            "api/judge" | "api/design" | "api/batch" => {
+            "api/judge" | "api/batch" => {
                 let request: Value =
                     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
                 let kind = path.trim_start_matches("api/").to_owned();
@@ -237,15 +235,6 @@ impl Routes {
                 let title = format!("{} on {}", self.title(&asked.base), self.title(&asked.filter));
                 let work = Work::Judge(Box::new(self.scene(&asked)?));
                 Ok(Planned { title, asked: asked.sheets(), work })
-            }
-            "design" => {
-                let asked: AskedDesign = read(request)?;
-                let sheets = json!({ "base": asked.base, "filter": asked.filter });
-                bounded(&asked.changes)?;
-                let kept = asked.found(&self.sheets, &self.root).map_err(wrong)?;
-                let options = kept.options(&self.root, &self.root, &self.prepare).map_err(wrong)?;
-                design::check(&options).map_err(wrong)?;
-                Ok(Planned { title: kept.title(), asked: sheets, work: Work::Design(kept) })
             }
             "batch" => {
                 let asked: AskedBatch = read(request)?;

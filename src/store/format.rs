@@ -47,11 +47,11 @@ formats! {
     OUTCOME = "outcome" / 1, "outcome.json";
     /// What made a run folder.
     MANIFEST = "manifest" / 1, "manifest.json";
-    /// How coarse a filter may be.
-    DESIGN = "design" / 1, "design.json";
-    /// How coarse a filter may be for each of many samples.
+    /// Boundaries of the model.
+    BOUNDARY = "boundary" / 1, "boundary.json";
+    /// Specifications for many samples.
     DESIGNS = "designs" / 1, "designs.json";
-    /// The specification of a filter by practice alone.
+    /// The specification of a filter.
     SPECIFICATION = "specification" / 1, "specification.json";
     /// Many samples against filters.
     BATCH = "batch" / 1, "batch.json";

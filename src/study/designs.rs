@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::days::today;
-use super::design::{SpecifyOptions, is_a_base};
 use super::inputs::{files_of, input_files};
 use super::kept;
+use super::specified::{SpecifyOptions, is_a_base};
 use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::Specification;
 use crate::outcome::quantity::SizeUnit;

@@ -13,7 +13,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{DESIGN, FolderKind, LATTICES, clear, shown};
+use crate::run::folder::{FolderKind, LATTICES, NETWORKS, clear, shown};
 use crate::run::results::json;
 use crate::run::unfinished::{self, Unfinished};
 use crate::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
@@ -107,7 +107,7 @@ impl<'a> Kept<'a> {
         let scene = hash_of(work);
         let (name, files, parts) = match kind {
             FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),
-            _ => ("networks", &DESIGN, "networks"),
+            _ => ("networks", &NETWORKS, "networks"),
         };
         Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }
     }

@@ -8,9 +8,9 @@
 mod answer;
 mod base_size;
 pub mod batch;
+pub mod boundary;
 mod case_columns;
 mod class;
-pub mod design;
 pub mod designed;
 mod dispersion;
 pub mod ledger;

@@ -118,6 +118,16 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
     Some(format!("This limit has no margin: {why}"))
 }
 
+/// The maximum D15F and whose rule sets it.
+pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
+    match specification.strictest() {
+        Some((curve, limit)) => {
+            format!("D15F {} ({})", length(limit, unit).role(NumberRole::Greatest), curve.d15f_max_rule)
+        }
+        None => "not known".into(),
+    }
+}
+
 /// The maximum D15F if the base is dispersive, and what to do, as [`DESIGN_AGAIN`]: sentences, the last
 /// without its end; `None` where all holds for such a base too, or somebody has said whether it is one.
 pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {

@@ -72,24 +72,24 @@ fn every_law_is_named_for_programs() {
     }
 }
 
-/// A design searches with the law, takes a coarser filter for it, and says so.
+/// `boundary` searches with the law, takes a coarser filter for it, and says so.
 #[test]
-fn a_design_takes_the_law() {
+fn boundaries_take_the_law() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     fs::write(at.join("base.csv"), "opening_mm,percent_finer\n0.063,0\n0.125,20\n0.25,75\n0.5,100\n")
         .unwrap();
-    let design = |law: &str| {
+    let search = |law: &str| {
         let law = format!("walk.arching={law}");
         let words =
-            ["design", "base.csv", "--filter", "cu1.5-loose", "--thickness", "12layers", "-q", "--json"];
+            ["boundary", "base.csv", "--filter", "cu1.5-loose", "--thickness", "12layers", "-q", "--json"];
         let settings = ["network.nx=8", "network.ny=8", "replicates=2", &law];
         let set = settings.iter().flat_map(|setting| ["--set", setting]);
         let output = call(at, &words.into_iter().chain(set).chain(["--overwrite"]).collect::<Vec<_>>());
         done(&output);
         serde_json::from_slice::<Value>(&output.stdout).unwrap()
     };
-    let [sieving, arching] = ["none", "critical-3"].map(design);
+    let [sieving, arching] = ["none", "critical-3"].map(search);
     let boundary = |of: &Value| of["boundaries"][0]["no_erosion"]["median"].as_f64();
     assert!(boundary(&arching).unwrap() > 1.5 * boundary(&sieving).unwrap(), "{:?}", boundary(&arching));
     assert!(sieving["model_leaves_out"].to_string().contains("bridging"));

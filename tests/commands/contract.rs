@@ -41,8 +41,8 @@ fn every_json_file_begins_with_its_form_and_the_version() {
         (small(&["judge", "base.csv", "fine.csv", "coarse.csv", "--quick", "--json"]), "batch"),
         (small(&["check", "--json"]), "check"),
         (
-            small(&["design", "base.csv", "--filter", "cu1.5-loose", "--set", "replicates=2", "--json"]),
-            "design",
+            small(&["boundary", "base.csv", "--filter", "cu1.5-loose", "--set", "replicates=2", "--json"]),
+            "boundary",
         ),
         (vec!["rules", "base.csv", "fine.csv", "--json"], "rules"),
         (vec!["soil", "base.csv", "--json"], "soils"),
@@ -65,7 +65,7 @@ fn every_json_file_begins_with_its_form_and_the_version() {
     let texts: Vec<String> = json_files(&at).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     texts.iter().for_each(|text| keeps_to_its_schema(text));
     let forms: BTreeSet<String> = texts.iter().map(|text| beginning(text).0).collect();
-    let expected = ["batch", "campaign", "case", "constrictions", "design", "manifest", "outcome"];
+    let expected = ["batch", "boundary", "campaign", "case", "constrictions", "manifest", "outcome"];
     let expected = expected.iter().chain(&["packing", "percolation"]);
     assert_eq!(forms, expected.map(|form| format!("voidwalk-{form}/1")).collect());
     // What is printed is what the file says.

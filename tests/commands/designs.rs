@@ -1,4 +1,4 @@
-//! `design --each`: how coarse a filter may be for each of many samples; inches in designs.
+//! `design --each`: how coarse a filter may be for each of many samples; inches.
 
 use std::fs;
 use std::path::Path;
@@ -50,7 +50,7 @@ fn a_row_is_the_design_of_that_sample_and_the_strictest_governs() {
     assert_eq!(rows.len(), 3);
     for row in rows {
         let sample = row["sample"].as_str().unwrap();
-        designed(at, &["design", &format!("samples.csv#{sample}"), "--steps", "--out", sample]);
+        designed(at, &["design", &format!("samples.csv#{sample}"), "--out", sample]);
         let own = fs::read(at.join(sample).join("specification.json")).unwrap();
         let own: Value = serde_json::from_slice(&own).unwrap();
         for name in ["d15f_max_mm", "d15f_min_mm"] {
@@ -99,7 +99,7 @@ fn a_folder_of_sheets_is_taken() {
     assert_eq!(names, ["one/Core", "one/Shell", "one/Till", "two"]);
     assert!(said.contains("Governing sample two: D15F up to 0.700 mm (practice: "), "{said}");
     // The limits are those of the specification of each.
-    designed(at, &["design", "sheets/two.csv", "--steps", "--out", "s"]);
+    designed(at, &["design", "sheets/two.csv", "--out", "s"]);
     let steps: Value = serde_json::from_slice(&fs::read(at.join("s/specification.json")).unwrap()).unwrap();
     assert_eq!(rows[3]["d15f_max_mm"], steps["d15f_max_mm"]);
     assert_eq!(rows[3]["d15f_min_mm"], steps["d15f_min_mm"]);
@@ -112,7 +112,7 @@ fn what_cannot_be_done_is_refused_before_anything_is_written() {
     let walked = call(at, &["design", "samples.csv", "--each", "--filter", "nowhere.csv", "--out", "d"]);
     refused(&walked, "--filter");
     let set = call(at, &["design", "samples.csv", "--each", "--set", "replicates=2", "--out", "d"]);
-    refused(&set, "--each walks nothing");
+    refused(&set, "a specification walks nothing");
     refused(&call(at, &["design", "gone.csv", "--each"]), "gone.csv");
     assert!(!at.join("d").exists() && !at.join("voidwalk-designs").exists());
 }
@@ -146,7 +146,7 @@ fn assert_inches_lie_within(page: &str) {
 fn inches_stand_beside_mm_where_they_are_asked_for() {
     let root = site();
     let at = root.path();
-    let steps = ["design", "samples.csv#Core", "--steps", "--units", "us", "--out", "s"];
+    let steps = ["design", "samples.csv#Core", "--units", "us", "--out", "s"];
     let said = String::from_utf8(designed(at, &steps).stdout).unwrap();
     let page = fs::read_to_string(at.join("s/specification.html")).unwrap();
     assert!(said.contains(" in)"), "{said}");
@@ -163,26 +163,25 @@ fn inches_stand_beside_mm_where_they_are_asked_for() {
     );
     let csv = fs::read_to_string(at.join("s/specification.csv")).unwrap();
     assert!(csv.contains("No. 200") && !csv.contains("in)"), "{csv}");
-    let walk = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--units", "us", "--out", "w"];
-    let walk = [&walk[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12"]].concat();
-    let said = String::from_utf8(designed(at, &walk).stdout).unwrap();
-    let page = fs::read_to_string(at.join("w/design.html")).unwrap();
-    assert!(said.lines().nth(1).unwrap().contains("in)"), "{said}");
-    assert!(page.matches("in)").count() > 5);
+    // Boundaries of the model have them, too, and their page that is made again is the same.
+    let walk = [
+        "boundary",
+        "samples.csv#Core",
+        "--filter",
+        "cu1.5-loose",
+        "--set",
+        "about.units='us'",
+        "--out",
+        "w",
+    ];
+    let walk = [&walk[..], &SMALL, &["--set", "replicates=1"]].concat();
+    designed(at, &walk);
+    let page = fs::read_to_string(at.join("w/boundary.html")).unwrap();
+    assert!(page.matches("in)").count() > 3);
     assert_inches_lie_within(&page);
-    // As the scene reads it, however it is written.
-    let literal = ["design", "samples.csv#Core", "--filter", "cu1.5-loose", "--set", "about.units='us'"];
-    let literal =
-        [&literal[..], &SMALL, &["--set", "replicates=1", "--bracket", "2,12", "--out", "l"]].concat();
-    designed(at, &literal);
-    let record = |of: &str| fs::read_to_string(at.join(of).join("design.json")).unwrap();
-    let [said, as_option] = ["l", "w"].map(|of| serde_json::from_str::<Value>(&record(of)).unwrap());
-    assert!(said["inches"] == true && as_option["inches"] == true);
-    assert!(fs::read_to_string(at.join("l/design.html")).unwrap().matches("in)").count() > 5);
-    // Numbers in files stay in mm, and the page that is made again is the same.
     designed(at, &["report", "w"]);
-    assert_eq!(fs::read_to_string(at.join("w/design.html")).unwrap(), page);
-    let metric = ["design", "samples.csv#Core", "--steps", "--out", "m"];
+    assert_eq!(fs::read_to_string(at.join("w/boundary.html")).unwrap(), page);
+    let metric = ["design", "samples.csv#Core", "--out", "m"];
     assert!(!String::from_utf8(designed(at, &metric).stdout).unwrap().contains("in)"));
     let twice = ["design", "samples.csv#Core", "--units", "us", "--set", "about.units=us"];
     refused(&call(at, &twice), "say the same thing twice");
@@ -202,7 +201,7 @@ fn samples_without_a_band_of_their_own_are_named_and_not_served() {
     let all = record(&at.join("g"));
     for row in all["rows"].as_array().unwrap() {
         let name = row["sample"].as_str().unwrap();
-        designed(at, &["design", &format!("gr.csv#{name}"), "--steps", "--out", name]);
+        designed(at, &["design", &format!("gr.csv#{name}"), "--out", name]);
         let own = fs::read(at.join(name).join("specification.json")).unwrap();
         let own: Value = serde_json::from_slice(&own).unwrap();
         assert!(own["no_band"].is_object() && row["no_band"] == own["no_band"], "{row}");

@@ -345,7 +345,7 @@ fn without_threads_a_design_says_so() {
     let design = Command::new("setpriv")
         .args(limits)
         .arg(&program)
-        .args(["design", "b.csv", "--steps", "--out", "d"])
+        .args(["design", "b.csv", "--out", "d"])
         .current_dir(root.path())
         .output();
     let Ok(output) = design else { return };

@@ -48,7 +48,7 @@ const CALLS: [&str; 40] = [
     "judge b.csv f.csv g.csv --quick --out jf SMALL",
     "judge b.csv f.csv --quick --out j SMALL",
     "judge b.csv f.csv --quick --each --out je SMALL",
-    "design b.csv --steps --out d",
+    "design b.csv --out d",
     "pack filter.toml --out p",
     "constrictions p/grains.csv",
     "percolation --realisations 2 --sizes 4 --out perc",

@@ -216,7 +216,7 @@ fn hidden_characters_of_a_name_reach_no_face_and_the_name_is_found_as_it_is_show
     run(&[&["judge", one, &filter, "--quick", "--out", "j"][..], &small].concat());
     run(&[&["judge", "b.csv", &filter, "--each", "--quick", "--out", "je"][..], &small].concat());
     run(&[&["judge", one, "f.csv#coarse", &filter, "--quick", "--out", "c"][..], &small].concat());
-    run(&["design", one, "--steps", "--out", "d"]);
+    run(&["design", one, "--out", "d"]);
     run(&["report", "j"]);
     let refused = voidwalk(&at, &["rules", "f.csv#nothing", "b.csv"]);
     shows_all("refusal", &refused.stderr);

@@ -2,6 +2,7 @@
 
 mod arches;
 mod batch;
+mod boundary;
 mod broad;
 mod campaign;
 mod check_and_run;
@@ -9,7 +10,6 @@ mod checkpoints;
 #[cfg(target_os = "linux")]
 mod completion;
 mod contract;
-mod design;
 mod designs;
 mod first_hour;
 mod formats;
@@ -35,8 +35,6 @@ mod second_command;
 mod serve;
 #[cfg(feature = "serve")]
 mod serve_batch;
-#[cfg(feature = "serve")]
-mod serve_design;
 #[cfg(feature = "serve")]
 mod serve_jobs;
 #[cfg(feature = "serve")]

@@ -82,17 +82,17 @@ fn a_table_of_filters_says_what_openings_change() {
 }
 
 #[test]
-fn a_design_with_openings_says_so() {
+fn boundaries_with_openings_say_so() {
     let (_root, at) = soils();
-    let words = ["design", "base.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "--out", "d"];
+    let words = ["boundary", "base.csv", "--filter", "cu1.5-loose", "--thickness", "8layers", "--out", "d"];
     let few = ["--set", "replicates=2", "--set", "filter.grains_per_void=0.6"];
     let open = ["--set", "walk.blocked='open'", "--set", "base.n_base=20000"];
     done(&call(&at, &[&words[..], &SMALL[..4], &few, &open].concat()));
-    let design = json(&at.join("d/design.json"));
-    assert_eq!(design["engine"], "auto");
-    assert!(!design["model_leaves_out"].to_string().contains("partial_clogging"));
-    assert!(design["model_leaves_out"].to_string().contains("bridging"));
-    let found = design["notes"].to_string();
+    let all = json(&at.join("d/boundary.json"));
+    assert_eq!(all["engine"], "auto");
+    assert!(!all["model_leaves_out"].to_string().contains("partial_clogging"));
+    assert!(all["model_leaves_out"].to_string().contains("bridging"));
+    let found = all["notes"].to_string();
     assert!(found.contains("\"openings\""), "{found}");
 }
 

@@ -169,7 +169,7 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         ("packing", &["pack", "filter.toml"]),
         ("campaign", &["campaign", "plan.toml"]),
         ("percolation study", &["percolation", "--sizes", "4", "--realisations", "2"]),
-        ("design", &["design"]),
+        ("study of boundaries", &["boundary"]),
         ("set of constrictions", &["constrictions", "grains.csv"]),
     ];
     let marks = [
@@ -179,8 +179,8 @@ fn no_command_writes_into_a_folder_of_another_kind() {
         ("packing", "compression.0"),
         ("campaign", "cases"),
         ("percolation study", "percolation.json"),
-        ("design", "design.json"),
-        ("design", "networks.1"),
+        ("study of boundaries", "boundary.json"),
+        ("study of boundaries", "networks.1"),
         ("set of constrictions", "constrictions.json"),
     ];
     for (held, mark) in marks {

@@ -41,8 +41,8 @@ const PAGES: [(&str, &str, &str); 6] = [
     ("judge samples.csv#Core fine.csv --quick --out judge", "judge", "report.html"),
     ("judge samples.csv#Core fine.csv coarse.csv --quick --out filters", "filters", "batch.html"),
     ("judge samples.csv fine.csv --each --governing --out batch", "batch", "batch.html"),
-    ("design samples.csv#Core --filter cu1.5-loose --bracket 2,12 --out design", "design", "design.html"),
-    ("design samples.csv#Core --steps --out steps", "steps", "specification.html"),
+    ("boundary samples.csv#Core --filter cu1.5-loose --out model", "model", "boundary.html"),
+    ("design samples.csv#Core --out steps", "steps", "specification.html"),
     ("design samples.csv --each --out designs", "designs", "designs.html"),
 ];
 
@@ -54,7 +54,7 @@ fn page(at: &Path, (command, folder, page): (&str, &str, &str), more: &[&str]) -
     let mut words: Vec<&str> = command.split(' ').collect();
     match command {
         practice if is_by_practice(practice) => {}
-        design if design.starts_with("design") => {
+        model if model.starts_with("boundary") => {
             words.extend([&SMALL[..], &["--set", "replicates=1"]].concat())
         }
         _ => words.extend([&SMALL[..], &FEW].concat()),
@@ -65,7 +65,7 @@ fn page(at: &Path, (command, folder, page): (&str, &str, &str), more: &[&str]) -
 }
 
 fn is_by_practice(command: &str) -> bool {
-    command.contains("--steps") || command.starts_with("design samples.csv --each")
+    command.starts_with("design")
 }
 
 fn has(page: &str, name: &str, value: &str) -> bool {
@@ -119,8 +119,8 @@ fn every_page_has_the_cover_that_was_stated() {
     assert!(said.contains("walks were kept from an earlier call; their own pages have the cover"), "{said}");
     // What would have no effect on a specification is no setting of it.
     for other in ["base.cu=3", "about.coarse_left=true"] {
-        let steps = ["design", "samples.csv", "--steps", "--out", "x", "--set", other];
-        let takes = "--steps walks nothing, and takes no other settings than about.project, about.number, \
+        let steps = ["design", "samples.csv", "--out", "x", "--set", other];
+        let takes = "a specification walks nothing, and takes no other settings than about.project, about.number, \
                      about.purpose, about.client, about.author, about.checker, about.revision, about.date, \
                      about.units";
         refused(&call(root.path(), &steps), &format!("--set {other}: {takes}"));

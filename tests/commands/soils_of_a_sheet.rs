@@ -4,9 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use voidwalk::Gradation;
 
-use crate::judge::SMALL;
 use crate::program::{call, done};
 
 /// A till, which the rules regrade on 4.75 mm: 70 % are finer.
@@ -37,71 +35,10 @@ fn input(name: &str, text: &str) -> String {
     format!("<th>Input file</th><td>{name} (XXH3 {sum:016x})</td>")
 }
 
-/// The rows of a gradation, the coarsest first, as a record has them: rising.
-fn rising(text: &str) -> Vec<(f64, f64)> {
-    let row = |line: &str| {
-        let (size, percent) = line.split_once(',').unwrap();
-        (size.parse().unwrap(), percent.parse().unwrap())
-    };
-    let mut rows: Vec<(f64, f64)> = text.lines().skip(1).map(row).collect();
-    rows.reverse();
-    rows
-}
-
 /// The cells of the row of a table that this names.
 fn cells<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let row = page.split(&format!("<th>{name}</th>")).nth(1).unwrap().split("</tr>").next().unwrap();
     row.split("<td class=\"n\">").skip(1).map(|cell| cell.split('<').next().unwrap()).collect()
-}
-
-#[test]
-fn a_design_has_both_gradations_and_their_files() {
-    // A file that is called `base` names no soil.
-    for (name, named) in [("base.csv", ""), ("till.csv", ": <bdi>till</bdi>")] {
-        has_both_gradations(name, named);
-    }
-}
-
-fn has_both_gradations(base: &str, named: &str) {
-    let root = site();
-    fs::write(root.path().join(base), TILL).unwrap();
-    let words = format!("design {base} --filter filter.csv --density loose --bracket 2,12 --out d");
-    let output = call(root.path(), &[&call_of(&words, &SMALL)[..], &["--set", "replicates=1"]].concat());
-    done(&output);
-    let design = record(&root.path().join("d/design.json"));
-    assert_eq!(design["base"]["gradation"], serde_json::json!(rising(TILL)));
-    assert_eq!(design["filter_gradation"], serde_json::json!(rising(SAND)));
-    // The part that passes 4.75 mm, as a soil of its own: 60 % of 70 % are finer than 0.425 mm.
-    let regraded = design["base"]["regraded"].as_array().unwrap();
-    let at = regraded.iter().find(|row| row[0] == 0.425).unwrap()[1].as_f64().unwrap();
-    assert!((at - 100.0 * 60.0 / 70.0).abs() < 1e-9, "{at}");
-    let page = fs::read_to_string(root.path().join("d/design.html")).unwrap().replace('\u{202f}', " ");
-    let title = if named.is_empty() { base } else { "till" };
-    for part in [
-        &format!("Base <b><bdi>{title}, regraded on 4.75 mm</bdi></b>"),
-        "filter of the shape <b><bdi>filter.csv</bdi></b> (D15F 0.250 mm, Cu ",
-        ", as given)",
-        "Appendix: the two gradations</h2>",
-        &format!("<h3>Base, as sampled{named}</h3>"),
-        &format!("<h3>Base, regraded{named}</h3>"),
-        "<h3>Filter, as given</h3>",
-        "checked> filter, as given</label>",
-        &input(base, TILL),
-        &input("filter.csv", SAND),
-        "Dotted: the filter as it was given.",
-    ] {
-        assert!(page.contains(part), "{part}");
-    }
-    // As sampled, as regraded, and of the filter.
-    let of = |text: &str| Gradation::from_points(&rising(text), None).unwrap();
-    let till = of(TILL);
-    let d85 = [till.d(85.0), till.regraded().gradation.d(85.0), of(SAND).d(85.0)];
-    for (cell, size) in cells(&page, "D85").into_iter().zip(d85) {
-        let shown: f64 = cell.parse().unwrap();
-        assert!((shown / size.unwrap() - 1.0).abs() < 0.01, "{cell} {size:?}");
-    }
-    assert_eq!(cells(&page, "D85").len(), 3);
-    assert!(cells(&page, "Group").iter().all(|group| group.len() > 1));
 }
 
 /// The till again: its finer part may leave it, and the sheet that a contractor gets says so.
@@ -111,7 +48,7 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
     let gap = "opening_mm,percent_finer\n19,100\n9.5,75\n4.75,50\n2,30\n0.9,29.5\n0.425,29\n0.2,26\n0.075,20\n\
                0.03,10\n0.01,0\n";
     fs::write(root.path().join("gap.csv"), gap).unwrap();
-    let said = call(root.path(), &call_of("design gap.csv --steps --out gap", &[])).stdout;
+    let said = call(root.path(), &call_of("design gap.csv --out gap", &[])).stdout;
     let said = String::from_utf8(said).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     let page = fs::read_to_string(root.path().join("gap/specification.html")).unwrap();
     let page = page.replace('\u{202f}', " ");
@@ -130,26 +67,8 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
         assert!(said.contains(words), "{words}: {said}");
     }
     assert!(said.contains("Not a complete specification: there is no limit above D60F"), "{said}");
-    // Nor is it silent where the same soil is walked, and it says each once.
-    let words =
-        call_of("design gap.csv --filter filter.csv --density loose --bracket 0.5,12 --out d", &SMALL);
-    let output = call(root.path(), &[&words[..], &["--set", "replicates=1"]].concat());
-    let said = String::from_utf8(output.stdout.clone()).unwrap();
-    done(&output);
-    let page = fs::read_to_string(root.path().join("d/design.html")).unwrap().replace('\u{202f}', " ");
-    let answer =
-        page.split("<section class=\"verdict\">").nth(1).unwrap().split("</section>").next().unwrap();
-    for words in [
-        "The base is internally unstable by Kenney and Lau",
-        "The base is broadly graded (Cu ",
-        "The base is gap-graded by the program",
-    ] {
-        assert!(answer.contains(&format!("<b>Warning</b>: {words}")), "{words}: {answer}");
-        assert!(said.contains(&format!("warning: {words}")), "{words}: {said}");
-        assert_eq!(page.matches(words).count(), 1, "{words}");
-    }
     // A sand has nothing of this.
-    done(&call(root.path(), &call_of("design filter.csv --steps --out sand", &[])));
+    done(&call(root.path(), &call_of("design filter.csv --out sand", &[])));
     assert!(record(&root.path().join("sand/specification.json")).get("notes").is_none());
 }
 
@@ -157,7 +76,7 @@ fn the_box_of_a_specification_warns_of_the_base_itself() {
 #[test]
 fn a_specification_has_every_curve_of_its_base() {
     let root = site();
-    let output = call(root.path(), &call_of("design base.csv --steps --out one", &[]));
+    let output = call(root.path(), &call_of("design base.csv --out one", &[]));
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     done(&output);
     let page = fs::read_to_string(root.path().join("one/specification.html")).unwrap();
@@ -198,7 +117,7 @@ fn a_specification_has_every_curve_of_its_base() {
         })
         .collect();
     fs::write(root.path().join("both.csv"), &both).unwrap();
-    done(&call(root.path(), &call_of("design both.csv --steps --out two", &[])));
+    done(&call(root.path(), &call_of("design both.csv --out two", &[])));
     let page = fs::read_to_string(root.path().join("two/specification.html")).unwrap();
     for part in [
         "Appendix: the gradations</h2>",

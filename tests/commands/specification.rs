@@ -1,4 +1,4 @@
-//! `voidwalk design --steps`: the specification of a filter without a walk, its tables and its workbook.
+//! `voidwalk design`: the specification of a filter, its tables and its workbook.
 
 use std::fs;
 use std::path::Path;
@@ -25,15 +25,13 @@ fn json(folder: &Path) -> Value {
 #[test]
 fn steps_limits_and_products_fill_a_folder() {
     let root = root();
-    let output = call(root.path(), &["design", "sands.csv", "--steps"]);
+    let output = call(root.path(), &["design", "sands.csv"]);
     done(&output);
     let said = String::from_utf8(output.stdout).unwrap();
     for words in [
-        "Plot the gradation of the base",
-        "limit of design, for north.",
-        "No. 200",
-        "The limits alone are not enough: D15F of each delivery",
-        "times the minimum D15F; the maximum D15F is",
+        "\nPractice: D15F from ",
+        "\nLimit: D15F 2.40\u{202f}mm (Sherard and Dunnigan's limit of design)",
+        "\nNot a complete specification: ",
         "ASTM C33 fine aggregate",
         "report: ",
     ] {
@@ -52,7 +50,14 @@ fn steps_limits_and_products_fill_a_folder() {
     assert!(limits.starts_with("sieve,opening_mm,min_percent_finer,max_percent_finer\n"), "{limits}");
     assert_eq!(limits.lines().count() - 1, found["limits"].as_array().unwrap().len());
     let page = fs::read_to_string(out.join("specification.html")).unwrap();
-    for words in ["Limits sieve by sieve", "Standard products", "Step by step", "Content-Security-Policy"] {
+    for words in [
+        "Limits sieve by sieve",
+        "Standard products",
+        "Step by step",
+        "limit of design, for north.",
+        "The limits alone are not enough: D15F of each delivery",
+        "Content-Security-Policy",
+    ] {
         assert!(page.contains(words), "{words}");
     }
     figures_are_listed(FolderKind::Specification, &out);
@@ -60,8 +65,8 @@ fn steps_limits_and_products_fill_a_folder() {
     fs::remove_file(out.join("specification.html")).unwrap();
     done(&call(root.path(), &["report", "voidwalk-specification"]));
     assert_eq!(fs::read_to_string(out.join("specification.html")).unwrap(), page);
-    refused(&call(root.path(), &["design", "sands.csv", "--steps"]), "holds a specification already");
-    let iso = ["design", "sands.csv", "--steps", "--sieves", "iso", "--overwrite", "--json"];
+    refused(&call(root.path(), &["design", "sands.csv"]), "holds a specification already");
+    let iso = ["design", "sands.csv", "--sieves", "iso", "--overwrite", "--json"];
     let output = call(root.path(), &iso);
     done(&output);
     let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -70,45 +75,30 @@ fn steps_limits_and_products_fill_a_folder() {
 }
 
 #[test]
-fn what_needs_a_walk_or_a_base_is_refused_beside_steps() {
+fn what_needs_a_walk_or_lacks_a_base_is_refused() {
     let root = root();
-    for args in [&["design", "--steps"][..], &["design", "sands.csv", "--steps", "--filter", "3"]] {
+    for args in [&["design"][..], &["design", "sands.csv", "--filter", "3"]] {
         assert_eq!(call(root.path(), args).status.code(), Some(2), "{args:?}");
     }
-    refused(&call(root.path(), &["design", "nowhere.csv", "--steps"]), "nowhere.csv");
-    refused(&call(root.path(), &["design", "sands.csv", "--sieves", "bs", "--steps"]), "allowed: us");
+    refused(&call(root.path(), &["design", "nowhere.csv"]), "nowhere.csv");
+    refused(&call(root.path(), &["design", "sands.csv", "--sieves", "bs"]), "allowed: us");
     fs::write(
         root.path().join("um.csv"),
         "opening_mm,percent_finer\n75,2\n150,12\n300,45\n600,85\n1180,100\n",
     )
     .unwrap();
-    refused(&call(root.path(), &["design", "um.csv", "--steps"]), "are its sizes micrometres");
+    refused(&call(root.path(), &["design", "um.csv"]), "are its sizes micrometres");
     assert!(!root.path().join("voidwalk-specification").exists());
 }
 
-/// A design has the specification that practice alone makes.
+/// One band: that of the last step stands on the first sheet and on the figure.
 #[test]
-fn a_design_has_the_specification_of_practice_alone() {
+fn the_band_of_the_steps_is_that_of_the_sheet_and_the_figure() {
     let root = root();
-    let set = ["network.nx=8", "network.ny=8", "replicates=2", "filter.grains_per_void=0.6"];
-    let sets: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-    let args = [
-        &["design", "sands.csv#north", "--filter", "cu1.5-loose", "--thickness", "8layers", "-q"],
-        &sets[..],
-    ];
-    done(&call(root.path(), &args.concat()));
-    let out = root.path().join("voidwalk-design");
-    let design: Value = serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
-    done(&call(root.path(), &["design", "sands.csv#north", "--steps", "--out", "alone", "-q"]));
-    let alone = fs::read(root.path().join("alone/specification.json")).unwrap();
-    let alone: Value = serde_json::from_slice(&alone).unwrap();
-    for part in ["d15f_max_mm", "d15f_min_mm", "steps", "band", "limits", "products"] {
-        assert_eq!(design["specification"][part], alone[part], "{part}");
-    }
-    let page = fs::read_to_string(out.join("design.html")).unwrap();
-    assert!(page.contains("Step by step") && out.join("specification.csv").is_file());
-    // One band: that of the last step stands on the first sheet and on the figure.
-    let steps = alone["steps"].as_array().unwrap();
+    done(&call(root.path(), &["design", "sands.csv#north", "-q"]));
+    let out = root.path().join("voidwalk-specification");
+    let of_file = json(&out);
+    let steps = of_file["steps"].as_array().unwrap();
     let of = |name: &str| {
         let values = steps.iter().rev().flat_map(|step| step["values"].as_array().unwrap());
         let mut named = values.filter(|value| value["name"] == name);
@@ -120,12 +110,12 @@ fn a_design_has_the_specification_of_practice_alone() {
     ];
     let band = format!("D15F from {least} to {greatest} mm, Cu from 2 to 6");
     let headline = format!("<p class=\"word long\">{band}, by practice.</p>");
-    let page = page.replace('\u{202f}', " ");
+    let page = fs::read_to_string(out.join("specification.html")).unwrap().replace('\u{202f}', " ");
     assert!(page.contains(&headline), "{band}");
     assert!(page.contains(&format!("as its limits at the sieves have it: {band}.")));
     let place = |what: &str| page.find(what).unwrap();
     for size in ["D5F", "D15F", "D60F"] {
         assert!(place(&format!("<th class=\"n\">{size}</th>")) < place("Figure 1."), "{size}");
     }
-    figures_are_listed(FolderKind::Design, &out);
+    figures_are_listed(FolderKind::Specification, &out);
 }

@@ -243,7 +243,7 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
     let root = tempfile::tempdir().unwrap();
     let clay = "opening_mm,percent_finer\n0.002,15\n0.006,30\n0.02,45\n0.075,60\n0.2,80\n0.6,92\n2,100\n";
     fs::write(root.path().join("core.csv"), clay).unwrap();
-    done(&call(root.path(), &["design", "core.csv", "--steps", "--out", "s", "-q"]));
+    done(&call(root.path(), &["design", "core.csv", "--out", "s", "-q"]));
     let file = root.path().join("s/specification.xlsx");
     let (all, first) = (sheets(&file), fs::read(&file).unwrap());
     let text = fs::read(root.path().join("s/specification.json")).unwrap();
@@ -301,10 +301,10 @@ fn the_template_is_read_back_as_soils() {
     // And as the two sides of a pair.
     done(&call(root.path(), &["rules", "site.xlsx#Base", "site.xlsx#Filter"]));
     // But not as an envelope of the base.
-    let steps = ["design", "site.xlsx", "--steps"];
+    let steps = ["design", "site.xlsx"];
     refused(&call(root.path(), &steps), "name one: site.xlsx#Base");
     assert!(!root.path().join("voidwalk-specification").exists());
-    done(&call(root.path(), &["design", "site.xlsx#Base", "--steps", "-q"]));
+    done(&call(root.path(), &["design", "site.xlsx#Base", "-q"]));
     refused(&call(root.path(), &["soil", "--template", "site.xlsx"]), "is there already");
     refused(&call(root.path(), &["soil", "--template", "site.csv"]), "ends in .xlsx");
     assert_eq!(call(root.path(), &["soil"]).status.code(), Some(2));

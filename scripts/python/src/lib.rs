@@ -45,7 +45,7 @@ mod _voidwalk {
     #[pymodule_export]
     use crate::soil::{Curve, Gradation};
     #[pymodule_export]
-    use crate::studies::{design, percolation, schema, soils, specification, specification_words};
+    use crate::studies::{boundary, percolation, schema, soils, specification, specification_words};
     #[pymodule_export]
     use crate::walks::{replicate_seed, walk};
     #[pymodule_export]

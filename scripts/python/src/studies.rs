@@ -1,4 +1,4 @@
-//! Studies of several walks: designs, percolation; and the soils of a file.
+//! Studies of several walks: boundaries, percolation; specifications; and the soils of a file.
 
 use std::path::PathBuf;
 
@@ -10,8 +10,9 @@ use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
 use voidwalk::outcome::quantity::{SizeUnit, limits};
 use voidwalk::outcome::record::SheetCover;
 use voidwalk::store::format;
-use voidwalk::study::design::{self as designs, DesignOptions, SpecifyOptions};
+use voidwalk::study::boundary::{self as boundaries, BoundaryOptions};
 use voidwalk::study::percolation::{self as percolations, PercolationOptions, PercolationPlan};
+use voidwalk::study::specified::{SpecifyOptions, specify};
 use voidwalk::words::specification::{beside_limits, no_band};
 
 use crate::notes::plain;
@@ -27,19 +28,17 @@ pub fn soils(path: PathBuf, d0_mm: Option<f64>) -> PyResult<String> {
     serde_json::to_string(&soils).map_err(failed)
 }
 
-/// The shape of a filter, and how its boundaries are searched: densities, whether it is packed, thicknesses, and
-/// the range of D15F/D85B.
+/// Of which filters boundaries are searched: densities, whether it is packed, and thicknesses.
 #[derive(FromPyObject)]
-pub struct Search(Vec<String>, bool, Vec<String>, [f64; 2]);
+pub struct Search(Vec<String>, bool, Vec<String>);
 
-/// Makes the specification of a filter by practice and finds the boundaries of the model, into a folder: the JSON of
-/// `design.json`.
+/// Finds the boundaries of the model, into a folder: the JSON of `boundary.json`.
 #[pyfunction]
 #[pyo3(signature = (
     base, filter, search, settings, as_sampled, as_given, out, overwrite, packings, manner, progress
 ))]
 #[allow(clippy::too_many_arguments)]
-pub fn design(
+pub fn boundary(
     py: Python<'_>,
     base: Option<PathBuf>,
     filter: Option<String>,
@@ -53,9 +52,9 @@ pub fn design(
     manner: Manner,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let Search(densities, pack, thicknesses, bracket) = search;
+    let Search(densities, pack, thicknesses) = search;
     let thicknesses: Result<_, String> = thicknesses.iter().map(|text| text.parse()).collect();
-    let options = DesignOptions {
+    let options = BoundaryOptions {
         base,
         filter,
         densities,
@@ -64,14 +63,12 @@ pub fn design(
         settings,
         as_sampled,
         as_given,
-        bracket,
         out,
         overwrite,
         prepare: manner.prepare(packings),
-        ..DesignOptions::default()
     };
-    let found = at_work(py, progress, |callbacks| designs::run(&options, &callbacks.run))?;
-    format::DESIGN.json(&found).map_err(failed)
+    let found = at_work(py, progress, |callbacks| boundaries::run(&options, &callbacks.run))?;
+    format::BOUNDARY.json(&found).map_err(failed)
 }
 
 /// Makes the specification of a filter for a base by practice alone, into a folder: the JSON of
@@ -93,7 +90,7 @@ pub fn specification(
         sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
     let cover = SheetCover::default();
     let options = SpecifyOptions { base, dispersive, finer, sieves, cover, inches: false, out, overwrite };
-    let found = at_work(py, progress, |callbacks| designs::specify(&options, &callbacks.run))?;
+    let found = at_work(py, progress, |callbacks| specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
 }
 

@@ -134,7 +134,7 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, AnyError> {
         FolderKind::Campaign => report::write_campaign(folder)?,
         FolderKind::Percolation => report::write_percolation(folder)?,
         FolderKind::Batch => report::write_batch(folder)?,
-        FolderKind::Design => report::write_design(folder)?,
+        FolderKind::Boundary => report::write_boundary(folder)?,
         FolderKind::Designs => report::write_designs(folder)?,
         FolderKind::Specification => report::write_specification(folder)?,
         FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),

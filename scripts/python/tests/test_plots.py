@@ -86,10 +86,10 @@ def test_a_result_is_drawn_in_four_ways() -> None:
 
 def test_studies_are_drawn() -> None:
     small = {"network.nx": 8, "network.ny": 8}
-    design = vw.design(
-        BASE, FILTER, density="dense", thickness="10layers", bracket=(4, 16), replicates=2, settings=small
+    found = vw.boundary(
+        BASE, FILTER, density="dense", thickness="10layers", replicates=2, settings=small
     )
-    assert words(design.plot())[:2] == ["D15F/D85B", "Eroded mass of the first run (%)"]
+    assert words(found.plot())[:2] == ["D15F/D85B", "Eroded mass of the first run (%)"]
     matplotlib.pyplot.close("all")
 
 

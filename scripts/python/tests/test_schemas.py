@@ -50,7 +50,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Path:
     vw.judge(BASE, FILTER, place / "run", **options)
     vw.judge(BASE, FILTER, place / "studied", density="dense", replicates=2, settings=SMALL)
     across = {"network.nx": 8, "network.ny": 8}
-    vw.design(BASE, FILTER, place / "designed", thickness="10layers", bracket=(4, 16), replicates=2, settings=across)
+    vw.boundary(BASE, FILTER, place / "searched", thickness="10layers", replicates=2, settings=across)
     vw.percolation([4, 6, 8, 10], realisations=4, out=place / "percolated")
     sets = {"replicates": 2, "network.nx": 6, "network.ny": 6, "network.nz": 9, "record.sensitivity": []}
     factors = [{"name": "cu", "setting": "base.cu", "values": [1.5, 2.0]}]
@@ -64,7 +64,7 @@ def test_every_record_keeps_to_its_schema(folders: Path) -> None:
     for path, record in records(folders):
         keeps(record)
         found.append(str(record["format"]))
-    for form in ("outcome", "manifest", "design", "percolation", "campaign", "case"):
+    for form in ("outcome", "manifest", "boundary", "percolation", "campaign", "case"):
         assert f"voidwalk-{form}/1" in found, (form, set(found))
 
 

@@ -41,8 +41,8 @@ def answer(record: Any) -> Any:
 def said(program: str, folder: Path, *words: str) -> Any:
     """What the command line prints as JSON for the same."""
     settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
-    settings = settings[:4] if words[0] == "design" else settings
-    small = settings if words[0] in ("judge", "design") else []
+    settings = settings[:4] if words[0] == "boundary" else settings
+    small = settings if words[0] in ("judge", "boundary") else []
     done = subprocess.run([program, *words, *small, "--json"], capture_output=True, text=True, cwd=folder)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -71,7 +71,7 @@ def test_a_specification_is_that_of_the_command_line(program: str, tmp_path: Pat
     sizes = [0.002, 0.005, 0.012, 0.03, 0.075, 0.18, 0.425, 0.85, 2.0, 4.75, 9.5, 19.0]
     core = (sizes, [0.0, 13.0, 28.0, 43.0, 60.0, 68.0, 75.0, 82.0, 90.0, 94.0, 97.0, 100.0])
     table(tmp_path, "base", core)
-    words = ["base.csv", "--steps", "--dispersive", "--sieves", "iso", "--quiet", "--json", "--out", "o"]
+    words = ["base.csv", "--dispersive", "--sieves", "iso", "--quiet", "--json", "--out", "o"]
     done = subprocess.run([program, "design", *words], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     wanted = json.loads(done.stdout)
@@ -105,21 +105,20 @@ def test_a_specification_without_a_band_says_why() -> None:
     assert found.outcome["no_band"]["id"] == "limit_not_known"
 
 
-def test_design_is_that_of_the_command_line(program: str, tmp_path: Path) -> None:
+def test_boundaries_are_those_of_the_command_line(program: str, tmp_path: Path) -> None:
     table(tmp_path, "base", BASE), table(tmp_path, "filter", FILTER)
-    words = ["--filter", "filter.csv", "--density", "dense", "--thickness", "10layers", "--bracket", "4,16"]
+    words = ["--filter", "filter.csv", "--density", "dense", "--thickness", "10layers"]
     more = ["--set", "replicates=2", "--seed", "3", "--quiet", "--out", "o"]
-    wanted = said(program, tmp_path, "design", "base.csv", *words, *more)
-    options: Dict[str, Any] = dict(density="dense", thickness="10layers", bracket=(4, 16), replicates=2, seed=3)
+    wanted = said(program, tmp_path, "boundary", "base.csv", *words, *more)
+    options: Dict[str, Any] = dict(density="dense", thickness="10layers", replicates=2, seed=3)
     across = {"network.nx": 8, "network.ny": 8}
-    found = vw.design(BASE, FILTER, tmp_path / "d", settings=across, **options)
+    found = vw.boundary(BASE, FILTER, tmp_path / "d", settings=across, **options)
     # The settings say in their own order and form what was given.
     assert answer({**found.outcome, "settings": []}) == answer({**wanted, "settings": []})
-    assert found.d15f_max_mm == wanted["specification"]["d15f_max_mm"]
     assert len(found.walks["d15f_over_d85b"]) == len(found.walks["eroded_first"]) > 2
-    assert found.report().name == "design.html"
+    assert found.report().name == "boundary.html"
     again = vw.read(tmp_path / "d")
-    assert isinstance(again, vw.Design) and again.boundaries == found.boundaries and repr(found) == repr(again)
+    assert isinstance(again, vw.Boundaries) and again.boundaries == found.boundaries and repr(found) == repr(again)
 
 
 def test_percolation_and_soil_are_those_of_the_command_line(program: str, tmp_path: Path) -> None:
@@ -151,9 +150,9 @@ def test_errors_name_what_python_calls_it() -> None:
         (lambda: vw.judge(BASE, FILTER, as_sampled=True, settings={"base.regrade": "no"}), "as_sampled=True and"),
         (lambda: vw.judge(BASE, vw.Gradation.single(1.0)), "filter has a single size"),
         (lambda: vw.judge(3, FILTER), "base = int is not allowed"),  # type: ignore[arg-type]
-        (lambda: vw.design(BASE, density="thick"), "density thick: allowed"),
-        (lambda: vw.design(BASE, thickness="thick"), "thickness thick: allowed"),
-        (lambda: vw.design(BASE, thickness=50, settings={"network.nz": 10}), "thickness and settings network.nz"),
+        (lambda: vw.boundary(BASE, density="thick"), "density thick: allowed"),
+        (lambda: vw.boundary(BASE, thickness="thick"), "thickness thick: allowed"),
+        (lambda: vw.boundary(BASE, thickness=50, settings={"network.nz": 10}), "thickness and settings network.nz"),
         (lambda: vw.percolation([0]), "sizes = 0 is not allowed"),
         (lambda: vw.run(settings={"base.uc": 3}), "there is no setting `base.uc`"),
         (lambda: vw.Gradation([1, 2], [0, 90]), "percent_finer"),

@@ -6,11 +6,9 @@ use serde_json::Value;
 
 use super::job::{Job, JobState, has_scene, how_to_continue};
 use super::work::{Work, of_run};
-use crate::outcome::design::Design;
 use crate::outcome::record::Outcome;
 use crate::run::FolderKind;
 use crate::serve::batches::of_batch;
-use crate::serve::designs::of_design;
 use crate::serve::job_file::JobFile;
 use crate::store::format::from_json;
 use crate::store::read_whole;
@@ -53,7 +51,7 @@ fn holds_nothing(folder: &Path) -> bool {
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);
-    let is_ours = ["run-", "design-", "batch-"].iter().any(|kind| name.starts_with(kind));
+    let is_ours = ["run-", "batch-"].iter().any(|kind| name.starts_with(kind));
     if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }
@@ -63,13 +61,10 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
             .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
             .map(|outcome| of_run(&outcome)),
         // Without its page it is not whole, and the same call writes it.
-        Some(FolderKind::Design) if path.join("design.html").is_file() => record(FolderKind::Design)
-            .and_then(|bytes| from_json::<Design>(&bytes).ok())
-            .and_then(|design| of_design(&design).ok()),
         Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
             .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())
             .map(|batch| of_batch(&batch)),
-        Some(FolderKind::Design | FolderKind::Batch) | None => None,
+        Some(FolderKind::Batch) | None => None,
         Some(kind) => record(kind).and_then(|bytes| from_json(&bytes).ok()),
     };
     let ended = file.as_ref().and_then(|file| file.ended.clone());

@@ -81,11 +81,10 @@ impl Job {
     /// What the page is told of it; messages pass through `said`.
     pub fn snapshot(&self, all: &[Job], root: &Path, said: &impl Fn(&str) -> String) -> Value {
         let waits = |job: &&Job| job.state == JobState::Waiting && job.id < self.id;
-        let page = ["report.html", "design.html", "batch.html"]
+        let page = ["report.html", "batch.html"]
             .into_iter()
             .find(|page| self.state == JobState::Done && root.join(&self.folder).join(page).is_file());
-        let mut kinds = ["design", "batch"].into_iter();
-        let kind = kinds.find(|kind| self.folder.starts_with(kind)).unwrap_or("judge");
+        let kind = if self.folder.starts_with("batch") { "batch" } else { "judge" };
         let (runs, replicates) = match &self.work {
             Work::Judge(scene) => (scene.walk.runs, Some(scene.walk.replicates)),
             _ => (2, None),

@@ -16,10 +16,8 @@ use crate::run::error::AnyError;
 use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
 use crate::serve::batches::of_batch;
-use crate::serve::designs::{KeptDesign, of_design};
 use crate::serve::live::Live;
 use crate::study::batch::{self, BatchPlan};
-use crate::study::design;
 use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
@@ -32,8 +30,6 @@ pub enum Work {
     Judge(Box<Scene>),
     /// Walks every sample against filters.
     Batch(Box<BatchPlan>),
-    /// Finds how coarse a filter may be; the networks that are done in its folder are kept.
-    Design(KeptDesign),
     /// What its folder keeps: it is planned again when the job continues.
     Kept,
     /// Continues a run whose folder does not keep what was asked.
@@ -46,7 +42,6 @@ impl Work {
     /// With what the name of its folder begins.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Design(_) => "design",
             Self::Batch(_) => "batch",
             _ => "run",
         }
@@ -119,10 +114,6 @@ impl WorkContext {
                     },
                 };
                 Ok(of_batch(&batch::run(plan, &options, false, &callbacks)?))
-            }
-            Work::Design(kept) => {
-                let options = kept.options(&self.root, folder, &self.prepare)?;
-                Ok(of_design(&design::run(&options, &callbacks)?)?)
             }
             Work::Kept | Work::Nothing => Ok(Value::Null),
         }

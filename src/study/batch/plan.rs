@@ -14,7 +14,7 @@ use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
 use crate::words::batch::{EXCHANGED, MAY_GOVERN};
 
-/// Voids across the lattice of a first look, as `voidwalk design` searches.
+/// Voids across the lattice of a first look, as `voidwalk boundary` searches.
 const ACROSS: u64 = 20;
 
 /// Settings with which the size of the lattice is somebody's own.

@@ -10,7 +10,7 @@ call                                     answer
 ``judge(base, filter)``                  does this filter hold this base? A :class:`Result`
 ``rules(base, filter)``                  what the rules of practice say, without a walk
 ``specification(base)``                  a filter for this base by practice: a :class:`Specification`
-``design(base, filter)``                 how coarse a filter may be, by walk and practice: a :class:`Design`
+``boundary(base, filter)``               where the model begins to erode a base: :class:`Boundaries`
 ``soil(soil)``                           what is understood of a sieve table
 ``Network(...)``, ``walk(...)``          a network of your own, and base particles through it
 ``run(scene)``, ``campaign(plan)``       every setting, in a scene or a plan
@@ -51,7 +51,7 @@ from ._scene import Scene, init_text, scene_text
 from ._schema import schema
 from ._soil import Curve, Gradation
 from ._specification import Specification, specification
-from ._studies import Design, design, percolation, study
+from ._studies import Boundaries, boundary, percolation, study
 from ._voidwalk import Progress, VoidwalkError, __version__
 from ._walk import campaign, replicate_seed, resume, run, walk
 
@@ -59,7 +59,7 @@ __all__ = [
     "CampaignResult",
     "Constrictions",
     "Curve",
-    "Design",
+    "Boundaries",
     "Gradation",
     "Network",
     "Packing",
@@ -72,7 +72,7 @@ __all__ = [
     "__version__",
     "campaign",
     "constrictions",
-    "design",
+    "boundary",
     "init_text",
     "judge",
     "pack",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, Ints
 from .columns import Counts, Layers, Series, Sizes, Walked
-from .records import Design, Outcome, Specification, WalkOutcome
+from .records import Boundaries, Outcome, Specification, WalkOutcome
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes  # type: ignore[import-not-found,unused-ignore]
@@ -215,7 +215,7 @@ def _line(ax: Axes, points: Sequence[Sequence[float]], label: str, colour: str, 
     ax.plot([point[0] for point in points], [point[1] for point in points], label=label, color=colour, linestyle=style)
 
 
-def plot_design(outcome: Design, walks: Walked, ax: Optional[Axes]) -> Axes:
+def plot_boundaries(outcome: Boundaries, walks: Walked, ax: Optional[Axes]) -> Axes:
     """Eroded mass of the first run against D15F/D85B, and the boundaries of no and of continuing erosion."""
     drawn = axes(ax)
     for row in outcome["boundaries"]:

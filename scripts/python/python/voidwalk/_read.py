@@ -10,7 +10,7 @@ from typing import Union, cast
 from ._grains import Packing, Reached
 from ._result import CampaignResult, Result, read_csv, read_run
 from ._specification import Specification, read_specification
-from ._studies import Design
+from ._studies import Boundaries
 from .columns import Walked
 
 __all__ = ["read"]
@@ -18,8 +18,8 @@ __all__ = ["read"]
 
 def read(
     folder: Union[str, "os.PathLike[str]"],
-) -> Union[Result, CampaignResult, Design, Specification, Packing]:
-    """What lies in a finished folder of a run, a campaign, a design, a specification or a packing.
+) -> Union[Result, CampaignResult, Boundaries, Specification, Packing]:
+    """What lies in a finished folder of a run, a campaign, a study of boundaries, a specification or a packing.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def read(
 
     Returns
     -------
-    Result, CampaignResult, Design, Specification or Packing
+    Result, CampaignResult, Boundaries, Specification or Packing
     """
     place = Path(folder)
 
@@ -39,8 +39,8 @@ def read(
         return read_run(place)
     if (place / "cases.csv").is_file():
         return CampaignResult(place)
-    if (place / "design.json").is_file():
-        return Design(json.loads(record("design.json")), cast(Walked, read_csv(place / "design.csv")), place)
+    if (place / "boundary.json").is_file():
+        return Boundaries(json.loads(record("boundary.json")), cast(Walked, read_csv(place / "boundary.csv")), place)
     if (place / "specification.json").is_file():
         return read_specification(place, record("specification.json"), place)
     if (place / "packing.json").is_file():
@@ -49,6 +49,6 @@ def read(
         packing.reached = cast(Reached, {**recorded.get("after", {}), "seed": recorded.get("seed")})
         return packing
     raise ValueError(
-        f"{place}: holds no outcome.json, cases.csv, design.json, specification.json or packing.json; "
+        f"{place}: holds no outcome.json, cases.csv, boundary.json, specification.json or packing.json; "
         "name a finished folder"
     )

@@ -174,9 +174,9 @@ def specification(
     overwrite: bool = False,
     progress: Follower = None,
 ) -> Specification:
-    """Specifies a filter for a base by the rules of practice alone, as ``voidwalk design BASE --steps`` does.
+    """Specifies a filter for a base by the rules of practice alone, as ``voidwalk design BASE`` does.
 
-    Nothing is walked: :func:`design` finds how coarse a filter may be by the walk and by practice.
+    Nothing is walked.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Several walks: how coarse a filter may be, and studies of parameters."""
+"""Several walks: boundaries of the model, and studies of parameters."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from typing import (
 
 from . import _voidwalk
 from ._arrays import threads_or_none, whole
-from ._plots import Axes, plot_design
+from ._plots import Axes, plot_boundaries
 from ._progress import Follower, Following
 from .records import (
-    Design as DesignRecord,
-    DesignRow,
+    Boundaries as BoundariesRecord,
+    BoundaryRow,
     PercolationStudy,
     RowNote,
 )
@@ -42,36 +42,30 @@ from .columns import Walked
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
 
-__all__ = ["Design", "design", "percolation", "study"]
+__all__ = ["Boundaries", "boundary", "percolation", "study"]
 
 _Path = Union[str, "os.PathLike[str]"]
 
 
-class Design:
-    """How coarse a filter may be for a base: the specification by practice and, apart from it, the boundaries of the model.
+class Boundaries:
+    """The boundaries of the model: where it begins to erode a base, and where erosion continues.
 
     Attributes
     ----------
     outcome : dict
-        Everything that ``design.json`` says.
+        Everything that ``boundary.json`` says.
     walks : dict of ndarray
-        The columns of ``design.csv``: a row a ratio D15F/D85B that was walked on a network.
+        The columns of ``boundary.csv``: a row a ratio D15F/D85B that was walked on a network.
     folder : pathlib.Path or None
-        Folder of the design, where it has one.
+        Folder of the study, where it has one.
     """
 
-    outcome: DesignRecord
+    outcome: BoundariesRecord
     walks: Walked
     folder: Optional[Path]
 
-    def __init__(self, outcome: DesignRecord, walks: Walked, folder: Optional[Path] = None) -> None:
+    def __init__(self, outcome: BoundariesRecord, walks: Walked, folder: Optional[Path] = None) -> None:
         self.outcome, self.walks, self.folder = outcome, walks, folder
-
-    @property
-    def d15f_max_mm(self) -> Optional[float]:
-        """Maximum D15F (mm) by the rules of practice alone; ``None`` where it is not known, or the base has no size."""
-        specification = self.outcome.get("specification")
-        return None if specification is None else specification["d15f_max_mm"]
 
     @property
     def notes(self) -> List[RowNote]:
@@ -84,12 +78,12 @@ class Design:
         return sentences_of(self.notes)
 
     @property
-    def boundaries(self) -> List[DesignRow]:
+    def boundaries(self) -> List[BoundaryRow]:
         """One for each density and thickness: where no erosion turns into some, and some into continuing."""
         return self.outcome["boundaries"]
 
     def to_pandas(self) -> "pandas.DataFrame":
-        """Every ratio that was walked, as a pandas.DataFrame: the columns of ``design.csv``."""
+        """Every ratio that was walked, as a pandas.DataFrame: the columns of ``boundary.csv``."""
         frame: pandas.DataFrame = import_module("pandas").DataFrame(self.walks)
         return frame
 
@@ -105,17 +99,17 @@ class Design:
         -------
         matplotlib.axes.Axes
         """
-        return plot_design(self.outcome, self.walks, ax)
+        return plot_boundaries(self.outcome, self.walks, ax)
 
     def report(self) -> Path:
-        """Writes the page of a design that has a folder again, and gives its path."""
+        """Writes the page of a study that has a folder again, and gives its path."""
         return page_of(self.folder)
 
     def __repr__(self) -> str:
-        return f"Design({self.outcome['base']['name']}; {counted_notes(self.notes)})"
+        return f"Boundaries({self.outcome['base']['name']}; {counted_notes(self.notes)})"
 
     def _repr_html_(self) -> str:
-        def ratio(row: DesignRow, name: Literal["no_erosion", "continuing"]) -> str:
+        def ratio(row: BoundaryRow, name: Literal["no_erosion", "continuing"]) -> str:
             boundary = row[name]
             return "" if boundary is None else f"{boundary['median']:.2f}"
 
@@ -128,7 +122,7 @@ class Design:
             (row["density"], row["thickness"], ratio(row, "no_erosion"), ratio(row, "continuing"))
             for row in self.boundaries
         ]
-        return box("Design", facts, heading, rows)
+        return box("Boundaries", facts, heading, rows)
 
 
 def _words(given: Union[None, str, float, Sequence[Union[str, float]]]) -> List[str]:
@@ -139,7 +133,7 @@ def _words(given: Union[None, str, float, Sequence[Union[str, float]]]) -> List[
     return [word if isinstance(word, str) else repr(float(word)) for word in several]
 
 
-def design(
+def boundary(
     base: Optional[Soil] = None,
     filter: Union[None, Soil, float] = None,
     out: Optional[_Path] = None,
@@ -148,7 +142,6 @@ def design(
     density: Union[None, str, Sequence[str]] = None,
     pack: bool = False,
     thickness: Union[None, str, float, Sequence[Union[str, float]]] = None,
-    bracket: Tuple[float, float] = (0.5, 100.0),
     as_sampled: bool = False,
     as_given: bool = False,
     seed: Optional[int] = None,
@@ -158,9 +151,8 @@ def design(
     packings: _Path = "voidwalk-packings",
     memory: Optional[int] = None,
     progress: Follower = None,
-) -> Design:
-    """Makes the specification of a filter for a base by practice and finds the boundaries of the model, as ``voidwalk
-    design`` does, to the same bits.
+) -> Boundaries:
+    """Finds the boundaries of the model, for research, as ``voidwalk boundary`` does, to the same bits.
 
     Parameters
     ----------
@@ -169,7 +161,7 @@ def design(
     filter : soil, float or str, optional
         The filter's shape, whose size is searched: a soil, its Cu, or the name of a shipped curve.
     out : path-like, optional
-        Folder for the results; a design that was stopped there goes on. Without it everything stays in memory.
+        Folder for the results; a search that was stopped there goes on. Without it everything stays in memory.
     threads : int, optional
         One per core without it; they change no bit.
     density : str or sequence of str, optional
@@ -179,8 +171,6 @@ def design(
         Pack the grains of this very filter and measure its constrictions.
     thickness : str, float or sequence of them, optional
         "60layers", "75D50F", "500mm", "24in" or a number of mm; 60 layers without it.
-    bracket : (float, float)
-        D15F/D85B between which boundaries are searched.
     as_sampled, as_given, seed, replicates, settings
         As for :func:`judge`.
     overwrite, packings, memory, progress
@@ -188,7 +178,7 @@ def design(
 
     Returns
     -------
-    Design
+    Boundaries
 
     Raises
     ------
@@ -201,15 +191,15 @@ def design(
     --------
     >>> import voidwalk as vw
     >>> base = vw.Gradation([0.08, 0.3], [0, 100])
-    >>> found = vw.design(base, "cu1.5-loose", thickness="10layers", replicates=2, bracket=(4, 16),
-    ...                   settings={"network.nx": 8, "network.ny": 8})
+    >>> found = vw.boundary(base, "cu1.5-loose", thickness="10layers", replicates=2,
+    ...                     settings={"network.nx": 8, "network.ny": 8})
     >>> len(found.boundaries), found.boundaries[0]["thickness"]
     (1, '10 layers')
     """
     options = {"seed": ("seed", seed), "replicates": ("replicates", replicates)}
-    how = manner("design", memory, threads, None)
+    how = manner("boundary", memory, threads, None)
     stated = changes(settings, options)
-    search = (_words(density), bool(pack), _words(thickness), (float(bracket[0]), float(bracket[1])))
+    search = (_words(density), bool(pack), _words(thickness))
     with workplace() as place, Following(progress) as callback:
         shape: Optional[str] = None
         if isinstance(filter, (int, float)):
@@ -217,7 +207,7 @@ def design(
         elif filter is not None:
             shape = place.table("filter", filter)
         place_of_results = Path(place.out(out))
-        said = _voidwalk.design(
+        said = _voidwalk.boundary(
             None if base is None else place.table("base", base),
             shape,
             search,
@@ -230,9 +220,9 @@ def design(
             how,
             callback,
         )
-        return Design(
+        return Boundaries(
             json.loads(place.named(said)),
-            cast(Walked, read_csv(place_of_results / "design.csv")),
+            cast(Walked, read_csv(place_of_results / "boundary.csv")),
             None if out is None else place_of_results,
         )
 

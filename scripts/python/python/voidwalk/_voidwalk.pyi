@@ -20,7 +20,7 @@ _Manner = Tuple[Optional[int], Optional[int], Optional[str], str]
 #: Density, pack, quick, as sampled, as given, and settings.
 _TableOptions = Tuple[Optional[str], bool, bool, bool, bool, List[str]]
 #: Densities, pack, thicknesses, and the range of D15F/D85B.
-_Search = Tuple[List[str], bool, List[str], Tuple[float, float]]
+_Search = Tuple[List[str], bool, List[str]]
 #: Manifest, scene, and the record of a packing.
 _Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
@@ -47,7 +47,7 @@ __all__ = [
     "run_in_memory",
     "Curve",
     "Gradation",
-    "design",
+    "boundary",
     "percolation",
     "schema",
     "soils",
@@ -251,7 +251,7 @@ def campaign(
 ) -> None: ...
 def schema(name: str) -> str: ...
 def soils(path: _Path, d0_mm: Optional[float]) -> str: ...
-def design(
+def boundary(
     base: Optional[_Path],
     filter: Optional[str],
     search: _Search,

@@ -1,4 +1,4 @@
-"""The types of tables: the columns of the CSV files of a run, a design and a campaign."""
+"""The types of tables: the columns of the CSV files of a run, of boundaries and of a campaign."""
 
 from __future__ import annotations
 
@@ -188,7 +188,7 @@ class Blockings(TypedDict):
 
 
 class Walked(TypedDict):
-    """Every ratio that a design walked: ``design.csv``.
+    """Every ratio that a search of boundaries walked: ``boundary.csv``.
 
     Keys
     ----

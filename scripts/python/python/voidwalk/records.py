@@ -15,15 +15,15 @@ __all__ = [
     "BaseRecord",
     "BaseSizes",
     "BaseStated",
+    "Boundaries",
     "Boundary",
+    "BoundaryRow",
     "BoxThreshold",
     "ByConnectivity",
     "ConstrictionsRecord",
     "ConstrictionsSummary",
     "CurveEnd",
     "CurveRange",
-    "Design",
-    "DesignRow",
     "FilterRecord",
     "FilterSizes",
     "GivenNetwork",
@@ -1825,6 +1825,8 @@ class ProductMargin(TypedDict):
 
 
 class _Specification(TypedDict):
+    format: Literal["voidwalk-specification/1"]
+    voidwalk: str
     version: str
     base: str
     dispersive: bool
@@ -1843,6 +1845,10 @@ class Specification(_Specification, total=False):
 
     Keys
     ----
+    format
+        The form of this file.
+    voidwalk
+        Version of the program that wrote it.
     version
         Version of voidwalk.
     commit
@@ -1962,7 +1968,7 @@ class NetworkBoundaries(TypedDict):
     continuing: Optional[float]
 
 
-class _DesignRow(TypedDict):
+class _BoundaryRow(TypedDict):
     density: str
     thickness: str
     layers: int
@@ -1974,7 +1980,7 @@ class _DesignRow(TypedDict):
     networks: List[NetworkBoundaries]
 
 
-class DesignRow(_DesignRow, total=False):
+class BoundaryRow(_BoundaryRow, total=False):
     """The boundaries of one density and thickness.
 
     Keys
@@ -2052,23 +2058,17 @@ class BaseStated(_BaseStated, total=False):
         The part of its mass that is finer than its finest sieve, as it was walked.
     d85_as_sampled_mm
         D85 (mm) before regrading, where it was regraded.
-    gradation
-        Size (mm) and percent finer by mass, as sampled; empty without a size of its own.
-    regraded
-        The same as it was walked after regrading; empty where it was walked as sampled.
     """
 
     regraded_at_mm: Optional[float]
     d85_as_sampled_mm: Optional[float]
-    gradation: List[List[float]]
-    regraded: List[List[float]]
 
 
-class _Design(TypedDict):
-    format: Literal["voidwalk-design/1"]
+class _Boundaries(TypedDict):
+    format: Literal["voidwalk-boundary/1"]
     voidwalk: str
     version: str
-    boundaries: List[DesignRow]
+    boundaries: List[BoundaryRow]
     base: BaseStated
     filter: str
     filter_cu: Optional[float]
@@ -2084,8 +2084,8 @@ class _Design(TypedDict):
     seconds: float
 
 
-class Design(_Design, total=False):
-    """The whole of `design.json`.
+class Boundaries(_Boundaries, total=False):
+    """The whole of `boundary.json`.
 
     Keys
     ----
@@ -2097,9 +2097,6 @@ class Design(_Design, total=False):
         Version of voidwalk.
     commit
         The commit that it was built from; `None` where that is not known.
-    specification
-        The specification of a filter by the rules of practice alone, step by step; `None` of a base without a
-        size.
     boundaries
         The boundaries of the model, one row per density and thickness, in the order in which they were asked
         for.
@@ -2111,9 +2108,6 @@ class Design(_Design, total=False):
         Cu of the filter.
     filter_d15_mm
         The filter's own D15F (mm), where its sizes are given.
-    filter_gradation
-        Size (mm) and percent finer by mass of the filter as it was given, which is scaled in a search; empty
-        where its sizes are not given.
     inputs
         Every file that was read.
     threshold
@@ -2143,8 +2137,6 @@ class Design(_Design, total=False):
     """
 
     commit: Optional[str]
-    specification: Optional[Specification]
-    filter_gradation: List[List[float]]
     inputs: List[InputFile]
     notes: List[RowNote]
     cover: SheetCover
