@@ -19,7 +19,7 @@
 //!
 //! ```text
 //! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
-//! Scene -> Case -> run, campaign, study                                       the application
+//! Scene -> Case -> run, cases, study                                          the application
 //! words, report, serve, cli                                                   its faces
 //! ```
 //!
@@ -60,7 +60,7 @@ pub mod case;
 
 pub mod run;
 
-pub mod campaign;
+pub mod cases;
 
 pub mod study;
 

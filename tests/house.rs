@@ -27,7 +27,7 @@ const ORDER: [&str; 21] = [
     "scene",
     "case",
     "run",
-    "campaign",
+    "cases",
     "study",
     "report",
     "serve",

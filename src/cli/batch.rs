@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::args::RulesArgs;
 use super::print::{plain, shown, to_copy, to_stdout};
+use crate::cases::refuse_twice;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
 use crate::run::{RunError, write_new};
-use crate::study::refuse_twice;
 use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
 use crate::words::batch::{columns, of_filter as filter_lines};

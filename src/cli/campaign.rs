@@ -9,9 +9,7 @@ use super::print::{grains_per_void, percent, plain, shown, to_copy, to_stdout};
 use super::progress::{followed, unfollowed};
 use super::run::command_line;
 use super::start::START;
-use crate::campaign::{
-    self, CampaignOptions, CampaignPlan, CasePart, FinishedCampaign, JobOptions, WrittenJobs,
-};
+use crate::cases::{self, CaseOptions, CasePart, CasePlan, FinishedCases, JobOptions, WrittenJobs};
 use crate::outcome::ledger::{self, LedgerLine};
 use crate::outcome::record::Verdict;
 use crate::run::RunError;
@@ -24,8 +22,8 @@ use crate::words::left_out::left_out_line;
 const SHOWN: usize = 20;
 
 impl CampaignArgs {
-    fn options(&self) -> CampaignOptions {
-        CampaignOptions {
+    fn options(&self) -> CaseOptions {
+        CaseOptions {
             out: self.out.clone(),
             part: match (&self.case, &self.task) {
                 (Some(name), _) => CasePart::Named(name.clone()),
@@ -42,9 +40,9 @@ impl CampaignArgs {
 
 /// Walks a plan's cases and collects what came of them, or does the part of it that is asked for.
 pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
-    let (plan, options, quiet) = (CampaignPlan::read(&args.plan)?, args.options(), args.walk.quiet);
+    let (plan, options, quiet) = (CasePlan::read(&args.plan)?, args.options(), args.walk.quiet);
     if args.list {
-        let names = campaign::names(&plan, &options.part)?;
+        let names = cases::names(&plan, &options.part)?;
         to_stdout(&names.iter().map(|name| plain(name) + "\n").collect::<String>());
         return Ok(());
     }
@@ -52,10 +50,10 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
         return write_scripts(args, &plan, &options);
     }
     if let Some(number) = args.make_packing {
-        return followed(quiet, |run| campaign::make_packing(&plan, number, &options, run));
+        return followed(quiet, |run| cases::make_packing(&plan, number, &options, run));
     }
     let (lines, problem) = if args.collect {
-        (Some(campaign::collect(&plan, &options, &unfollowed())?), None)
+        (Some(cases::collect(&plan, &options, &unfollowed())?), None)
     } else {
         let finished = walk(args, &plan, &options)?;
         let problem = finished.problem();
@@ -67,13 +65,9 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     problem.map_or(Ok(()), Err)
 }
 
-fn walk(
-    args: &CampaignArgs,
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
-) -> Result<FinishedCampaign, RunError> {
+fn walk(args: &CampaignArgs, plan: &CasePlan, options: &CaseOptions) -> Result<FinishedCases, RunError> {
     let progress = CaseProgress::new(args.walk.quiet, Allocation::here().is_some());
-    progress.followed(|callbacks| campaign::run(plan, options, callbacks))
+    progress.followed(|callbacks| cases::run(plan, options, callbacks))
 }
 
 fn words(lines: &[LedgerLine], out: &Path) -> String {
@@ -112,17 +106,13 @@ fn thickness(line: &LedgerLine) -> String {
 }
 
 /// Writes the job scripts for the cases that are not done.
-fn write_scripts(
-    args: &CampaignArgs,
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
-) -> Result<(), RunError> {
+fn write_scripts(args: &CampaignArgs, plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
     let (program, words) = match START.get().and_then(|start| start.again.as_deref()) {
         Some([program, words @ ..]) => (program.into(), words.to_vec()),
         _ => (std::env::current_exe().map_err(RunError::failed)?, Vec::new()),
     };
     let jobs = JobOptions { program, words, plan: args.plan.clone(), tasks: args.tasks.map(usize::from) };
-    let written = campaign::write_job_scripts(plan, options, &jobs, &unfollowed())?;
+    let written = cases::write_job_scripts(plan, options, &jobs, &unfollowed())?;
     to_stdout(&jobs_in_words(&written));
     Ok(())
 }

@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 
 use super::print::{plain, to_stderr};
 use super::progress::{bar_on_terminal, followed};
-use crate::campaign::{CampaignCallbacks, CaseEvent};
+use crate::cases::{CaseCallbacks, CaseEvent};
 use crate::run::RunError;
 
 /// Plain lines come at most this often, outside of a cluster's job.
@@ -45,10 +45,10 @@ impl CaseProgress {
     /// Those of the work.
     pub fn followed<R>(
         &self,
-        work: impl FnOnce(&CampaignCallbacks) -> Result<R, RunError>,
+        work: impl FnOnce(&CaseCallbacks) -> Result<R, RunError>,
     ) -> Result<R, RunError> {
         followed(self.quiet, |run| {
-            let callbacks = CampaignCallbacks {
+            let callbacks = CaseCallbacks {
                 run: *run,
                 on_cases: &|total, done| self.begin(total, done),
                 on_case: &|case, event| self.tell(case, event),

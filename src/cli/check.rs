@@ -6,7 +6,7 @@ use super::args::{SceneArgs, SettingArgs};
 use super::check_plan::check_plan;
 use super::print::{as_it_is, json, plain, to_stdout};
 use super::values::with_options;
-use crate::campaign::CampaignPlan;
+use crate::cases::CasePlan;
 use crate::constrictions::shipped;
 use crate::outcome::quantity::{SizeUnit, whole};
 use crate::run::cost::duration;
@@ -50,7 +50,7 @@ impl SceneArgs {
 
 /// Says what a run would do, or the cases of a plan.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
-    if let Some(plan) = args.scene.as_deref().filter(|file| CampaignPlan::is_plan(file)) {
+    if let Some(plan) = args.scene.as_deref().filter(|file| CasePlan::is_plan(file)) {
         return check_plan(plan, &args.set);
     }
     let check = run::check(args.scene()?, &args.set.prepare(None))?;

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::args::SettingArgs;
 use super::print::{as_it_is, counted, json, plain, to_copy, to_stdout, whole};
-use crate::campaign::{self, CampaignOptions, CampaignPlan, PlanCheck};
 use crate::case::in_words;
+use crate::cases::{self, CaseOptions, CasePlan, PlanCheck};
 use crate::run::cost::duration;
 use crate::run::{PrepareOptions, RunError};
 use crate::store::format;
@@ -25,12 +25,12 @@ pub(super) fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError>
              cases under [set]",
         ));
     }
-    let plan = CampaignPlan::read(path)?;
+    let plan = CasePlan::read(path)?;
     // Where nobody names a folder of packings, a campaign keeps them in its own.
     let is_named = set.packings != PrepareOptions::default().packings;
     let packings = is_named.then(|| set.packings.clone());
-    let options = CampaignOptions { packings, memory: set.memory, ..CampaignOptions::default() };
-    let check = campaign::check_plan(&plan, &options)?;
+    let options = CaseOptions { packings, memory: set.memory, ..CaseOptions::default() };
+    let check = cases::check_plan(&plan, &options)?;
     if set.json {
         as_it_is(&json(format::PLAN_CHECK, &check)?);
     } else {

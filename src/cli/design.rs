@@ -1,7 +1,7 @@
 //! `voidwalk design`: the specification of a filter, by practice.
 
 use super::args::DesignArgs;
-use super::design_each::design_each;
+use super::design_each::{by_option, design_each};
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::values::with_options;
@@ -58,11 +58,6 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
         to_stdout(&format!("{}report: {}\n", words(&of), shown(&options.out.join("specification.html"))));
     }
     Ok(())
-}
-
-/// What to do where a base is found to be dispersive, with the option that does it.
-pub(super) fn by_option(again: &str) -> String {
-    format!("{again} (--dispersive)")
 }
 
 /// The band and its limit, what to watch, and the products that fit; steps and limits stand on the page.

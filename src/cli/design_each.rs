@@ -5,7 +5,6 @@ use std::path::Path;
 
 use super::args::DesignArgs;
 use super::batch::{aligned, in_notes};
-use super::design::by_option;
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::progress::followed;
 use crate::outcome::quantity::SizeUnit;
@@ -26,6 +25,11 @@ pub(super) fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result
         to_stdout(&words(&all, &options.out));
     }
     Ok(())
+}
+
+/// What to do where a base is found to be dispersive, with the option that does it.
+pub(super) fn by_option(again: &str) -> String {
+    format!("{again} (--dispersive)")
 }
 
 fn words(all: &DesignedSamples, out: &Path) -> String {

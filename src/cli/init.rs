@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::print::{as_it_is, json, shown, to_stdout};
-use crate::campaign::CampaignPlan;
+use crate::cases::CasePlan;
 use crate::run::{RunError, write_built_in, write_new};
 use crate::scene::Scene;
 use crate::store::format::{self, Format};
@@ -19,11 +19,11 @@ pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<Forma
         return Ok(());
     }
     let Some(path) = path else {
-        to_stdout(&if plan { CampaignPlan::INIT_TEXT.to_owned() } else { Scene::init_text() });
+        to_stdout(&if plan { CasePlan::INIT_TEXT.to_owned() } else { Scene::init_text() });
         return Ok(());
     };
     if plan {
-        write_new(path, CampaignPlan::INIT_TEXT.as_bytes())?;
+        write_new(path, CasePlan::INIT_TEXT.as_bytes())?;
     } else {
         write_built_in(path)?;
     }

@@ -9,11 +9,11 @@ use super::case_progress::CaseProgress;
 use super::exit::{JudgedAnswer, accept_walked};
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::run::command_line;
-use crate::campaign::{CampaignOptions, CasePart};
+use crate::cases::{BatchPlan, BatchWalks, batch};
+use crate::cases::{CaseOptions, CasePart};
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
-use crate::study::batch::{self, BatchPlan, BatchWalks};
 use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, walked_columns, walks};
 use crate::words::left_out::left_out_line;
@@ -68,8 +68,8 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
 }
 
 /// How cases are walked that options of the command line describe.
-fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CampaignOptions {
-    CampaignOptions {
+fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptions {
+    CaseOptions {
         out: out.to_owned(),
         part: CasePart::All,
         packings: Some(set.packings.clone()),

@@ -5,7 +5,7 @@ use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
 use super::soil::Soils;
-use crate::campaign::PlanCheck;
+use crate::cases::PlanCheck;
 use crate::constrictions::Summary;
 use crate::outcome::boundary::Boundaries;
 use crate::outcome::design::Specification;

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::shared_args::WalkArgs;
 use super::values::{assignment, facets, lattice_size, seed, sheet_units, threads, time};
-use crate::campaign::CasePart;
+use crate::cases::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::outcome::design::SieveSeries;
 use crate::packing::{CellOption, LengthUnit};

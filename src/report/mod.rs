@@ -5,8 +5,8 @@
 //! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
 //! [`write_percolation()`] that of a percolation study, [`write_batch()`] that of many samples against
 //! filters, [`write_boundary()`] that of the model's boundaries, [`write_specification()`] that of a
-//! specification and [`write_designs()`] that of the specifications for many samples. They write `figures/*.svg`, each a
-//! file of its own, and `report.html`.
+//! specification and [`write_designs()`] that of the specifications for many samples. They write
+//! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages without a folder
 //! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and

@@ -69,8 +69,8 @@ pub fn write_examples(folder: &Path) -> Result<(), RunError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::CampaignPlan;
     use crate::case::Case;
+    use crate::cases::CasePlan;
     use crate::gradation::{curves_in_file, soils_in_file};
     use crate::scene::Scene;
 
@@ -90,7 +90,7 @@ mod tests {
         );
         let case = Case::new(Scene::read(&place("scene.toml"), &[]).unwrap()).unwrap();
         assert_eq!(case.scene.filter.thickness_mm, Some(609.6));
-        let plan = CampaignPlan::read(&place("plan.toml")).unwrap();
+        let plan = CasePlan::read(&place("plan.toml")).unwrap();
         assert_eq!(plan.cases.len(), 4);
         for case in &plan.cases {
             Case::new(case.scene.clone()).unwrap();

@@ -7,10 +7,10 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::sheets::Sheets;
+use crate::cases::BatchWalks;
+use crate::cases::numbered;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{Columns, Shown};
-use crate::study::batch::BatchWalks;
-use crate::study::numbered;
 use crate::verdict::{BatchFilter, BatchRow, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, of_filter, walked_columns, walks};
 use crate::words::left_out::left_out_in_brief;

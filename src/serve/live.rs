@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::batches::so_far;
-use crate::campaign::CaseEvent;
+use crate::cases::CaseEvent;
 use crate::outcome::so_far::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;

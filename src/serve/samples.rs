@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::batches::{filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
+use crate::cases::refuse_twice;
 use crate::outcome::quantity::SizeUnit;
-use crate::study::refuse_twice;
 use crate::verdict::{BatchTable, PairOptions};
 use crate::words::batch::{columns, of_filter};
 

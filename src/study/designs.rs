@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::days::today;
-use super::inputs::{files_of, input_files};
-use super::kept;
 use super::specified::{SpecifyOptions, is_a_base};
+use crate::cases::days::today;
+use crate::cases::inputs::{files_of, input_files};
+use crate::cases::kept;
 use crate::gradation::{SoilSample, notes_in_file, samples_in};
 use crate::outcome::design::Specification;
 use crate::outcome::quantity::SizeUnit;

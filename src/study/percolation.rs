@@ -6,7 +6,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::kept::{self, Kept};
+use crate::cases::kept::{self, Kept};
 use crate::network::{Network, NetworkError, percolation_threshold};
 use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
 use crate::outcome::table::Columns;

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::cases::days::today;
+use crate::cases::inputs::input_files;
+use crate::cases::kept;
 use crate::gradation::{Gradation, curves_in_file};
 use crate::outcome::design::{SieveSeries, Specification};
 use crate::outcome::record::SheetCover;
@@ -11,9 +14,6 @@ use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::store::{Folder, StoreError};
-use crate::study::days::today;
-use crate::study::inputs::input_files;
-use crate::study::kept;
 use crate::verdict::SpecificationOptions;
 use crate::words::products::columns;
 use crate::words::specification::step_rows;

@@ -15,8 +15,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use bitvec::vec::BitVec;
-use voidwalk::campaign::CampaignPlan;
 use voidwalk::case::Case;
+use voidwalk::cases::CasePlan;
 use voidwalk::constrictions::{Curve, DEFAULT_MERGE_OVERLAP, VoidGraph};
 use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
 use voidwalk::network::{ArrayOptions, END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
@@ -325,7 +325,7 @@ pub fn checkpoint(bytes: &[u8]) {
 pub fn ledger(bytes: &[u8]) {
     // The cross of many factors takes its time and is bounded by itself.
     if bytes.len() < 2000
-        && let Some(plan) = shown(CampaignPlan::parse(bytes, Path::new("plan.toml")))
+        && let Some(plan) = shown(CasePlan::parse(bytes, Path::new("plan.toml")))
     {
         for case in &plan.cases {
             let name = case.folder_name();

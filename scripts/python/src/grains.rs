@@ -3,8 +3,8 @@
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voidwalk::campaign::CampaignCallbacks;
 use voidwalk::case::PackingPlan;
+use voidwalk::cases::CaseCallbacks;
 use voidwalk::constrictions::{Constrictions, ConstrictionsError, Facets, Triangulation, VoidGraph};
 use voidwalk::packing::{Compression, Packing, PackingError, ReadOptions, Settings, draw, random_start};
 use voidwalk::run::machine::threads as pool;
@@ -43,7 +43,7 @@ pub fn pack<'py>(
     let grains = grains.unwrap_or_else(|| PackingPlan::usual_grains(gradation));
     let settings = Settings { grains, friction, seed, ..Settings::default() };
     let (found, report) = at_work(py, progress, |callbacks| {
-        let on = |callbacks: &CampaignCallbacks| {
+        let on = |callbacks: &CaseCallbacks| {
             settings.check()?;
             let start = random_start(&draw(gradation, settings.grains, settings.seed), &settings)?;
             let mut compression = Compression::new(&start, &settings)?;

@@ -6,8 +6,8 @@ use std::time::SystemTime;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::Outcome;
-use voidwalk::campaign::{self as campaigns, CampaignOptions, CampaignPlan, CasePart};
 use voidwalk::case::{Case, RECORD};
+use voidwalk::cases::{self as campaigns, CaseOptions, CasePart, CasePlan};
 use voidwalk::outcome::quantity::SizeUnit;
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
@@ -48,11 +48,11 @@ impl Manner {
         })
     }
 
-    pub fn campaign(self, out: PathBuf, packings: Option<PathBuf>) -> PyResult<CampaignOptions> {
+    pub fn campaign(self, out: PathBuf, packings: Option<PathBuf>) -> PyResult<CaseOptions> {
         let checkpoint_interval = self.interval()?.unwrap_or_default();
         let Self(memory, threads, _, command) = self;
         let part = CasePart::default();
-        Ok(CampaignOptions { out, part, packings, memory, threads, checkpoint_interval, command })
+        Ok(CaseOptions { out, part, packings, memory, threads, checkpoint_interval, command })
     }
 }
 
@@ -207,8 +207,8 @@ pub fn campaign(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<()> {
     let plan = match json {
-        None => CampaignPlan::read(&path),
-        Some(json) => CampaignPlan::parse(toml_of("plan", &json)?.as_bytes(), &path),
+        None => CasePlan::read(&path),
+        Some(json) => CasePlan::parse(toml_of("plan", &json)?.as_bytes(), &path),
     };
     let plan = plan.map_err(|error| of_run(&error.into()))?;
     let options = manner.campaign(out, packings)?;

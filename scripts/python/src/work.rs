@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
-use voidwalk::campaign::{CampaignCallbacks, CaseEvent};
+use voidwalk::cases::{CaseCallbacks, CaseEvent};
 use voidwalk::report;
 use voidwalk::run::error::AnyError;
 use voidwalk::run::{Callbacks, Event, Exit, FolderKind, RunError};
@@ -146,7 +146,7 @@ pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, AnyError> {
 pub fn at_work<T: Send>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
-    work: impl FnOnce(&CampaignCallbacks) -> Result<T, RunError> + Send,
+    work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError> + Send,
 ) -> PyResult<T> {
     let desk = Desk {
         shared: Mutex::new(Shared {
@@ -168,7 +168,7 @@ pub fn at_work<T: Send>(
                 warn: &|warning| desk.warn(warning),
                 on_results: &|kind, folder| page(kind, folder).map(drop),
             };
-            let callbacks = CampaignCallbacks {
+            let callbacks = CaseCallbacks {
                 run,
                 on_cases: &|total, done| {
                     let (total, done) = (total as u64, done as u64);

@@ -6,7 +6,8 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-use crate::campaign::{CampaignCallbacks, CampaignOptions, CaseEvent, CasePart};
+use crate::cases::{BatchPlan, batch};
+use crate::cases::{CaseCallbacks, CaseEvent, CaseOptions, CasePart};
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
@@ -17,7 +18,6 @@ use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
 use crate::serve::batches::of_batch;
 use crate::serve::live::Live;
-use crate::study::batch::{self, BatchPlan};
 use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
@@ -101,7 +101,7 @@ impl WorkContext {
                 let rows = plan.so_far(folder);
                 live().batch(rows, plan.shows_inches());
                 let options = of_cases(folder, &self.prepare, &self.command);
-                let callbacks = CampaignCallbacks {
+                let callbacks = CaseCallbacks {
                     run: callbacks,
                     on_cases: &|all, done| live().cases(all, done),
                     on_case: &|case, event| {
@@ -121,8 +121,8 @@ impl WorkContext {
 }
 
 /// How the cases of a study in this folder are walked.
-pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CampaignOptions {
-    CampaignOptions {
+pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
+    CaseOptions {
         out: folder.to_owned(),
         part: CasePart::All,
         packings: Some(prepare.packings.clone()),

@@ -1,5 +1,5 @@
-//! Boundaries of the model: the D15F/D85B at which, for a filter of some shape, no erosion turns into some, and
-//! some into continuing.
+//! Boundaries of the model: the D15F/D85B at which, for a filter of some shape, no erosion turns into some,
+//! and some into continuing.
 //!
 //! # Method
 //! One packing a shape and density. Packings are free of scale: a filter s times as large holds a base as it
@@ -34,8 +34,8 @@ use rayon::prelude::*;
 
 pub use options::{BoundaryOptions, Thickness, ThicknessList};
 
-use super::kept::{self, Kept};
 use super::specified::{NO_BASE_MM, no_base};
+use crate::cases::kept::{self, Kept};
 use crate::outcome::boundary::Boundaries;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};

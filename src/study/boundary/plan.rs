@@ -243,8 +243,8 @@ const THICKNESSES: [&str; 4] =
 /// Refuses what a scene may say and a search of boundaries cannot do.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
     if scene.stop != StopRule::default() {
-        let problem = "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates says \
-                       how many networks its bands are taken over";
+        let problem = "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates \
+                       says how many networks its bands are taken over";
         return Err(RunError::refused(problem));
     }
     if scene.record.voids.is_some() {

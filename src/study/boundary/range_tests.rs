@@ -8,7 +8,8 @@ use crate::outcome::boundary::BoundaryRow;
 use crate::outcome::record::Note;
 use crate::run::prepare::PrepareOptions;
 
-/// A guess at the constrictions is known over a range only, whose ends a run walks besides: so does a search of boundaries.
+/// A guess at the constrictions is known over a range only, whose ends a run walks besides: so does a search
+/// of boundaries.
 #[test]
 fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,6 +8,7 @@ use super::row::Row;
 use super::search::{Beside, Done, Ended};
 use super::steadiness;
 use crate::case::Input;
+use crate::cases::days::today;
 use crate::outcome::boundary::{
     BETWEEN_STEPS, BaseStated, Beyond, Boundaries, Boundary, BoundaryRow, NetworkBoundaries, WalkRow, spread,
 };
@@ -17,7 +18,6 @@ use crate::outcome::record::{InputFile, Note, commit};
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
 use crate::run::error::RunError;
-use crate::study::days::today;
 use crate::words::grading;
 
 /// Ratio at which a row is judged where no boundary is known.

@@ -9,12 +9,12 @@ use crate::store::read_whole;
 use crate::text::moment;
 
 /// Today, as `2026-11-25`.
-pub(super) fn today() -> Option<String> {
+pub(crate) fn today() -> Option<String> {
     day(&moment(SystemTime::now()))
 }
 
 /// The last day on which one of these cases was done; `None` where no folder says it.
-pub(super) fn last_day<'a>(cases: impl IntoIterator<Item = &'a Path>) -> Option<String> {
+pub(crate) fn last_day<'a>(cases: impl IntoIterator<Item = &'a Path>) -> Option<String> {
     let finished = |case: &Path| {
         let bytes = read_whole(&case.join("manifest.json")).ok()?;
         day(&from_json::<Manifest>(&bytes).ok()?.finished)

@@ -5,24 +5,26 @@
 //! folder of its own, those that are done are kept, and what was stopped or killed continues. The table
 //! follows from samples, filters and settings alone.
 
-mod plan;
-
-pub use plan::{BatchPlan, BatchWalks};
-
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::days::last_day;
-use super::kept::hash_of;
-use super::of_cases::{StudyOfCases, of_sheet, outcome, with_other_cover};
-use crate::campaign::cases::{CASES, PreparedCase};
-use crate::campaign::{CampaignCallbacks, CampaignOptions, FinishedCampaign};
+use super::kept::{self, hash_of};
+use super::pairs::BatchPlan;
+use super::plan::PlannedCase;
+use super::prepared::{CASES, PreparedCase};
+use super::run::{CaseOptions, FinishedCases, ReadyCases, Walk, look, run_around};
+use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::quantity::SizeUnit;
-use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, shown};
+use crate::outcome::record::{Outcome, SheetCover};
+use crate::run::error::{Exit, RunError};
+use crate::run::folder::{FolderKind, claim, shown};
+use crate::run::unfinished::Unfinished;
+use crate::scene::Scene;
 use crate::store::Folder;
+use crate::store::format::from_json;
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
 use crate::words::batch::walked_columns;
 
@@ -32,25 +34,43 @@ const WALKS: &str = "pairs";
 /// One row a sample and filter.
 const TABLE: &str = "batch.csv";
 
+/// What the folder of a batch is.
+const KIND: FolderKind = FolderKind::Batch;
+
 /// Walks every pair that is not done, in a campaign inside the folder that the options name, and writes
 /// `batch.csv` and, last, `batch.json`. With `overwrite` an earlier batch there is replaced; its walks that
 /// are asked for again are kept.
 ///
 /// # Errors
-/// A folder that cannot be claimed is refused before any work; then as
-/// [`campaign::run()`](crate::campaign::run()), and a pair that cannot be walked to its end leaves no table.
-/// After a stop, the same call continues.
+/// A folder that cannot be claimed is refused before any work; then as [`super::run()`], and a pair that
+/// cannot be walked to its end leaves no table. After a stop, the same call continues.
 pub fn run(
     plan: &BatchPlan,
-    options: &CampaignOptions,
+    options: &CaseOptions,
     overwrite: bool,
-    callbacks: &CampaignCallbacks,
+    callbacks: &CaseCallbacks,
 ) -> Result<WalkedBatch, RunError> {
-    plan.study(&|cases| plan.work(cases)).run(options, overwrite, callbacks, |folder, work, walked| {
-        let batch = plan.walked(folder, work, walked)?;
-        folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
-        Ok(batch)
-    })
+    let stopped = |error: RunError| match error.exit() {
+        Exit::Stopped => RunError::Stopped(format!(
+            "progress saved; continue with the same command on {}",
+            shown(&options.out)
+        )),
+        _ => error,
+    };
+    let folder = claim(&options.out, KIND, overwrite)?;
+    // What is there stays until every case is known to have what it needs.
+    let study = |cases: ReadyCases, walk: Walk| {
+        let work = plan.work(cases?);
+        kept::study((&folder, KIND, overwrite), work.clone(), &callbacks.run, |_, _: Option<()>| {
+            let walked = walk()?;
+            walked.problem().map_or(Ok(()), Err)?;
+            let batch = plan.walked(&folder, &work, &walked)?;
+            folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
+            Ok(batch)
+        })
+    };
+    let of_walks = CaseOptions { out: folder.path().join(WALKS), ..options.clone() };
+    run_around(&plan.campaign, &of_walks, callbacks, study).map_err(stopped)
 }
 
 /// The batch that the folder holds already, where it is this very one; `None` where [`run`] without
@@ -58,9 +78,30 @@ pub fn run(
 ///
 /// # Errors
 /// A folder that holds anything else, another batch too.
-pub fn found(plan: &BatchPlan, options: &CampaignOptions) -> Result<Option<WalkedBatch>, RunError> {
-    let is_this = |there: &WalkedBatch, cases: &[PreparedCase]| there.work == plan.work(cases);
-    plan.study(&|cases| plan.work(cases)).found(options, is_this)
+pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
+    if options.out.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    let of_walks = CaseOptions { out: options.out.join(WALKS), ..options.clone() };
+    let folder = claim(&options.out, KIND, true)?;
+    let other = || {
+        let problem = format!("holds another {}; name another folder, or add --overwrite", KIND.name());
+        Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
+    };
+    if KIND.is_finished(folder.path())? {
+        let bytes = folder.read(KIND.record())?;
+        let there = bytes.and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok());
+        let is_walked = |cases: Option<&[PreparedCase]>| {
+            let cases = cases.filter(|all| all.iter().all(|of| of.line(&of_walks.out).is_some()));
+            there.filter(|there| cases.is_some_and(|cases| there.work == plan.work(cases)))
+        };
+        let there = look(&plan.campaign, &of_walks, is_walked)?;
+        return there.map_or_else(other, |there| Ok(Some(there)));
+    }
+    let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
+    // Where a packing was taken away it is made again, and other work is refused then.
+    let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.work(all) == begun.work);
+    if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
 }
 
 impl BatchPlan {
@@ -90,11 +131,11 @@ impl BatchPlan {
     /// How many of its walks in this folder were kept from an earlier call with another cover, which their
     /// own pages have.
     pub fn with_other_cover(&self, folder: &Path) -> usize {
-        with_other_cover(&self.campaign, &folder.join(WALKS))
-    }
-
-    fn study<'a>(&'a self, work: &'a dyn Fn(&[PreparedCase]) -> String) -> StudyOfCases<'a> {
-        StudyOfCases { kind: FolderKind::Batch, walks: WALKS, campaign: &self.campaign, work }
+        let is_other = |planned: &&PlannedCase| {
+            let scene = folder.join(WALKS).join(CASES).join(planned.folder_name()).join("scene.toml");
+            Scene::read(&scene, &[]).is_ok_and(|there| there.about.cover() != planned.scene.about.cover())
+        };
+        self.campaign.cases.iter().filter(is_other).count()
     }
 
     /// Everything that the table follows from.
@@ -111,12 +152,7 @@ impl BatchPlan {
     }
 
     /// The rows with what was walked of them.
-    fn walked(
-        &self,
-        folder: &Folder,
-        work: &str,
-        walked: &FinishedCampaign,
-    ) -> Result<WalkedBatch, RunError> {
+    fn walked(&self, folder: &Folder, work: &str, walked: &FinishedCases) -> Result<WalkedBatch, RunError> {
         let mut modelled = Vec::new();
         let mut walks = HashMap::new();
         for line in walked.lines.iter().flatten() {
@@ -142,4 +178,14 @@ impl BatchPlan {
         let (inches, model_leaves_out) = (self.shows_inches(), leaves_out_of_all(modelled));
         Ok(WalkedBatch { base, work, seed, notes, cover, inches, model_leaves_out, ..batch })
     }
+}
+
+/// What a sheet says of itself, as a part of what its batch follows from; nothing where nothing is said.
+fn of_sheet(cover: &SheetCover, inches: bool) -> String {
+    if cover.is_unset() && !inches { String::new() } else { format!(" {cover:?} {inches}") }
+}
+
+/// The outcome of a case that is done.
+fn outcome(case: &Path) -> Result<Outcome, RunError> {
+    kept::record(case, FolderKind::Run)
 }

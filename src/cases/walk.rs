@@ -18,7 +18,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
-use super::cases::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
+use super::prepared::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
 use crate::case::Case;
 use crate::outcome::ledger::{LedgerLine, Made};
 use crate::run::at_once::CasesAtOnce;
@@ -74,7 +74,7 @@ pub enum CaseEvent<'a> {
 
 /// How a caller follows a campaign, and stops it.
 #[derive(Clone, Copy)]
-pub struct CampaignCallbacks<'a> {
+pub struct CaseCallbacks<'a> {
     /// How the caller follows packings, stops the campaign and takes finished results; of walks
     /// of single cases `on_case` is told.
     pub run: Callbacks<'a>,
@@ -84,7 +84,7 @@ pub struct CampaignCallbacks<'a> {
     pub on_case: &'a (dyn Fn(&str, CaseEvent) + Sync),
 }
 
-impl Default for CampaignCallbacks<'_> {
+impl Default for CaseCallbacks<'_> {
     fn default() -> Self {
         Self { run: Callbacks::default(), on_cases: &|_, _| {}, on_case: &|_, _| {} }
     }
@@ -97,7 +97,7 @@ pub(super) struct CaseRunner<'a> {
     /// Worker threads, all cases together.
     pub threads: usize,
     /// Who follows the campaign.
-    pub callbacks: &'a CampaignCallbacks<'a>,
+    pub callbacks: &'a CaseCallbacks<'a>,
     /// How often a case that is being walked is saved.
     pub checkpoint_interval: CheckpointInterval,
     /// Networks, where cases with one seed may have them in common.
@@ -338,7 +338,7 @@ impl Tally {
         self.waits.load(Ordering::Relaxed)
     }
 
-    fn fail(&self, callbacks: &CampaignCallbacks, name: &str, problem: String) {
+    fn fail(&self, callbacks: &CaseCallbacks, name: &str, problem: String) {
         (callbacks.on_case)(name, CaseEvent::Failed(&problem));
         if let Ok(mut failed) = self.failed.lock() {
             failed.push(FailedCase { case: name.to_owned(), problem });
@@ -356,7 +356,7 @@ impl Tally {
     }
 
     /// Another process is at the case; said once.
-    fn wait(&self, callbacks: &CampaignCallbacks, name: &str) {
+    fn wait(&self, callbacks: &CaseCallbacks, name: &str) {
         self.waits.fetch_add(1, Ordering::Relaxed);
         if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {
             (callbacks.on_case)(name, CaseEvent::Waiting);

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::locks;
 use super::scripts::{FOLDER, Jobs, TaskNeeds};
 use super::tasks;
-use crate::campaign::cases::{CasePart, Drafts, PreparedCase, named, wanted};
-use crate::campaign::plan::CampaignPlan;
-use crate::campaign::run::CampaignOptions;
 use crate::case::{Case, CaseError, PackedFilter};
+use crate::cases::plan::CasePlan;
+use crate::cases::prepared::{CasePart, Drafts, PreparedCase, named, wanted};
+use crate::cases::run::CaseOptions;
 use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::Callbacks;
 use crate::run::cost;
@@ -59,8 +59,8 @@ pub struct WrittenJobs {
 /// # Errors
 /// A plan or case that is wrong, a folder that cannot be claimed or written, a path that no script can hold.
 pub fn write_job_scripts(
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
+    plan: &CasePlan,
+    options: &CaseOptions,
     jobs: &JobOptions,
     callbacks: &Callbacks,
 ) -> Result<WrittenJobs, RunError> {
@@ -123,7 +123,7 @@ pub fn write_job_scripts(
 }
 
 /// The packings to be made first, all of the plan where one is missing, and what the largest takes.
-fn packings(drafts: &Drafts, options: &CampaignOptions) -> Result<(usize, TaskNeeds), RunError> {
+fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds), RunError> {
     let all = drafts.packings();
     let (mut missing, mut needs) = (false, TaskNeeds { seconds: 0.0, bytes: 0 });
     for packing in &all {
@@ -136,7 +136,7 @@ fn packings(drafts: &Drafts, options: &CampaignOptions) -> Result<(usize, TaskNe
 /// The cases that are not done, with guesses at filters that are still to be packed.
 fn open_cases<'a>(
     drafts: &Drafts<'a>,
-    options: &CampaignOptions,
+    options: &CaseOptions,
     out: &Path,
 ) -> Result<Vec<PreparedCase<'a>>, RunError> {
     let (mut cases, failed) = drafts.finish(
@@ -157,7 +157,7 @@ fn open_cases<'a>(
 }
 
 /// Further words of the program's command line: where it walks, and where it collects.
-fn command_words(options: &CampaignOptions) -> (Vec<String>, Vec<String>) {
+fn command_words(options: &CaseOptions) -> (Vec<String>, Vec<String>) {
     let mut words = Vec::new();
     if let Some(packings) = &options.packings {
         let absolute = std::path::absolute(packings).unwrap_or_else(|_| packings.clone());

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::cases::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
 use super::changed;
 use super::ledger;
-use super::plan::{CampaignPlan, PlannedCase};
-use super::run_cases::{CampaignCallbacks, CaseRunner, LOST};
+use super::plan::{CasePlan, PlannedCase};
+use super::prepared::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
+use super::walk::{CaseCallbacks, CaseRunner, LOST};
 use crate::case::{PackedFilter, PackingPlan, ResourceLimits};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::allocation::Allocation;
@@ -25,7 +25,7 @@ use crate::run::shared_networks::SharedNetworks;
 
 /// How a campaign is walked; no setting changes a result.
 #[derive(Clone, Debug)]
-pub struct CampaignOptions {
+pub struct CaseOptions {
     /// Folder for the results, which several processes may share.
     pub out: PathBuf,
     /// Which cases this process sees to.
@@ -42,7 +42,7 @@ pub struct CampaignOptions {
     pub command: String,
 }
 
-impl Default for CampaignOptions {
+impl Default for CaseOptions {
     fn default() -> Self {
         Self {
             out: "voidwalk-campaign".into(),
@@ -56,7 +56,7 @@ impl Default for CampaignOptions {
     }
 }
 
-impl CampaignOptions {
+impl CaseOptions {
     /// Folder of the packings; the campaign's own is no link to one elsewhere, which then would be written
     /// to.
     pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
@@ -93,7 +93,7 @@ pub(super) fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (Resour
 }
 
 /// A campaign of which this process has done what it can.
-pub struct FinishedCampaign {
+pub struct FinishedCases {
     /// Finished cases in the order of the plan; none where only a part of it was seen to.
     pub lines: Option<Vec<LedgerLine>>,
     /// Cases that could not be walked.
@@ -102,7 +102,7 @@ pub struct FinishedCampaign {
     pub cases: usize,
 }
 
-impl FinishedCampaign {
+impl FinishedCases {
     /// What a user must know if cases could not be walked.
     pub fn problem(&self) -> Option<RunError> {
         let (failed, of) = (self.failed.len(), self.cases);
@@ -120,7 +120,7 @@ impl FinishedCampaign {
 ///
 /// # Errors
 /// There is no such part of the plan; a case that is wrong.
-pub fn names(plan: &CampaignPlan, part: &CasePart) -> Result<Vec<String>, RunError> {
+pub fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
     let names = wanted.iter().map(|case| case.name.clone()).collect();
     Drafts::new(wanted).map(|_| names)
@@ -131,13 +131,13 @@ pub fn names(plan: &CampaignPlan, part: &CasePart) -> Result<Vec<String>, RunErr
 ///
 /// # Errors
 /// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then what
-/// concerns all cases. What concerns one is in [`FinishedCampaign::failed`]. After a stop, the same call
+/// concerns all cases. What concerns one is in [`FinishedCases::failed`]. After a stop, the same call
 /// continues.
 pub fn run(
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
-    callbacks: &CampaignCallbacks,
-) -> Result<FinishedCampaign, RunError> {
+    plan: &CasePlan,
+    options: &CaseOptions,
+    callbacks: &CaseCallbacks,
+) -> Result<FinishedCases, RunError> {
     run_around(plan, options, callbacks, |_, walk| walk())
 }
 
@@ -146,7 +146,7 @@ pub fn run(
 ///
 /// # Errors
 /// The cases that are wrong, or that do not fit the memory.
-pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunError> {
+pub fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
     let failed = unsound(plan, options)?;
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
@@ -155,7 +155,7 @@ pub fn check(plan: &CampaignPlan, options: &CampaignOptions) -> Result<(), RunEr
 ///
 /// # Errors
 /// Cases that are sound and do not fit the memory.
-pub fn unsound(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Vec<FailedCase>, RunError> {
+pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
     let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
@@ -190,8 +190,8 @@ pub fn unsound(plan: &CampaignPlan, options: &CampaignOptions) -> Result<Vec<Fai
 /// # Errors
 /// A case that is wrong.
 pub(crate) fn look<R>(
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
+    plan: &CasePlan,
+    options: &CaseOptions,
     at: impl FnOnce(Option<&[PreparedCase]>) -> R,
 ) -> Result<R, RunError> {
     let drafts = Drafts::new(wanted(plan, &options.part)?)?;
@@ -205,13 +205,13 @@ pub(crate) fn look<R>(
 pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
 
 /// Walks the cases that are ready.
-pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCampaign, RunError> + 'a>;
+pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCases, RunError> + 'a>;
 
 /// As [`run()`], but for what is done around the walk of the cases when all are ready.
 pub(crate) fn run_around<R>(
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
-    callbacks: &CampaignCallbacks,
+    plan: &CasePlan,
+    options: &CaseOptions,
+    callbacks: &CaseCallbacks,
     around: impl FnOnce(ReadyCases, Walk) -> Result<R, RunError>,
 ) -> Result<R, RunError> {
     let wanted = wanted(plan, &options.part)?;
@@ -258,7 +258,7 @@ pub(crate) fn run_around<R>(
         let result = runner.run(&cases);
         if options.part != CasePart::All {
             failed.extend(result?);
-            return Ok(FinishedCampaign { lines: None, failed, cases: count });
+            return Ok(FinishedCases { lines: None, failed, cases: count });
         }
         // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
         let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
@@ -285,14 +285,14 @@ pub(crate) fn run_around<R>(
         let lost: Vec<FailedCase> = lost.collect();
         failed.extend(lost);
         let lines = Some(lines);
-        Ok(FinishedCampaign { lines, failed, cases: count })
+        Ok(FinishedCases { lines, failed, cases: count })
     });
     around(ready, walk)
 }
 
 /// Collects finished cases into the campaign's folder.
 fn write_ledger(
-    plan: &CampaignPlan,
+    plan: &CasePlan,
     cases: &[PreparedCase],
     out: &Path,
     callbacks: &Callbacks,
@@ -318,8 +318,8 @@ fn write_ledger(
 /// # Errors
 /// A folder without cases; cases that are missing, each with what is known of it. Nothing is written then.
 pub fn collect(
-    plan: &CampaignPlan,
-    options: &CampaignOptions,
+    plan: &CasePlan,
+    options: &CaseOptions,
     callbacks: &Callbacks,
 ) -> Result<Vec<LedgerLine>, RunError> {
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
@@ -358,9 +358,9 @@ pub fn collect(
 /// # Errors
 /// There is no such packing; then as `provide`.
 pub fn make_packing(
-    plan: &CampaignPlan,
+    plan: &CasePlan,
     number: u64,
-    options: &CampaignOptions,
+    options: &CaseOptions,
     callbacks: &Callbacks,
 ) -> Result<(), RunError> {
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;

@@ -21,7 +21,7 @@ use crate::store::format::from_json;
 use crate::store::{Folder, read_whole};
 
 /// What stands for all that a study follows from.
-pub(super) fn hash_of(work: &str) -> String {
+pub(crate) fn hash_of(work: &str) -> String {
     format!("{:032x}", xxh3_128(work.as_bytes()))
 }
 
@@ -31,7 +31,7 @@ pub(super) fn hash_of(work: &str) -> String {
 ///
 /// # Errors
 /// What is there is of another study; what the study and the folder say.
-pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
+pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     (folder, kind, overwrite): (&Folder, FolderKind, bool),
     work: String,
     callbacks: &Callbacks,
@@ -82,7 +82,7 @@ pub(super) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
 ///
 /// # Errors
 /// It cannot be read.
-pub(super) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
+pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
     let path = folder.join(kind.record());
     let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
     let bytes = read_whole(&path).map_err(|error| failed(&error))?;
@@ -90,7 +90,7 @@ pub(super) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Re
 }
 
 /// Keeps what is found in a folder.
-pub(super) struct Kept<'a> {
+pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
     identity: Identity,

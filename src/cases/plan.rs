@@ -122,7 +122,7 @@ pub struct PlannedCase {
 
 /// A plan, its cases worked out.
 #[derive(Clone, Debug)]
-pub struct CampaignPlan {
+pub struct CasePlan {
     /// What errors call it.
     pub file: String,
     /// What it is about, in a line.
@@ -136,7 +136,7 @@ pub struct CampaignPlan {
 /// A level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
-impl CampaignPlan {
+impl CasePlan {
     /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
     pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
 
@@ -164,11 +164,11 @@ impl CampaignPlan {
         Self::parse(&bytes, path)
     }
 
-    /// [`CampaignPlan::read`] on the content of a file; the files that its scenes name are looked for beside
+    /// [`CasePlan::read`] on the content of a file; the files that its scenes name are looked for beside
     /// `path`.
     ///
     /// # Errors
-    /// As [`CampaignPlan::read`].
+    /// As [`CasePlan::read`].
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
@@ -383,11 +383,11 @@ fn check_left_out(
 mod tests {
     use super::*;
 
-    fn plan(text: &str) -> Result<CampaignPlan, SceneError> {
+    fn plan(text: &str) -> Result<CasePlan, SceneError> {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("plan.toml");
         std::fs::write(&path, text).unwrap();
-        CampaignPlan::read(&path)
+        CasePlan::read(&path)
     }
 
     const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\
@@ -407,7 +407,7 @@ mod tests {
     /// As it is printed, and with every key that stands behind a "#".
     #[test]
     fn the_plan_to_start_from_is_one_and_names_every_key() {
-        let text = CampaignPlan::INIT_TEXT;
+        let text = CasePlan::INIT_TEXT;
         assert_eq!(plan(text).unwrap().cases.len(), 4);
         let uncommented = |line: &str| match line.strip_prefix("# ") {
             Some(rest) if rest.starts_with("[[") || rest.contains(" = ") && !rest.starts_with("scene") => {

@@ -6,7 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::cluster::tasks;
-use super::plan::{CampaignPlan, PlannedCase};
+use super::plan::{CasePlan, PlannedCase};
 use crate::case::{Case, PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::checkpoints::Checkpoints;
@@ -79,7 +79,7 @@ pub(super) fn named(failed: &[FailedCase]) -> String {
 ///
 /// # Errors
 /// There is no such case, or no such task.
-pub fn wanted<'a>(plan: &'a CampaignPlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
+pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
     match part {
         CasePart::All => Ok(plan.cases.iter().collect()),
         CasePart::Named(name) => match plan.case(name) {

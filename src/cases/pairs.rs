@@ -3,9 +3,9 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use super::super::file_names::{as_folders, names, refuse_twice};
-use crate::campaign::plan::PlannedCase;
-use crate::campaign::{self, CampaignOptions, CampaignPlan};
+use super::file_names::{as_folders, names, refuse_twice};
+use super::plan::{CasePlan, PlannedCase};
+use super::run::{CaseOptions, unsound};
 use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
@@ -52,7 +52,7 @@ pub struct BatchPlan {
     /// What was assumed of the files.
     pub(super) notes: Vec<String>,
     /// The cases that are walked.
-    pub(super) campaign: CampaignPlan,
+    pub(super) campaign: CasePlan,
 }
 
 impl BatchPlan {
@@ -68,7 +68,7 @@ impl BatchPlan {
         tables: &TableOptions,
         rules: PairOptions,
         walks: BatchWalks,
-        options: &CampaignOptions,
+        options: &CaseOptions,
     ) -> Result<Self, RunError> {
         refuse_twice(filters)?;
         let table = BatchTable::read(samples, filters, rules).map_err(RunError::refused)?;
@@ -85,7 +85,7 @@ impl BatchPlan {
             cases,
             in_full: HashSet::new(),
             notes: of_notes.collect(),
-            campaign: CampaignPlan {
+            campaign: CasePlan {
                 file: "batch".into(),
                 title: format!("samples of {}", shown(samples)),
                 factors: vec!["sample".into(), "filter".into()],
@@ -144,9 +144,9 @@ impl BatchPlan {
     }
 
     /// Leaves out of the walks what is wrong in itself.
-    fn leave_out_unsound(&mut self, options: &CampaignOptions) -> Result<(), RunError> {
+    fn leave_out_unsound(&mut self, options: &CaseOptions) -> Result<(), RunError> {
         if !self.campaign.cases.is_empty() {
-            for failed in campaign::unsound(&self.campaign, options)? {
+            for failed in unsound(&self.campaign, options)? {
                 self.campaign.cases.retain(|case| case.name != failed.case);
                 let at = self.cases.iter().position(|case| *case == failed.case);
                 at.into_iter().for_each(|at| self.rows[at].not_walked = failed.problem.clone());

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::cases::{FailedCase, named, wanted};
-use super::plan::{CampaignPlan, PlannedCase};
-use super::run::{CampaignOptions, have_common_seeds, rooms};
+use super::plan::{CasePlan, PlannedCase};
+use super::prepared::{FailedCase, named, wanted};
+use super::run::{CaseOptions, have_common_seeds, rooms};
 use crate::case::{Case, PackingPlan};
 use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::Callbacks;
@@ -81,7 +81,7 @@ impl PlanCheck {
 ///
 /// # Errors
 /// There is no such part of the plan, or no such folder of packings.
-pub fn check_plan(plan: &CampaignPlan, options: &CampaignOptions) -> Result<PlanCheck, RunError> {
+pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
     let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
@@ -158,9 +158,9 @@ mod tests {
         let text = "[set]\nreplicates = 3\nrecord.sensitivity = []\n\
             [[factor]]\nname = \"layers\"\nsetting = \"network.nz\"\nvalues = [20, 40]\n\
             [[case]]\nname = \"gone\"\nset = { \"base.sieve\" = \"nowhere.csv\" }\n";
-        let plan = CampaignPlan::parse(text.as_bytes(), Path::new("plan.toml")).unwrap();
+        let plan = CasePlan::parse(text.as_bytes(), Path::new("plan.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let options = CampaignOptions { out: folder.path().join("c"), ..CampaignOptions::default() };
+        let options = CaseOptions { out: folder.path().join("c"), ..CaseOptions::default() };
         let check = check_plan(&plan, &options).unwrap();
         let [thin, thick, gone] = &check.cases[..] else { panic!("{check:?}") };
         assert!(thick.n_base > thin.n_base && thick.bytes > thin.bytes && thin.core_seconds > 0.0);

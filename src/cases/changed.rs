@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::cases::{CASES, LINE, PreparedCase};
-use super::plan::CampaignPlan;
+use super::plan::CasePlan;
+use super::prepared::{CASES, LINE, PreparedCase};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::folder::shown;
 use crate::store::format::from_json;
@@ -15,7 +15,7 @@ const NAMED: usize = 3;
 
 /// What happens to finished cases that are not of this plan as it is now, in sentences. What cannot be read
 /// is passed over: it is found out where it matters.
-pub(super) fn sentences(plan: &CampaignPlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
+pub(super) fn sentences(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
     let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
     let again: Vec<&str> = cases
         .iter()

@@ -7,7 +7,7 @@ use crate::outcome::record::InputFile;
 use crate::run::error::RunError;
 
 /// The files that these paths name, each once, whatever soil of it is meant.
-pub(super) fn files_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<PathBuf> {
+pub(crate) fn files_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = Vec::new();
     for path in paths {
         let (file, _) = file_and_soil(path);
@@ -22,7 +22,7 @@ pub(super) fn files_of<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Vec<Pat
 ///
 /// # Errors
 /// A file that cannot be read.
-pub(super) fn input_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<Vec<InputFile>, RunError> {
+pub(crate) fn input_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<Vec<InputFile>, RunError> {
     let of = |file: PathBuf| {
         let bytes = bytes_of(&file).map_err(RunError::refused)?;
         Ok(InputFile::of(file.display().to_string(), &bytes))

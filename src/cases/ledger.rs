@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::cases::PreparedCase;
-use super::plan::{CampaignPlan, PlannedCase};
+use super::plan::{CasePlan, PlannedCase};
+use super::prepared::PreparedCase;
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::run::error::RunError;
 use crate::run::results::json;
@@ -14,7 +14,7 @@ use crate::store::{read_whole, write_whole};
 use crate::words::ledger::columns;
 
 /// Cases of the ledger in a campaign's folder that this plan does not have: they are about to leave it.
-pub(super) fn of_other_plans(plan: &CampaignPlan, out: &Path) -> Vec<String> {
+pub(super) fn of_other_plans(plan: &CasePlan, out: &Path) -> Vec<String> {
     let text = read_whole(&out.join("ledger.jsonl")).unwrap_or_default();
     let lines = serde_json::Deserializer::from_slice(&text).into_iter::<LedgerLine>();
     let names = lines.map_while(Result::ok).map(|line| line.case);
@@ -27,7 +27,7 @@ pub(super) fn of_other_plans(plan: &CampaignPlan, out: &Path) -> Vec<String> {
 /// # Errors
 /// A finished case that cannot be read, for a ledger without it would be wrong; what the system says.
 pub(super) fn collect(
-    plan: &CampaignPlan,
+    plan: &CasePlan,
     cases: &[PreparedCase],
     out: &Path,
 ) -> Result<Vec<LedgerLine>, RunError> {

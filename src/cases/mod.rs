@@ -1,0 +1,34 @@
+//! Many cases: rows of base, filter and settings, walked by as many processes as are started on one folder,
+//! kept in a ledger, and shown in one table.
+//!
+//! - [`plan`] is a list of cases, each with a name and a seed: from a file that crosses factors. `pairs`
+//!   makes one of samples and filters. `prepared` are its cases, worked out.
+//! - [`run()`] walks those that are not done, by `walk`; [`collect`] writes what came of them, the `ledger`.
+//! - [`batch`] makes one table of the pairs, by practice and walk.
+//! - `cluster` hands a plan to a cluster's scheduler, by what `crate::run::cost` says that its cases
+//!   take; [`check_plan`] says the same of this machine.
+//! - `kept` is what a study that is stopped has found.
+
+pub mod batch;
+mod changed;
+mod check;
+pub(crate) mod cluster;
+pub(crate) mod days;
+mod file_names;
+pub(crate) mod inputs;
+pub(crate) mod kept;
+pub(crate) mod ledger;
+mod pairs;
+pub mod plan;
+pub(crate) mod prepared;
+pub(crate) mod run;
+pub(crate) mod walk;
+
+pub use check::{CaseCheck, PlanCheck, check_plan};
+pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
+pub(crate) use file_names::{numbered, refuse_twice};
+pub use pairs::{BatchPlan, BatchWalks};
+pub use plan::CasePlan;
+pub use prepared::{CasePart, FailedCase};
+pub use run::{CaseOptions, FinishedCases, check, collect, make_packing, names, run, unsound};
+pub use walk::{CaseCallbacks, CaseEvent};
