@@ -26,9 +26,9 @@ pub fn eroded(
     clogged: Clogged,
     callbacks: &Callbacks,
 ) -> Result<(Eroded, Clogged), RunError> {
-    let plan = plan(case, network, &clogged.blocked, case.n_base);
-    let supply = plan.supply(case.sampler.clone(), case.n_base, case.increments(), seed, run);
-    let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
+    let plan = plan(case, network, &clogged.blocked, case.supply.n_base);
+    let supply = plan.supply(case.supply.sampler.clone(), case.supply.n_base, case.increments(), seed, run);
+    let (smallest, largest) = (case.supply.sampler.smallest(), case.supply.sampler.largest());
     let classes = SizeClasses::logarithmic(smallest, largest, SIZE_CLASSES);
     let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
     let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;

@@ -147,14 +147,14 @@ mod tests {
     /// What is found of a scene, and of its soils on its network without it: all but the list above.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
         let filter = GivenFilter {
-            gradation: case.filter.clone(),
+            gradation: case.filter.gradation.clone(),
             is_measured: case.filter_is_measured(),
-            grains_per_void: case.grains_per_void,
+            grains_per_void: case.filter.grains_per_void,
         };
         let plan = NetworkWalk {
             increments: case.increments(),
             filter: Some(filter),
-            ..NetworkWalk::new(case.base.clone(), case.n_base)
+            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
         };
         let shared = |notes: Vec<Note>, own: &[&str]| {
             let shared = notes.into_iter().filter(|note| !own.contains(&&*note.id()));
@@ -231,7 +231,7 @@ mod tests {
                     "record.sensitivity=[]".into(),
                 ];
                 let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
-                let network = case.fixed_network.as_ref().unwrap();
+                let network = &case.network.fixed.as_ref().unwrap().network;
                 let [of_scene, of_network] = of_both(&case, network);
                 assert_eq!(of_scene, of_network, "{base:?}");
                 seen.extend(of_scene.into_iter().map(|(id, _)| id));

@@ -340,11 +340,11 @@ mod tests {
                 replicates: 3,
                 engine: Engine::ALL.into_iter().find(|e| e.name() == engine).unwrap(),
                 filter: Some(GivenFilter {
-                    gradation: case.filter.clone(),
+                    gradation: case.filter.gradation.clone(),
                     is_measured: false,
                     grains_per_void: None,
                 }),
-                ..NetworkWalk::new(case.base.clone(), 30_000)
+                ..NetworkWalk::new(case.base.gradation.clone(), 30_000)
             };
             let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
             assert_eq!((found.verdict, &found.summary), (expected.model.class, &expected.summary));

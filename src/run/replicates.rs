@@ -79,7 +79,7 @@ pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<Replica
 
 /// Says that the verdict needs so many replicates, as far as is known.
 fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
-    let readings = !case.curve_ends.is_empty();
+    let readings = !case.filter.curve_ends.is_empty();
     context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
 }
 
@@ -91,7 +91,7 @@ fn all_replicates(
     let (mut wanted, mut walked) = (first_replicates(case), Vec::new());
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, part, more, case.n_base, context)?);
+        walked.extend(some_replicates(case, part, more, case.supply.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
                 context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
@@ -179,7 +179,7 @@ pub(super) fn walk_replicate(
         let of = RunId {
             replicate,
             run: done.runs.len() as u64 + 1,
-            d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
+            d15f_mm: case.filter.gradation.d(15.0).unwrap_or(f64::NAN),
             pan_fraction: case.pan_by_mass_only(),
         };
         let begun = Instant::now();
@@ -233,7 +233,7 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
     let clogging = (case.arching(n_base), case.scene.leaves_openings());
-    RunPlan::with_clogging(engine, network, &case.sampler, blocked, share, clogging)
+    RunPlan::with_clogging(engine, network, &case.supply.sampler, blocked, share, clogging)
         .sampled(case.scene.walk.sampling)
 }
 
@@ -244,7 +244,7 @@ pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
-    Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
+    Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
 }
 
 /// Finds out whether every replicate that is known to be walked has a network: one with a distribution of
@@ -262,7 +262,7 @@ pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError>
         network.map(drop).map_err(|error| RunError::Refused(format!("replicate {replicate}: {error}")))
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
-    let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
+    let fit = case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1;
     each(replicates.collect(), fit, one).map(drop)
 }
 
@@ -296,8 +296,8 @@ impl RunContext<'_> {
             _ => clogged,
         };
         let plan = plan(case, network, &clogged.blocked, n_base);
-        let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
-        let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
+        let supply = plan.supply(case.supply.sampler.clone(), n_base, case.increments(), seed, of.run);
+        let (smallest, largest) = (case.supply.sampler.smallest(), case.supply.sampler.largest());
         let classes = SizeClasses::logarithmic(smallest, largest, case.scene.record.wanted().size_classes);
         let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
@@ -391,7 +391,7 @@ mod tests {
     /// The figures and rows of a replicate, times apart.
     fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
         let context = ReplicateContext { callbacks: &Callbacks::default(), checkpoints: None, networks };
-        let mut walked = walk_replicate(case, 0, 1, case.n_base, &context).unwrap();
+        let mut walked = walk_replicate(case, 0, 1, case.supply.n_base, &context).unwrap();
         walked.replicate.runs.iter_mut().for_each(|run| run.seconds = 0.0);
         assert_eq!(walked.replicate.runs.len(), 2);
         format!("{:?} {:?}", walked.replicate, walked.recorded)

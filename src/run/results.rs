@@ -65,10 +65,10 @@ pub fn outcome(
         if_dispersive: None,
         constrictions: ConstrictionsRecord { origin: case.curve_origin() },
         seed: case.scene.walk.seed,
-        n_base: case.n_base,
-        n_base_eq2: case.n_base_eq2,
-        capped: case.capped,
-        grains_per_void: case.grains_per_void,
+        n_base: case.supply.n_base,
+        n_base_eq2: case.supply.n_base_eq2,
+        capped: case.supply.capped,
+        grains_per_void: case.filter.grains_per_void,
         engine: walked.first().map_or(case.scene.walk.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
@@ -83,7 +83,7 @@ pub fn outcome(
         infiltration: case
             .scene
             .is_lattice_by_area()
-            .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
+            .then(|| infiltration(&case.filter.curve, &case.base.gradation, case.network.layers)),
         curve_range: other.range.clone(),
         arching: case.arching_record(),
         sensitivity: studies.sensitivity,
@@ -119,7 +119,7 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
 
 /// What these walks say themselves against the verdict.
 fn notes_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Note> {
-    let of_network = (case.counts[3], case.scene.leaves_openings());
+    let of_network = (case.network.layers, case.scene.leaves_openings());
     said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network)
 }
 
@@ -162,11 +162,11 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
     RuleInputs {
-        filter: &case.filter,
+        filter: &case.filter.gradation,
         filter_is_measured: case.filter_is_measured(),
-        base: case.base_as_given(),
-        walked_base: &case.base,
-        base_soil: BaseSoil::of(case.base_as_given(), case.is_scale_free()),
+        base: case.base.as_given(),
+        walked_base: &case.base.gradation,
+        base_soil: BaseSoil::of(case.base.as_given(), case.is_scale_free()),
         scale_free: case.is_scale_free(),
         filter_curves: Vec::new(),
         dispersive: case.scene.base.dispersive == Some(true),
