@@ -1,6 +1,7 @@
 //! One density and thickness, ready to be walked at any ratio.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::options::Thickness;
 use super::plan::Wanted;
@@ -219,7 +220,7 @@ pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
     /// The network that was walked last, and its exits.
-    network: Option<(Network, PlainExits)>,
+    network: Option<(Arc<Network>, PlainExits)>,
     /// What the first run left of the constrictions, by step.
     clogged: BTreeMap<i64, Clogged>,
     callbacks: &'a Callbacks<'a>,
@@ -245,7 +246,7 @@ impl OneNetwork<'_> {
         let (network, open) = match self.network.take().filter(|(kept, _)| case.has_layers_of(kept)) {
             Some(kept) => kept,
             None => {
-                let network = case.network(self.seed)?;
+                let network = Arc::new(case.network(self.seed)?);
                 let open = PlainExits::unblocked(&network);
                 (network, open)
             }
