@@ -194,61 +194,69 @@ impl Case {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
         // Where the scene itself has none, no study is to blame.
-        let thickest =
-            self.thickest().filter(|_| has_room).map(|mut case| match case.place(room, threads, folder) {
-                Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
-                    if case.supply.n_base != self.supply.n_base
-                        || case.network.voids != self.network.voids =>
-                {
-                    let study =
-                        " (record.thickness: the thickest filter of the study; leave that out)".into();
-                    Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
-                }
-                placed => placed.map(|()| case.placement),
-            });
-        let thickest = thickest.transpose()?;
+        let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
         let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
         let kept = self.kept_bytes();
         let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
         let needed = walks.saturating_add(kept);
         let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
         if needed <= room.memory {
-            self.placement = Placement::Memory;
             // Where the thickest filter of its study needs files, it and its like get them.
-            if let Some(placement) = thickest {
-                self.placement = placement;
-            }
+            self.placement = thickest.unwrap_or(Placement::Memory);
+            Ok(())
         } else if without_columns <= room.memory && self.column_bytes(n_base) <= room.disk {
             self.placement = Placement::Mapped(folder.to_owned());
+            Ok(())
         } else {
-            let disk = match without_columns <= room.memory {
-                true => format!(" and the disk has {} for the particles", in_words(room.disk)),
-                false => String::new(),
-            };
-            let of_voids = match kept {
-                0 => String::new(),
-                kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
-            };
-            let study = match n_base == self.supply.n_base {
-                true => String::new(),
-                false => {
-                    let factor = n_base as f64 / self.supply.n_base as f64;
-                    format!(
-                        " (record.sensitivity: {factor} times the {} of the scene; leave that out)",
-                        self.supply.n_base
-                    )
-                }
-            };
-            return Err(CaseError::Memory {
-                n_base: self.one_by_one(n_base),
-                study,
-                voids: self.network.voids,
-                needed: in_words(needed),
-                available: in_words(room.memory),
-                disk: [disk, of_voids].concat(),
-            });
+            Err(self.no_room(room, n_base, needed, without_columns))
         }
-        Ok(())
+    }
+
+    /// Where the columns of the thickest filter of its study go, where there is one.
+    fn place_thickest(
+        &self,
+        room: &ResourceLimits,
+        threads: u64,
+        folder: &Path,
+    ) -> Result<Option<Placement>, CaseError> {
+        let Some(mut case) = self.thickest() else { return Ok(None) };
+        match case.place(room, threads, folder) {
+            Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
+                if case.supply.n_base != self.supply.n_base || case.network.voids != self.network.voids =>
+            {
+                let study = " (record.thickness: the thickest filter of the study; leave that out)".into();
+                Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
+            }
+            placed => placed.map(|()| Some(case.placement)),
+        }
+    }
+
+    /// That `n_base` particles need more than there is, and what asks for them.
+    fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
+        let disk = match without_columns <= room.memory {
+            true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+            false => String::new(),
+        };
+        let of_voids = match self.kept_bytes() {
+            0 => String::new(),
+            kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
+        };
+        let stated = self.supply.n_base;
+        let study = match n_base == stated {
+            true => String::new(),
+            false => {
+                let factor = n_base as f64 / stated as f64;
+                format!(" (record.sensitivity: {factor} times the {stated} of the scene; leave that out)")
+            }
+        };
+        CaseError::Memory {
+            n_base: self.one_by_one(n_base),
+            study,
+            voids: self.network.voids,
+            needed: in_words(needed),
+            available: in_words(room.memory),
+            disk: [disk, of_voids].concat(),
+        }
     }
 
     /// Where the particles of a walk on this many threads live, for a reader.
