@@ -85,7 +85,7 @@ impl CaseFilter {
     ///
     /// # Errors
     /// Sizes out of range.
-    pub(super) fn enlarged(&self, factor: f64) -> Result<Self, CaseError> {
+    pub(super) fn enlarged(self, factor: f64) -> Result<Self, CaseError> {
         let gradation = self.gradation.scaled(factor)?;
         Ok(Self {
             unit_mm: gradation.smallest_mm(),
@@ -93,7 +93,7 @@ impl CaseFilter {
             curve: self.curve.scaled(factor)?,
             curve_ends: Vec::new(),
             finest_mm: factor * self.finest_mm,
-            ..self.clone()
+            ..self
         })
     }
 }

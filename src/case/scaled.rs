@@ -7,7 +7,7 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseBase, CaseError, CaseFilter, CaseNetwork};
+use super::{Case, CaseBase, CaseError, CaseNetwork};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::Network;
@@ -27,9 +27,11 @@ pub struct StatedBase {
 impl Case {
     /// The same case with another constriction curve, and that alone: the same base, as much of it.
     pub fn with_curve(&self, curve: Curve) -> Self {
-        let finest_mm = self.filter.finest_mm.min(curve.smallest());
-        let filter = CaseFilter { curve, finest_mm, curve_ends: Vec::new(), ..self.filter.clone() };
-        Self { filter, ..self.clone() }
+        let mut case = self.clone();
+        case.filter.finest_mm = self.filter.finest_mm.min(curve.smallest());
+        case.filter.curve = curve;
+        case.filter.curve_ends.clear();
+        case
     }
 
     /// The base that another scene states, read beside this case's filter.
@@ -71,8 +73,8 @@ impl Case {
     /// # Errors
     /// Sizes out of range.
     pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
-        let mut case =
-            Self { filter: self.filter.enlarged(factor)?, base: base.base.clone(), ..self.clone() };
+        let mut case = self.clone();
+        (case.filter, case.base) = (case.filter.enlarged(factor)?, base.base.clone());
         if case.scene.filter.sieve.is_none() {
             // Its sizes are no longer multiples of D0F.
             case.scene.filter.d0_mm = Some(case.filter.unit_mm);
