@@ -28,25 +28,26 @@ impl Case {
         if let Some(Concentration::Stated(stated)) = self.scene.exits.concentration {
             return Some(stated);
         }
-        let times = n_base as f64 / self.n_base as f64;
-        let of_base = self.mass_ratio? * times / self.increments() as f64;
-        Some((of_base * self.counts[3] as f64 / self.void_ratio()?).min(DENSEST))
+        let times = n_base as f64 / self.supply.n_base as f64;
+        let of_base = self.supply.mass_ratio? * times / self.increments() as f64;
+        Some((of_base * self.network.layers as f64 / self.void_ratio()?).min(DENSEST))
     }
 
     /// How the concentration of each void of the lattice follows from the particles in it. The voids have
     /// equal volumes: that of the grains of one void by the void ratio. The base plays no part.
     fn by_void(&self) -> Option<ByVoid> {
-        let of_grain = self.filter.mean_cube_between(0.0, f64::INFINITY)? / self.unit_mm.powi(3);
-        let void_cube = self.grains_per_void? * of_grain * self.void_ratio()?;
+        let filter = &self.filter;
+        let of_grain = filter.gradation.mean_cube_between(0.0, f64::INFINITY)? / filter.unit_mm.powi(3);
+        let void_cube = filter.grains_per_void? * of_grain * self.void_ratio()?;
         Some(ByVoid { void_cube, size: self.scene.exits.arch_size.unwrap_or_default() })
     }
 
     /// Volume of the voids of the filter by that of its grains, where it is known.
     pub(super) fn void_ratio(&self) -> Option<f64> {
-        match (&self.packed, &self.library) {
+        match (&self.filter.packed, &self.filter.library) {
             (Some(packed), _) => packed.void_ratio,
             (None, Some(library)) => library.part.is_none().then_some(library.found.void_ratio),
-            (None, None) => self.shipped.filter(|_| self.fixed_network.is_none()).map(|of| of.void_ratio),
+            (None, None) => self.shipped_curve().map(|shipped| shipped.void_ratio),
         }
     }
 
@@ -54,7 +55,8 @@ impl Case {
     pub fn arching_record(&self) -> Option<ArchingRecord> {
         let law = self.scene.law()?;
         let by_void = self.by_void().filter(|_| self.scene.concentration_is_by_void());
-        let stated = self.concentration(self.n_base).filter(|_| law.of_concentration && by_void.is_none());
+        let stated =
+            self.concentration(self.supply.n_base).filter(|_| law.of_concentration && by_void.is_none());
         Some(ArchingRecord {
             law: law.name.into(),
             source: law.source.into(),
@@ -62,7 +64,7 @@ impl Case {
             range_of_ratio: [1.0, law.widest],
             concentration: stated,
             by_void: by_void.map(|of| ArchingByVoidRecord {
-                void_mm: cbrt(of.void_cube) * self.unit_mm,
+                void_mm: cbrt(of.void_cube) * self.filter.unit_mm,
                 size: of.size.name().into(),
             }),
         })
@@ -90,13 +92,13 @@ impl Case {
     /// The setting that is missing.
     pub(super) fn check_clogging(&self) -> Result<(), CaseError> {
         let scene = &self.scene;
-        if scene.leaves_openings() && self.base_as_given().pan_fraction() > 0.0 {
+        if scene.leaves_openings() && self.base.as_given().pan_fraction() > 0.0 {
             let problem = "walk.blocked = \"open\" needs the sizes of the whole base, as openings may stop a \
                            particle of any size: add base.d0_mm, or finer sieves down to 0 %";
             return Err(scene.clash(problem).into());
         }
         let needs = scene.law().is_some_and(|law| law.of_concentration);
-        match needs && self.concentration(self.n_base).is_none() {
+        match needs && self.concentration(self.supply.n_base).is_none() {
             true => {
                 let problem = "walk.concentration is needed, as a number: how densely the base arrives \
                                follows from the filter's void ratio and the mass of the base, which are not \

@@ -6,15 +6,16 @@ use crate::outcome::left_out::LeftOut;
 impl Case {
     /// Parts of the program that this scene does not need.
     pub fn left_out(&self) -> Vec<LeftOut> {
-        let mut left_out = vec![match self.fixed_network {
-            Some(_) if self.copies.is_some() => LeftOut::Lattice,
+        let filter = &self.filter;
+        let mut left_out = vec![match &self.network.fixed {
+            Some(fixed) if fixed.packing.is_some() => LeftOut::Lattice,
             Some(_) => LeftOut::BeforeNetwork,
-            None if self.packed.is_some() => LeftOut::GivenCurve,
-            None if self.library.is_some() => LeftOut::PackingByLibrary,
-            None if self.guessed_density.is_some() => LeftOut::PackingByGuess,
+            None if filter.packed.is_some() => LeftOut::GivenCurve,
+            None if filter.library.is_some() => LeftOut::PackingByLibrary,
+            None if filter.guessed_density.is_some() => LeftOut::PackingByGuess,
             None => LeftOut::PackingByCurve,
         }];
-        if let Some(other) = self.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
+        if let Some(other) = filter.packed.as_ref().and_then(|packed| packed.same_shape.as_ref()) {
             left_out.push(LeftOut::PackingOfShape(other.folder.clone(), other.factor));
         }
         if self.scene.walk.runs == 1 {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Case, CaseError};
+use super::{Case, CaseError, CaseNetwork};
 use crate::network::ExitRule;
 use crate::store::{Placement, platform};
 use crate::walk::{CHUNK, Engine};
@@ -64,48 +64,17 @@ impl ResourceLimits {
 }
 
 impl Case {
-    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than
-    /// the finest constriction.
-    pub fn one_by_one(&self, n_base: u64) -> u64 {
-        if self.takes_each(n_base) {
-            return n_base;
-        }
-        let passive = self.first_word(n_base) as f64 / 18_446_744_073_709_551_616.0;
-        (n_base as f64 * (1.0 - passive)).ceil() as u64
-    }
-
-    /// Whether all of `n_base` particles are walked one by one, whatever their sizes: on a network that has
-    /// its finest constriction.
-    pub fn takes_each(&self, n_base: u64) -> bool {
-        let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
-        self.scene.walk.engine.takes_each(passive, self.counts[2])
-    }
-
-    /// The first random word that draws one of those particles.
-    pub fn first_word(&self, n_base: u64) -> u128 {
-        if self.takes_each(n_base) { 0 } else { self.passive_words() }
-    }
-
-    /// How many of all 2^64 words draw a particle that is passive on the open network.
-    fn passive_words(&self) -> u128 {
-        if self.scene.leaves_openings() {
-            return 0;
-        }
-        let finest = self.finest_of_fixed.unwrap_or_else(|| (self.finest_mm / self.unit_mm) as f32);
-        self.sampler.word_limit(self.scene.law().map_or(finest, |law| law.passive_limit(finest)))
-    }
-
     /// Bytes of the columns of a walk of `n_base` particles.
     pub fn column_bytes(&self, n_base: u64) -> u64 {
         // A void and a diameter; one size needs no column.
-        let bytes = if self.sampler.smallest() == self.sampler.largest() { 4 } else { 8 };
+        let bytes = if self.supply.sampler.smallest() == self.supply.sampler.largest() { 4 } else { 8 };
         self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
     }
 
     /// Bytes that walking `n_base` particles on this many threads takes besides: network, tallies,
     /// book-keeping.
     fn other_bytes(&self, n_base: u64, threads: u64) -> u64 {
-        let [voids, constrictions, ..] = self.counts;
+        let CaseNetwork { voids, constrictions, .. } = self.network;
         let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
         let workers = threads.max(1).saturating_mul(self.worker_bytes(n_base));
         let of_crowd = if self.scene.concentration_is_by_void() { CROWD_BYTES } else { 0 };
@@ -126,7 +95,7 @@ impl Case {
             ExitRule::Area => 1,
             _ => 2,
         };
-        let exits = self.counts[1].saturating_mul(of_each);
+        let exits = self.network.constrictions.saturating_mul(of_each);
         let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
         exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
     }
@@ -137,7 +106,7 @@ impl Case {
     fn flow_bytes(&self) -> u64 {
         match self.scene.exit_rule() {
             ExitRule::Area => 0,
-            _ => self.counts[1].saturating_mul(FLOW_BYTES),
+            _ => self.network.constrictions.saturating_mul(FLOW_BYTES),
         }
     }
 
@@ -149,7 +118,7 @@ impl Case {
             && !self.takes_each(n_base)
             && self.one_by_one(n_base) < n_base;
         if counts {
-            self.counts[0].saturating_mul(COUNTS_A_WORKER.0).saturating_add(COUNTS_A_WORKER.1)
+            self.network.voids.saturating_mul(COUNTS_A_WORKER.0).saturating_add(COUNTS_A_WORKER.1)
         } else {
             0
         }
@@ -160,9 +129,9 @@ impl Case {
     /// run.
     pub fn kept_bytes(&self) -> u64 {
         let Some(increments) = &self.scene.record.voids else { return 0 };
-        let [voids, constrictions, ..] = self.counts;
+        let CaseNetwork { voids, constrictions, .. } = self.network;
         let [of_row, of_void, of_constriction] = KEPT_BYTES;
-        let an_increment = self.n_base.div_ceil(self.increments());
+        let an_increment = self.supply.n_base.div_ceil(self.increments());
         // Void 0 has a row always.
         let rows_after = |increment: u64| voids.min(an_increment.saturating_mul(increment).saturating_add(1));
         let rows: u64 = increments.iter().copied().chain([self.increments()]).map(rows_after).sum();
@@ -180,14 +149,14 @@ impl Case {
     /// The most base particles of any run of the case.
     fn most_particles(&self) -> u64 {
         let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
-        (self.n_base as f64 * largest) as u64
+        (self.supply.n_base as f64 * largest) as u64
     }
 
     /// The case with the thickest lattice of the study of its thickness, where that is thicker than its own.
     /// A graph's packing is not measured again for this.
     fn thickest(&self) -> Option<Case> {
         let factor = self.thickness_factors().into_iter().fold(1.0, f64::max);
-        let is_lattice = self.copies.is_none();
+        let is_lattice = self.network.copies().is_none();
         (factor > 1.0 && is_lattice).then(|| self.of_thickness(factor).ok()).flatten()
     }
 
@@ -211,8 +180,8 @@ impl Case {
 
     /// Whether there is room for the particles of the scene itself, in memory or on the disk.
     fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
-        let columns = self.column_bytes(self.n_base);
-        let besides = self.other_bytes(self.n_base, threads).saturating_add(self.kept_bytes());
+        let columns = self.column_bytes(self.supply.n_base);
+        let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
         besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
     }
 
@@ -225,65 +194,74 @@ impl Case {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
         // Where the scene itself has none, no study is to blame.
-        let thickest =
-            self.thickest().filter(|_| has_room).map(|mut case| match case.place(room, threads, folder) {
-                Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
-                    if case.n_base != self.n_base || case.counts[0] != self.counts[0] =>
-                {
-                    let study =
-                        " (record.thickness: the thickest filter of the study; leave that out)".into();
-                    Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
-                }
-                placed => placed.map(|()| case.placement),
-            });
-        let thickest = thickest.transpose()?;
-        let n_base = if has_room { self.most_particles() } else { self.n_base };
+        let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
+        let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
         let kept = self.kept_bytes();
         let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
         let needed = walks.saturating_add(kept);
         let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
         if needed <= room.memory {
-            self.placement = Placement::Memory;
             // Where the thickest filter of its study needs files, it and its like get them.
-            if let Some(placement) = thickest {
-                self.placement = placement;
-            }
+            self.placement = thickest.unwrap_or(Placement::Memory);
+            Ok(())
         } else if without_columns <= room.memory && self.column_bytes(n_base) <= room.disk {
             self.placement = Placement::Mapped(folder.to_owned());
+            Ok(())
         } else {
-            let disk = match without_columns <= room.memory {
-                true => format!(" and the disk has {} for the particles", in_words(room.disk)),
-                false => String::new(),
-            };
-            let of_voids = match kept {
-                0 => String::new(),
-                kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
-            };
-            let study = match n_base == self.n_base {
-                true => String::new(),
-                false => {
-                    let factor = n_base as f64 / self.n_base as f64;
-                    format!(
-                        " (record.sensitivity: {factor} times the {} of the scene; leave that out)",
-                        self.n_base
-                    )
-                }
-            };
-            return Err(CaseError::Memory {
-                n_base: self.one_by_one(n_base),
-                study,
-                voids: self.counts[0],
-                needed: in_words(needed),
-                available: in_words(room.memory),
-                disk: [disk, of_voids].concat(),
-            });
+            Err(self.no_room(room, n_base, needed, without_columns))
         }
-        Ok(())
+    }
+
+    /// Where the columns of the thickest filter of its study go, where there is one.
+    fn place_thickest(
+        &self,
+        room: &ResourceLimits,
+        threads: u64,
+        folder: &Path,
+    ) -> Result<Option<Placement>, CaseError> {
+        let Some(mut case) = self.thickest() else { return Ok(None) };
+        match case.place(room, threads, folder) {
+            Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
+                if case.supply.n_base != self.supply.n_base || case.network.voids != self.network.voids =>
+            {
+                let study = " (record.thickness: the thickest filter of the study; leave that out)".into();
+                Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
+            }
+            placed => placed.map(|()| Some(case.placement)),
+        }
+    }
+
+    /// That `n_base` particles need more than there is, and what asks for them.
+    fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
+        let disk = match without_columns <= room.memory {
+            true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+            false => String::new(),
+        };
+        let of_voids = match self.kept_bytes() {
+            0 => String::new(),
+            kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
+        };
+        let stated = self.supply.n_base;
+        let study = match n_base == stated {
+            true => String::new(),
+            false => {
+                let factor = n_base as f64 / stated as f64;
+                format!(" (record.sensitivity: {factor} times the {stated} of the scene; leave that out)")
+            }
+        };
+        CaseError::Memory {
+            n_base: self.one_by_one(n_base),
+            study,
+            voids: self.network.voids,
+            needed: in_words(needed),
+            available: in_words(room.memory),
+            disk: [disk, of_voids].concat(),
+        }
     }
 
     /// Where the particles of a walk on this many threads live, for a reader.
     pub fn memory_in_words(&self, threads: u64) -> String {
-        let bytes = in_words(self.bytes(self.n_base, threads));
+        let bytes = in_words(self.bytes(self.supply.n_base, threads));
         let limit = in_words(self.memory);
         let kept = match self.kept_bytes() {
             0 => String::new(),
@@ -294,7 +272,7 @@ impl Case {
             Placement::Mapped(_) => format!(
                 "{} a walk{kept}, of {limit} that it may take, and {} in files in the run folder for the \
                  particles, mapped into memory: slower, the same bits",
-                in_words(self.other_bytes(self.n_base, threads)),
+                in_words(self.other_bytes(self.supply.n_base, threads)),
                 in_words(self.column_bytes(self.most_particles()))
             ),
         }
@@ -329,15 +307,15 @@ mod tests {
     #[test]
     fn another_curve_has_another_finest_constriction() {
         let coarse = case(&["base.n_base=1e9"]);
-        let fine = coarse.with_curve(coarse.curve.scaled(0.5).unwrap());
-        let [one_by_one, of_fine] = [&coarse, &fine].map(|case| case.one_by_one(case.n_base));
+        let fine = coarse.with_curve(coarse.filter.curve.scaled(0.5).unwrap());
+        let [one_by_one, of_fine] = [&coarse, &fine].map(|case| case.one_by_one(case.supply.n_base));
         assert!(of_fine > one_by_one + 1_000_000, "{of_fine} for {one_by_one}");
     }
 
     #[test]
     fn counts_take_a_column_of_the_network_for_each_thread() {
         let counts = case(&["engine=counts", "base.single_mm=0.1", "base.n_base=1e11"]);
-        let of = |case: &Case, threads| case.bytes(case.n_base, threads);
+        let of = |case: &Case, threads| case.bytes(case.supply.n_base, threads);
         let a_thread = (of(&counts, 257) - of(&counts, 1)) / 256;
         assert!((5_100_000..5_300_000).contains(&a_thread), "{a_thread}");
         let auto = case(&["base.single_mm=0.1", "base.n_base=1e11"]);
@@ -355,14 +333,17 @@ mod tests {
         // Replicates side by side have columns each, so that there are fewer of them.
         let small =
             case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
-        assert!(small.side_by_side(small.n_base, 4) == 4 && small.side_by_side(small.n_base, 64) == 1);
+        assert!(
+            small.side_by_side(small.supply.n_base, 4) == 4
+                && small.side_by_side(small.supply.n_base, 64) == 1
+        );
     }
 
     #[test]
     fn openings_take_memory_for_several_narrowings_of_each_exit() {
         let of = |n_base: &str, set: &[&str]| {
             let case = case(&[&["engine=particles", n_base], set].concat());
-            (case.other_bytes(case.n_base, 1), case.counts[1])
+            (case.other_bytes(case.supply.n_base, 1), case.network.constrictions)
         };
         for (n_base, flux, of_each) in [("1e9", "exit=area", 1), ("1e9", "exit=flux", 2)] {
             let set = [format!("base.n_base={n_base}"), format!("walk.{flux}")];
@@ -384,7 +365,7 @@ mod tests {
         // Three more moments of two runs, of a row in two copies at least.
         let rows = more.kept_bytes() - none.kept_bytes();
         let row = size_of::<crate::outcome::record::RetainedRow>() as u64;
-        assert!(rows >= none.counts[0] * 3 * 2 * 2 * row, "{rows}");
+        assert!(rows >= none.network.voids * 3 * 2 * 2 * row, "{rows}");
         let one_run = |list| many(&[list, "runs=1"]).kept_bytes();
         assert_eq!(rows, 2 * (one_run("record.voids=[1, 5, 10]") - one_run("record.voids=[]")));
         // Few particles are in few voids.

@@ -1,6 +1,6 @@
 //! What makes a case's networks.
 
-use super::Case;
+use super::{Case, CaseNetwork};
 use crate::scene::NetworkSource;
 use crate::walk::Engine;
 
@@ -16,12 +16,12 @@ impl Case {
     /// `None` where a case has one network, which is there already.
     pub fn network_key(&self, seed: u64) -> Option<u128> {
         let source = self.scene.network.source();
-        if self.fixed_network.is_some() || matches!(source, NetworkSource::File(_)) {
+        if self.network.fixed.is_some() || matches!(source, NetworkSource::File(_)) {
             return None;
         }
         let curve: Vec<(u64, u64)> =
-            self.curve.points().iter().map(|p| (p.percent.to_bits(), p.size.to_bits())).collect();
-        let (unit, rule) = (self.unit_mm.to_bits(), self.scene.exit_rule());
+            self.filter.curve.points().iter().map(|p| (p.percent.to_bits(), p.size.to_bits())).collect();
+        let (unit, rule) = (self.filter.unit_mm.to_bits(), self.scene.exit_rule());
         let made_of = format!("{seed} {source:?} {unit} {rule:?} {:?} {curve:?}", self.scene.exits);
         Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))
     }
@@ -29,7 +29,7 @@ impl Case {
     /// About the bytes of one of its networks, and of the exits that first runs on it may begin with, be they
     /// of this case or of another with the network.
     pub fn shared_network_bytes(&self) -> [u64; 2] {
-        let [voids, constrictions, ..] = self.counts;
+        let CaseNetwork { voids, constrictions, .. } = self.network;
         let bytes = |[of_void, of_constriction]: [u64; 2]| {
             voids.saturating_mul(of_void).saturating_add(constrictions.saturating_mul(of_constriction))
         };

@@ -1,9 +1,10 @@
 //! Notes on a case before it is walked: where it leaves the range in which the model was checked, and what
 //! else a reader must know.
 
+use super::filter::needs_grains_per_void;
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use super::supply::PAPER_MASS_RATIO;
-use super::{Case, Input, PackingPlan, needs_grains_per_void, replicate_seed};
+use super::{Case, Input, PackingPlan, replicate_seed};
 use crate::gradation::GRAVEL_MM;
 use crate::network::ExitRule;
 use crate::outcome::record::Note;
@@ -34,8 +35,8 @@ impl Case {
         all.extend(self.other_filter());
         all.extend(self.guesses());
         // The grains that were left out can only make constrictions coarser than those that were walked.
-        all.extend(self.packed.as_ref().and_then(|packed| packed.part.as_ref()).map(packed_part));
-        let loose = self.packed.as_ref().and_then(|packed| packed.rattlers);
+        all.extend(self.filter.packed.as_ref().and_then(|packed| packed.part.as_ref()).map(packed_part));
+        let loose = self.filter.packed.as_ref().and_then(|packed| packed.rattlers);
         match loose.filter(|loose| *loose >= MANY_LOOSE).map(|loose| 100.0 * loose) {
             Some(loose_percent) if loose_percent > 100.0 * SKELETON => {
                 all.push(Note::Skeleton { loose_percent });
@@ -49,11 +50,11 @@ impl Case {
             input.notes.iter().map(read_as).collect()
         };
         all.extend(self.inputs.iter().flat_map(of_file));
-        if self.filter.pan_fraction() > 0.0 {
-            all.push(Note::PanOfFilter { finest_percent: 100.0 * self.filter.pan_fraction() });
+        if self.filter.gradation.pan_fraction() > 0.0 {
+            all.push(Note::PanOfFilter { finest_percent: 100.0 * self.filter.gradation.pan_fraction() });
         }
         all.extend(self.narrow_cell());
-        all.extend(self.copies.map(|(copies, _)| Note::OnePacking { copies: copies.into() }));
+        all.extend(self.network.copies().map(|copies| Note::OnePacking { copies: copies.into() }));
         if let Some(moves) = self.moves_to_an_end().filter(|moves| *moves > MANY_MOVES) {
             all.push(Note::LongWayOut { moves: moves.min(1e300) });
         }
@@ -64,15 +65,15 @@ impl Case {
     fn planned_walk(&self) -> PlannedWalk<'_> {
         let (source, replicates) = (self.scene.network.source(), self.scene.walk.replicates);
         PlannedWalk {
-            base: &self.base,
-            regraded_from: self.regraded_from.as_ref().map(|(given, _)| given),
-            finest_constriction_mm: self.finest_mm,
-            filter: Some(&self.filter),
+            base: &self.base.gradation,
+            regraded_from: self.base.regraded_from.as_ref().map(|(given, _)| given),
+            finest_constriction_mm: self.filter.finest_mm,
+            filter: Some(&self.filter.gradation),
             filter_is_measured: self.filter_is_measured(),
             scale_free: self.is_scale_free(),
-            given_voids: matches!(source, NetworkSource::File(_)).then_some(self.counts[0]),
+            given_voids: matches!(source, NetworkSource::File(_)).then_some(self.network.voids),
             lattice: source.shape(),
-            layers: self.counts[3],
+            layers: self.network.layers,
             flows: self.scene.exit_rule().needs_flow(),
             increments: self.increments(),
             // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
@@ -85,14 +86,14 @@ impl Case {
 
     /// A shipped constriction curve of another filter.
     fn other_filter(&self) -> Option<Note> {
-        let shipped = self.shipped.filter(|_| self.fixed_network.is_none())?;
-        let cu = self.filter.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
+        let shipped = self.shipped_curve()?;
+        let cu = self.filter.gradation.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
         Some(Note::OtherCurve { cu, curve: shipped.name.clone(), curve_cu: shipped.cu })
     }
 
     /// What is not measured where nobody packed the filter.
     fn guesses(&self) -> Vec<Note> {
-        if let Some(library) = &self.library {
+        if let Some(library) = &self.filter.library {
             let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
             let error_percent = 100.0 * library.found.off_by;
             let note = match density {
@@ -101,11 +102,11 @@ impl Case {
             };
             return std::iter::once(note).chain(library.part.as_ref().map(packed_part)).collect();
         }
-        if self.guessed_density.is_none() {
+        if self.filter.guessed_density.is_none() {
             return Vec::new();
         }
         let like_none = self.scene.filter.library.map(|_| Note::LikeNoneOfTheLibrary {});
-        let grains = needs_grains_per_void(&self.scene, self.guessed_density);
+        let grains = needs_grains_per_void(&self.scene, self.filter.guessed_density);
         let grains = grains.then_some(Note::GuessedGrains { grains: GUESSED_GRAINS_PER_VOID });
         like_none.into_iter().chain([Note::GuessedConstrictions {}]).chain(grains).collect()
     }
@@ -113,9 +114,9 @@ impl Case {
     /// That less base is offered than the paper's Eq. (2) and mass ratio ask for.
     pub fn too_little_base(&self) -> Option<Note> {
         let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
-        let particles = self.n_base;
-        match self.n_base_eq2 {
-            Some(needed) if self.capped => Some(Note::CappedBase { particles, needed }),
+        let particles = self.supply.n_base;
+        match self.supply.n_base_eq2 {
+            Some(needed) if self.supply.capped => Some(Note::CappedBase { particles, needed }),
             Some(needed) if particles < needed => Some(Note::FewParticles { particles, needed }),
             Some(_) if self.scene.base.n_base.is_none() && ratio < PAPER_MASS_RATIO => {
                 Some(Note::LowMassRatio { ratio_percent: 100.0 * ratio })
@@ -133,21 +134,21 @@ impl Case {
             return Some(Note::ThicknessWithoutUnit { real_mm, unit: "D0F".into() });
         }
         let Some(modelled_mm) = self.thickness() else { return Some(Note::ThicknessOfFile { real_mm }) };
-        let half = 0.5 * self.filter.d_by_number(50.0).unwrap_or(0.0);
-        (modelled_mm > real_mm + half * (1.0 + 1e-9)).then(|| match self.copies {
-            Some((copies, _)) => Note::CopiesThicker { copies: copies.into(), modelled_mm, real_mm },
-            None => Note::LayersThicker { layers: self.counts[3], modelled_mm, real_mm },
+        let half = 0.5 * self.filter.gradation.d_by_number(50.0).unwrap_or(0.0);
+        (modelled_mm > real_mm + half * (1.0 + 1e-9)).then(|| match self.network.copies() {
+            Some(copies) => Note::CopiesThicker { copies: copies.into(), modelled_mm, real_mm },
+            None => Note::LayersThicker { layers: self.network.layers, modelled_mm, real_mm },
         })
     }
 
     /// A base that is walked regraded, or that was to be.
     fn regrading(&self) -> Option<Note> {
-        match (&self.regraded_from, self.scene.base.regrade) {
+        match (&self.base.regraded_from, self.scene.base.regrade) {
             (Some((given, at)), _) => {
                 Some(Note::Regraded { part_percent: given.percent_finer_by_mass(*at), sieve_mm: *at })
             }
             // Of a base without gravel nobody expects it.
-            (None, Some(Regrade::Practice)) if self.base.largest_mm() > GRAVEL_MM => {
+            (None, Some(Regrade::Practice)) if self.base.gradation.largest_mm() > GRAVEL_MM => {
                 Some(Note::RegradingNotNeeded {})
             }
             _ => None,
@@ -165,8 +166,8 @@ impl Case {
     /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
     /// network, or where one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
-        let widest = self.curve.largest() / self.curve.smallest();
-        match &self.fixed_network {
+        let widest = self.filter.curve.largest() / self.filter.curve.smallest();
+        match self.network.fixed.as_ref().map(|fixed| &fixed.network) {
             // Down the pressure there are no loops.
             Some(network) if network.reservoir().is_some() => None,
             Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
@@ -199,7 +200,7 @@ mod tests {
         assert_eq!(of_thickness(&["filter.thickness_mm=50"]), Some(without_unit));
         let sized = |real: &str| of_thickness(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
         let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
-        let (layer, modelled) = (case.filter.d_by_number(50.0).unwrap(), case.thickness().unwrap());
+        let (layer, modelled) = (case.filter.gradation.d_by_number(50.0).unwrap(), case.thickness().unwrap());
         assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_none());
         assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_none());
         let thinner = sized(&format!("filter.thickness_mm={}", modelled - 0.51 * layer));
@@ -212,7 +213,7 @@ mod tests {
             let error = case(&["filter.d0_mm=2.1", thin]).err().unwrap();
             assert!(error.contains("allowed: half a layer or more"), "{error}");
         }
-        assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().counts[3], 1);
+        assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().network.layers, 1);
     }
 
     fn doubts(set: &[&str]) -> Vec<Note> {
@@ -257,7 +258,7 @@ mod tests {
     fn a_capped_base_has_the_mass_ratio_of_its_particles() {
         let of = |set: &str| {
             let all = ["network.nx=10", "network.ny=10", "network.nz=12", set].map(String::from);
-            Case::new(Scene::built_in(&all).unwrap()).unwrap().mass_ratio.unwrap()
+            Case::new(Scene::built_in(&all).unwrap()).unwrap().supply.mass_ratio.unwrap()
         };
         let (capped, given) = (of("base.cap=1000"), of("base.n_base=1000"));
         assert!((capped / given - 1.0).abs() < 0.01 && capped < 0.04, "{capped} {given}");

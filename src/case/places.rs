@@ -8,17 +8,17 @@ impl Case {
     /// Where the voids of its network lie; `None` of a network from a file, which does not say, and of a
     /// packing that is still to be made.
     pub fn places(&self) -> Option<Places> {
-        match (self.scene.network.source(), &self.graph, self.copies) {
+        match (self.scene.network.source(), self.network.packing()) {
             (NetworkSource::File(_), ..) => None,
-            (NetworkSource::Graph(..), Some(packing), Some((copies, _))) => {
-                let graph = &packing.graph;
+            (NetworkSource::Graph(..), Some(packing)) => {
+                let graph = &packing.graph.graph;
                 let [x_mm, y_mm, z_mm] = graph.cell_mm;
                 let lifted = |copy: u32| {
                     let by = f64::from(copy) * z_mm;
                     graph.point_mm.iter().map(move |&[x, y, z]| [x, y, z + by])
                 };
                 Some(Places {
-                    point_mm: (0..copies).flat_map(lifted).collect(),
+                    point_mm: (0..packing.copies).flat_map(lifted).collect(),
                     period_mm: [x_mm, y_mm],
                     layer_mm: graph.spacing_mm(),
                 })
@@ -26,7 +26,7 @@ impl Case {
             (NetworkSource::Graph(..), ..) => None,
             (source, ..) => {
                 let [nx, ny, nz] = source.shape()?;
-                let layer_mm = self.filter.d_by_number(50.0).unwrap_or(self.unit_mm);
+                let layer_mm = self.filter.gradation.d_by_number(50.0).unwrap_or(self.filter.unit_mm);
                 let middle = |at: u32| (f64::from(at) + 0.5) * layer_mm;
                 let row = |z: u32, y: u32| (0..nx).map(move |x| [middle(x), middle(y), middle(z)]);
                 Some(Places {

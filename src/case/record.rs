@@ -1,6 +1,7 @@
 //! What went in, as a run folder records it.
 
-use super::{Case, Input};
+use super::{Case, CaseFilter, CaseNetwork, Input};
+use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::ExitRule;
 use crate::outcome::quantity::significant;
@@ -29,9 +30,94 @@ impl Case {
 
     /// What went in, as a run folder records it.
     pub fn record(&self) -> record::Inputs {
-        let [voids, constrictions, start_nodes, layers] = self.counts;
+        record::Inputs {
+            filter: self.filter_record(),
+            base: record::BaseRecord {
+                regraded_at_mm: self.base.regraded_from.as_ref().map(|(_, at)| *at),
+                as_sampled: self.base.regraded_from.as_ref().map(|(given, _)| record::SampledBase {
+                    d85_mm: given.d(85.0),
+                    d95_mm: given.d(95.0),
+                    d100_mm: given.largest_mm(),
+                    gradation: rows(given.points()),
+                }),
+                ..base_record(self.base_name(), &self.base.gradation)
+            },
+            network: self.network_record(),
+            mass_ratio: self.supply.mass_ratio,
+            inject_share: self.scene.walk.inject_share,
+            scale_free: self.is_scale_free(),
+        }
+    }
+
+    fn filter_record(&self) -> record::FilterRecord {
+        let CaseFilter { gradation, curve, unit_mm, .. } = &self.filter;
+        record::FilterRecord {
+            name: match &self.scene.filter.gradation() {
+                FilterGradation::Sieve(..) => self.name_of("filter.sieve"),
+                FilterGradation::Linear { .. } => format!("linear, Cu {}", rounded(gradation.cu())),
+            },
+            attribution: self
+                .shipped_curve()
+                .map_or(String::new(), |shipped| format!("{} ({})", shipped.attribution, shipped.licence)),
+            cu: gradation.cu(),
+            d0_mm: *unit_mm,
+            d15_mm: d(gradation, 15.0),
+            d50_mm: d(gradation, 50.0),
+            d50_by_number_mm: gradation.d_by_number(50.0).unwrap_or(f64::NAN),
+            d85_mm: d(gradation, 85.0),
+            void_ratio: self.void_ratio(),
+            gradation: rows(gradation.points()),
+            constrictions: rows(curve.points()),
+            cu_csd: curve.cu(),
+            curve_name: self.curve_name(),
+        }
+    }
+
+    /// What the constriction curve is, or what the user called it.
+    fn curve_name(&self) -> String {
+        let filter = &self.filter;
+        match (&self.network.fixed, &self.scene.filter.curve) {
+            (None, None) if filter.packed.as_ref().is_some_and(|packed| packed.files.is_none()) => {
+                "a guess, until the filter is packed".into()
+            }
+            (None, None) if filter.packed.is_some() => "measured on its packing".into(),
+            (None, None) if filter.library.is_some() => "from the library of packings".into(),
+            (None, None) if filter.guessed_density.is_some() => {
+                "guessed from the gradation by inscribed circles".into()
+            }
+            (Some(_), _) | (None, None) => "the network's own constrictions".into(),
+            (None, Some(CurveSource::Shipped(name))) => name.clone(),
+            (None, Some(CurveSource::File(_))) => self.name_of("filter.curve"),
+        }
+    }
+
+    fn network_record(&self) -> record::NetworkRecord {
+        let (kind, name) = self.network_name();
+        let [nx, ny, nz] = match self.scene.network.source().shape() {
+            Some(shape) => shape.map(|n| Some(u64::from(n))),
+            None => [None; 3],
+        };
+        let CaseNetwork { voids, constrictions, start_nodes, layers, .. } = self.network;
+        record::NetworkRecord {
+            kind,
+            name,
+            nx,
+            ny,
+            nz,
+            voids,
+            constrictions,
+            start_nodes,
+            layers,
+            connectivity: self.network.connectivity.clone(),
+            thickness_mm: self.thickness(),
+            copies: self.network.copies().map(u64::from),
+        }
+    }
+
+    /// What the network is, in words too.
+    fn network_name(&self) -> (record::NetworkKind, String) {
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
-        let (kind, name) = match &self.scene.network.source() {
+        match &self.scene.network.source() {
             NetworkSource::Cubic(n) => (record::NetworkKind::Cubic, cubic(n)),
             NetworkSource::Connected(n, wanted) => {
                 let shares: Vec<String> =
@@ -41,7 +127,7 @@ impl Case {
             }
             NetworkSource::File(_) => (record::NetworkKind::File, self.name_of("network.file")),
             NetworkSource::Graph(..) => {
-                let copies = self.copies.map_or(1, |(copies, _)| copies);
+                let copies = self.network.copies().unwrap_or(1);
                 let times = if copies == 1 { String::new() } else { format!(", {copies} times") };
                 let grains = match self.name_of("network.packing") {
                     none if none.is_empty() => "the filter's packing".into(),
@@ -49,75 +135,6 @@ impl Case {
                 };
                 (record::NetworkKind::Graph, format!("the voids of {grains}{times}"))
             }
-        };
-        let shape = match self.scene.network.source().shape() {
-            Some(shape) => shape.map(|n| Some(u64::from(n))),
-            None => [None; 3],
-        };
-        let curve_name = match (&self.fixed_network, &self.scene.filter.curve) {
-            (None, None) if self.packed.as_ref().is_some_and(|packed| packed.files.is_none()) => {
-                "a guess, until the filter is packed".to_string()
-            }
-            (None, None) if self.packed.is_some() => "measured on its packing".to_string(),
-            (None, None) if self.library.is_some() => "from the library of packings".to_string(),
-            (None, None) if self.guessed_density.is_some() => {
-                "guessed from the gradation by inscribed circles".to_string()
-            }
-            (Some(_), _) | (None, None) => "the network's own constrictions".to_string(),
-            (None, Some(CurveSource::Shipped(name))) => name.clone(),
-            (None, Some(CurveSource::File(_))) => self.name_of("filter.curve"),
-        };
-        record::Inputs {
-            filter: record::FilterRecord {
-                name: match &self.scene.filter.gradation() {
-                    FilterGradation::Sieve(..) => self.name_of("filter.sieve"),
-                    FilterGradation::Linear { .. } => {
-                        format!("linear, Cu {}", rounded(self.filter.cu()))
-                    }
-                },
-                attribution: match (&self.fixed_network, self.shipped) {
-                    (None, Some(shipped)) => format!("{} ({})", shipped.attribution, shipped.licence),
-                    _ => String::new(),
-                },
-                cu: self.filter.cu(),
-                d0_mm: self.unit_mm,
-                d15_mm: d(&self.filter, 15.0),
-                d50_mm: d(&self.filter, 50.0),
-                d50_by_number_mm: self.filter.d_by_number(50.0).unwrap_or(f64::NAN),
-                d85_mm: d(&self.filter, 85.0),
-                void_ratio: self.void_ratio(),
-                gradation: rows(self.filter.points()),
-                constrictions: rows(self.curve.points()),
-                cu_csd: self.curve.cu(),
-                curve_name,
-            },
-            base: record::BaseRecord {
-                regraded_at_mm: self.regraded_from.as_ref().map(|(_, at)| *at),
-                as_sampled: self.regraded_from.as_ref().map(|(given, _)| record::SampledBase {
-                    d85_mm: given.d(85.0),
-                    d95_mm: given.d(95.0),
-                    d100_mm: given.largest_mm(),
-                    gradation: rows(given.points()),
-                }),
-                ..base_record(self.base_name(), &self.base)
-            },
-            network: record::NetworkRecord {
-                kind,
-                name,
-                nx: shape[0],
-                ny: shape[1],
-                nz: shape[2],
-                voids,
-                constrictions,
-                start_nodes,
-                layers,
-                connectivity: self.connectivity.clone(),
-                thickness_mm: self.thickness(),
-                copies: self.copies.map(|(copies, _)| u64::from(copies)),
-            },
-            mass_ratio: self.mass_ratio,
-            inject_share: self.scene.walk.inject_share,
-            scale_free: self.is_scale_free(),
         }
     }
 
@@ -128,7 +145,7 @@ impl Case {
             BaseGradation::Single(_) => "one size".into(),
             BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
         };
-        let regraded = self.regraded_from.as_ref();
+        let regraded = self.base.regraded_from.as_ref();
         name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {} mm", significant(*at)))
     }
 
@@ -139,20 +156,20 @@ impl Case {
         if rule == ExitRule::Area {
             return None;
         }
-        let [voids, constrictions, inlets, layers] = self.counts;
+        let CaseNetwork { voids, constrictions, start_nodes: inlets, layers, .. } = self.network;
         let k0_m2 = k0_mm2.filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
         Some(record::NetworkSummary {
-            kind: match (self.copies, &self.fixed_network) {
-                (Some(_), _) => "graph",
-                (None, Some(_)) => "file",
-                (None, None) => "lattice",
+            kind: match &self.network.fixed {
+                Some(fixed) if fixed.packing.is_some() => "graph",
+                Some(_) => "file",
+                None => "lattice",
             }
             .into(),
             exit: rule.name().into(),
             voids,
             constrictions,
             inlets,
-            copies: self.copies.map(|(copies, _)| u64::from(copies)),
+            copies: self.network.copies().map(u64::from),
             layers,
             thickness_mm: self.thickness(),
             k0_m2,
@@ -163,11 +180,12 @@ impl Case {
     /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer
     /// has no thickness.
     pub fn thickness(&self) -> Option<f64> {
-        let d50 = self.filter.d_by_number(50.0).unwrap_or(f64::NAN);
-        match (self.copies, &self.fixed_network) {
-            (Some((_, thickness_mm)), _) => Some(thickness_mm),
-            (None, Some(_)) => None,
-            (None, None) => Some(self.counts[3] as f64 * d50),
+        match &self.network.fixed {
+            Some(fixed) => Some(fixed.packing.as_ref()?.thickness_mm),
+            None => {
+                let d50 = self.filter.gradation.d_by_number(50.0).unwrap_or(f64::NAN);
+                Some(self.network.layers as f64 * d50)
+            }
         }
     }
 
@@ -178,24 +196,29 @@ impl Case {
 
     /// Where the constrictions come from.
     pub fn curve_origin(&self) -> record::CurveOrigin {
-        match (&self.library, self.guessed_density) {
-            _ if self.packed.is_some() => record::CurveOrigin::Packed,
+        match (&self.filter.library, self.filter.guessed_density) {
+            _ if self.filter.packed.is_some() => record::CurveOrigin::Packed,
             (Some(_), _) => record::CurveOrigin::Library,
             (None, Some(_)) => record::CurveOrigin::Guessed,
             (None, None) => record::CurveOrigin::Given,
         }
     }
 
+    /// The shipped filter whose constrictions and voids are walked, if they are one's.
+    pub(super) fn shipped_curve(&self) -> Option<&'static ShippedFilter> {
+        self.filter.shipped.filter(|_| self.network.fixed.is_none())
+    }
+
     /// Whether the curve is from the library, or a guess.
     fn is_without_packing(&self) -> bool {
-        self.library.is_some() || self.guessed_density.is_some()
+        self.filter.library.is_some() || self.filter.guessed_density.is_some()
     }
 
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.shipped.is_some() || self.packed.is_some() || self.is_without_packing())
-            && self.fixed_network.is_none()
+            && (self.filter.shipped.is_some() || self.filter.packed.is_some() || self.is_without_packing())
+            && self.network.fixed.is_none()
             && matches!(
                 self.scene.base.gradation(),
                 BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)

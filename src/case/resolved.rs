@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use super::{Case, needs_grains_per_void};
+use super::Case;
+use super::filter::needs_grains_per_void;
 use crate::scene::{About, CurveSource, Scene};
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
@@ -31,16 +32,16 @@ impl Case {
             Some(CurveSource::File(_)) => kept(setting).map(CurveSource::File),
             shipped => shipped,
         };
-        if self.packed.is_some() {
+        if self.filter.packed.is_some() {
             scene.filter.measured = kept("filter.curve");
         }
         scene.filter.curve = kept_curve(scene.filter.curve, "filter.curve");
         scene.filter.sieve = kept("filter.sieve");
         if scene.filter.sieve.is_none() {
-            scene.filter.cu = scene.filter.cu.or(self.shipped.map(|shipped| shipped.cu));
+            scene.filter.cu = scene.filter.cu.or(self.filter.shipped.map(|shipped| shipped.cu));
         }
-        if self.library.is_none() && !needs_grains_per_void(&scene, self.guessed_density) {
-            scene.filter.grains_per_void = self.grains_per_void;
+        if self.filter.library.is_none() && !needs_grains_per_void(&scene, self.filter.guessed_density) {
+            scene.filter.grains_per_void = self.filter.grains_per_void;
         }
         scene.base.sieve = kept("base.sieve");
         scene.base.dc_curve = kept_curve(scene.base.dc_curve, "base.dc_curve");
@@ -58,15 +59,15 @@ impl Case {
             protocol += ARCHING_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
-        if self.library.is_some() {
+        if self.filter.library.is_some() {
             // Another library, or another way through it, gives other curves.
-            let ends = self.curve_ends.iter().map(|end| &end.curve);
-            for curve in std::iter::once(&self.curve).chain(ends) {
+            let ends = self.filter.curve_ends.iter().map(|end| &end.curve);
+            for curve in std::iter::once(&self.filter.curve).chain(ends) {
                 let points: Vec<_> = curve.points().iter().map(|point| (point.percent, point.size)).collect();
                 text.extend_from_slice(format!("{points:?}").as_bytes());
             }
         }
-        text.extend_from_slice(self.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
+        text.extend_from_slice(self.filter.shipped.map_or("", |shipped| shipped.curve_csv).as_bytes());
         for input in self.inputs.iter().filter(|input| input.setting != "filter.density") {
             text.extend_from_slice(input.setting.as_bytes());
             text.extend_from_slice(&input.bytes);

@@ -7,7 +7,7 @@
 
 use super::files::Files;
 use super::supply::Against;
-use super::{Case, CaseError, base_gradation, regrade, sizes};
+use super::{Case, CaseBase, CaseError, CaseNetwork};
 use crate::constrictions::Curve;
 use crate::gradation::Gradation;
 use crate::network::Network;
@@ -18,10 +18,8 @@ use crate::scene::{NetworkSource, Scene};
 pub struct StatedBase {
     /// The scene that states it.
     pub scene: Scene,
-    /// Its gradation, as it is walked.
-    pub gradation: Gradation,
-    /// The gradation as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
-    pub regraded_from: Option<(Gradation, f64)>,
+    /// The base.
+    pub base: CaseBase,
     /// Files that were read.
     pub inputs: Vec<super::Input>,
 }
@@ -29,8 +27,11 @@ pub struct StatedBase {
 impl Case {
     /// The same case with another constriction curve, and that alone: the same base, as much of it.
     pub fn with_curve(&self, curve: Curve) -> Self {
-        let finest_mm = self.finest_mm.min(curve.smallest());
-        Self { curve, finest_mm, curve_ends: Vec::new(), ..self.clone() }
+        let mut case = self.clone();
+        case.filter.finest_mm = self.filter.finest_mm.min(curve.smallest());
+        case.filter.curve = curve;
+        case.filter.curve_ends.clear();
+        case
     }
 
     /// The base that another scene states, read beside this case's filter.
@@ -39,9 +40,8 @@ impl Case {
     /// A file that is refused.
     pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
-        let given = base_gradation(scene, &self.filter, &self.curve, self.unit_mm, &mut files)?;
-        let (gradation, regraded_from) = regrade::walked(scene, given)?;
-        Ok(StatedBase { scene: scene.clone(), gradation, regraded_from, inputs: files.0 })
+        let base = CaseBase::read(scene, &self.filter, &mut files)?;
+        Ok(StatedBase { scene: scene.clone(), base, inputs: files.0 })
     }
 
     /// The same filter and network against a base of this gradation, which is in this filter's own unit;
@@ -54,33 +54,17 @@ impl Case {
         let mut case = self.clone();
         if let (Some(layers), NetworkSource::Cubic([nx, ny, _])) = (layers, self.scene.network.source()) {
             let shape = [nx, ny, u32::try_from(layers).unwrap_or(u32::MAX)];
-            case.counts = sizes::of_lattice(shape)?;
+            case.network = CaseNetwork::of_lattice(shape)?;
             case.scene.network.set_layers(layers);
         }
-        let against = Against {
-            scene: &case.scene,
-            filter: &case.filter,
-            finest_mm: case.finest_mm,
-            unit_mm: case.unit_mm,
-            grains_per_void: case.grains_per_void,
-            voids: case.counts[0],
-            is_packed: false,
-        };
-        let walked = against.walked(&base)?;
+        let against =
+            Against { scene: &case.scene, filter: &case.filter, voids: case.network.voids, is_packed: false };
+        case.supply = against.supply(&base)?;
+        case.base = CaseBase { gradation: base, regraded_from: None };
         // No other number or thickness is studied.
         case.scene.record.sensitivity.clear();
         case.scene.record.thickness = Some(Vec::new());
-        Ok(Self {
-            base,
-            regraded_from: None,
-            pan_is_walked: walked.pan_is_walked,
-            n_base_eq2: walked.n_base_eq2(),
-            sampler: walked.sampler,
-            n_base: walked.n_base.n_base,
-            capped: walked.n_base.capped,
-            mass_ratio: walked.mass_ratio,
-            ..case
-        })
+        Ok(case)
     }
 
     /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,
@@ -90,15 +74,12 @@ impl Case {
     /// Sizes out of range.
     pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
         let mut case = self.clone();
-        (case.filter, case.curve) = (self.filter.scaled(factor)?, self.curve.scaled(factor)?);
-        (case.finest_mm, case.unit_mm) = (factor * self.finest_mm, case.filter.smallest_mm());
-        case.curve_ends.clear();
+        (case.filter, case.base) = (case.filter.enlarged(factor)?, base.base.clone());
         if case.scene.filter.sieve.is_none() {
             // Its sizes are no longer multiples of D0F.
-            case.scene.filter.d0_mm = Some(case.unit_mm);
+            case.scene.filter.d0_mm = Some(case.filter.unit_mm);
         }
         case.scene.base = base.scene.base.clone();
-        (case.base, case.regraded_from) = (base.gradation.clone(), base.regraded_from.clone());
         case.inputs.extend(base.inputs.iter().cloned());
         Ok(case)
     }
@@ -106,7 +87,7 @@ impl Case {
     /// Whether a network of another base on the same filter has as many layers as this case's, so that it is
     /// its own.
     pub fn has_layers_of(&self, network: &Network) -> bool {
-        network.layers() as u64 == self.counts[3]
+        network.layers() as u64 == self.network.layers
     }
 }
 
@@ -124,19 +105,20 @@ mod tests {
         for ratio in [4.0, 6.5] {
             let stated = built_in(&["base.cu=3", &format!("base.d15f_over_d85b={ratio}")]);
             let wanted = Case::new(stated.clone()).unwrap();
-            let base = case.base_of(&stated).unwrap().gradation;
+            let base = case.base_of(&stated).unwrap().base.gradation;
             let made = case.with_base(base, None).unwrap();
-            assert_eq!(made.base, wanted.base);
-            assert_eq!((made.n_base, made.counts), (wanted.n_base, wanted.counts));
+            assert_eq!(made.base.gradation, wanted.base.gradation);
+            let made_of = |case: &Case| (case.supply.n_base, case.network.voids, case.network.layers);
+            assert_eq!(made_of(&made), made_of(&wanted));
         }
     }
 
     #[test]
     fn more_layers_take_more_base() {
         let case = Case::new(built_in(&[])).unwrap();
-        let thick = case.with_base(case.base.clone(), Some(120)).unwrap();
-        assert_eq!(thick.counts[3], 120);
-        assert!(thick.n_base.abs_diff(2 * case.n_base) <= 1);
+        let thick = case.with_base(case.base.gradation.clone(), Some(120)).unwrap();
+        assert_eq!(thick.network.layers, 120);
+        assert!(thick.supply.n_base.abs_diff(2 * case.supply.n_base) <= 1);
         let kept = case.network(7).unwrap();
         assert!(case.has_layers_of(&kept) && !thick.has_layers_of(&kept));
         assert_eq!(thick.network(7).unwrap().layers(), 120);
@@ -159,14 +141,15 @@ mod tests {
             let set: Vec<String> =
                 set.iter().cloned().chain(arches.iter().map(ToString::to_string)).collect();
             let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
-            assert!(case.pan_is_walked);
-            let (ends, widest) = (&case.curve_ends, case.scene.law().map_or(1.0, |law| law.widest));
-            assert!(ends.iter().any(|end| end.curve.smallest() < case.curve.smallest()));
+            assert!(case.supply.pan_is_walked);
+            let (ends, widest) = (&case.filter.curve_ends, case.scene.law().map_or(1.0, |law| law.widest));
+            assert!(ends.iter().any(|end| end.curve.smallest() < case.filter.curve.smallest()));
             for end in ends {
-                let finest = (end.curve.smallest() / widest / case.unit_mm) as f32;
-                assert!(case.sampler.smallest() < finest, "{arches:?} {}", end.name);
+                let finest = (end.curve.smallest() / widest / case.filter.unit_mm) as f32;
+                assert!(case.supply.sampler.smallest() < finest, "{arches:?} {}", end.name);
             }
-            assert!(case.bytes(case.n_base, 1) < 10_000_000, "{arches:?} {}", case.bytes(case.n_base, 1));
+            let bytes = case.bytes(case.supply.n_base, 1);
+            assert!(bytes < 10_000_000, "{arches:?} {bytes}");
         }
     }
 }

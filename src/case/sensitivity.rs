@@ -9,12 +9,12 @@ impl Case {
     /// set, none that gives the number of the case itself, and no number twice.
     pub fn sensitivity_factors(&self) -> Vec<f64> {
         let cap = self.cap();
-        let mut numbers = vec![self.n_base];
+        let mut numbers = vec![self.supply.n_base];
         let mut is_other = |factor: &f64| {
             let number = self.times_base(*factor);
             let is_new = !numbers.contains(&number);
             numbers.push(number);
-            is_new && *factor * self.n_base as f64 <= cap
+            is_new && *factor * self.supply.n_base as f64 <= cap
         };
         self.scene.record.sensitivity.iter().copied().filter(|factor| is_other(factor)).collect()
     }
@@ -26,7 +26,7 @@ impl Case {
         let cap = self.cap();
         let not_walked = asked.iter().copied().filter(|factor| !walked.contains(factor));
         let (above, same): (Vec<f64>, Vec<f64>) =
-            not_walked.partition(|factor| factor * self.n_base as f64 > cap);
+            not_walked.partition(|factor| factor * self.supply.n_base as f64 > cap);
         let is_above = (!above.is_empty()).then_some(LeftOut::AmountsAboveCap(above, cap));
         let is_same = (!same.is_empty()).then_some(LeftOut::AmountsTheSame(same));
         is_above.into_iter().chain(is_same).collect()
@@ -34,7 +34,7 @@ impl Case {
 
     /// So many times the base particles, one at the least.
     pub fn times_base(&self, factor: f64) -> u64 {
-        ((self.n_base as f64 * factor).round() as u64).max(1)
+        ((self.supply.n_base as f64 * factor).round() as u64).max(1)
     }
 
     fn cap(&self) -> f64 {

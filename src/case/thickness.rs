@@ -29,7 +29,7 @@ impl Case {
             return if asked { vec![LeftOut::ThicknessOfFile] } else { Vec::new() };
         }
         let parts = self.thickness_parts();
-        let kind = if self.copies.is_some() { LayerKind::Copy } else { LayerKind::Layer };
+        let kind = if self.network.copies().is_some() { LayerKind::Copy } else { LayerKind::Layer };
         let same = |factor: &f64| times(parts, *factor) == parts;
         let the_same = |factor| LeftOut::ThicknessTheSame(factor, parts, kind);
         self.thickness_wanted().into_iter().filter(same).map(the_same).collect()
@@ -47,7 +47,7 @@ impl Case {
 
     /// What its network is made of along the flow: copies of a packing, or layers.
     fn thickness_parts(&self) -> u64 {
-        self.copies.map_or(self.counts[3], |(copies, _)| copies.into())
+        self.network.copies().map_or(self.network.layers, u64::from)
     }
 
     /// The same case with a filter so many times as thick, to the nearest layer (of a lattice) or copy (of a
@@ -60,12 +60,13 @@ impl Case {
         let mut scene = self.scene.clone();
         scene.record.sensitivity.clear();
         scene.record.thickness = Some(Vec::new());
-        match self.copies {
+        match self.network.copies() {
             Some(_) => scene.network.set_copies(parts),
             None => scene.network.set_layers(parts),
         }
-        let mut other = Self::with_graph(scene, self.packed.clone(), self.graph.clone())?;
-        if self.graph.is_some() {
+        let graph = self.network.packing().map(|packing| packing.graph.clone());
+        let mut other = Self::with_graph(scene, self.filter.packed.clone(), graph)?;
+        if self.network.packing().is_some() {
             // What is not read again is kept all the same.
             other.inputs = self.inputs.clone();
         }
@@ -92,10 +93,8 @@ mod tests {
     fn twice_the_thickness_is_the_case_of_twice_the_layers() {
         let thick = case(&["network.nz=20"]).of_thickness(2.0).unwrap();
         let asked = case(&["network.nz=40"]);
-        assert_eq!(
-            (thick.counts, thick.n_base, thick.n_base_eq2),
-            (asked.counts, asked.n_base, asked.n_base_eq2)
-        );
+        let numbers = |case: &Case| (case.network.voids, case.supply.n_base, case.supply.n_base_eq2);
+        assert_eq!((thick.network.layers, numbers(&thick)), (40, numbers(&asked)));
         assert_eq!(thick.network(5).unwrap().fingerprint(), asked.network(5).unwrap().fingerprint());
         assert!(case(&["network.nz=20", "record.thickness=[1.01]"]).thickness_factors().is_empty());
         let unsaid = case(&["network.nz=20", "record.thickness=[1.01, 2]"]);
@@ -103,9 +102,9 @@ mod tests {
         assert_eq!(unsaid.left_out().iter().filter(|part| **part == same).count(), 1);
         assert_eq!(unsaid.thickness_factors(), [2.0]);
         let given = case(&["base.n_base=1000"]).of_thickness(0.5).unwrap();
-        assert_eq!((given.n_base, given.counts[3]), (1000, 30));
+        assert_eq!((given.supply.n_base, given.network.layers), (1000, 30));
         let capped = case(&["base.cap=5000"]).of_thickness(2.0).unwrap();
-        assert_eq!((capped.n_base, capped.capped), (5000, true));
+        assert_eq!((capped.supply.n_base, capped.supply.capped), (5000, true));
     }
 
     #[test]

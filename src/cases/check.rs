@@ -112,9 +112,9 @@ pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, R
             Err(problem) => (CaseCheck { problem: problem.to_string(), ..none }, None),
             Ok((case, packing)) => {
                 let check = CaseCheck {
-                    n_base: case.n_base,
+                    n_base: case.supply.n_base,
                     runs_to_walk: runs_to_walk(&case),
-                    bytes: case.bytes(case.n_base, workers) + case.kept_bytes(),
+                    bytes: case.bytes(case.supply.n_base, workers) + case.kept_bytes(),
                     core_seconds: case.core_seconds_here(),
                     ..none
                 };

@@ -118,15 +118,15 @@ fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError>
         of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
     }
     Ok(Check {
-        n_base: case.n_base,
-        n_base_eq2: case.n_base_eq2,
-        capped: case.capped,
-        grains_per_void: case.grains_per_void,
-        mass_ratio: case.mass_ratio,
-        one_by_one: case.one_by_one(case.n_base),
+        n_base: case.supply.n_base,
+        n_base_eq2: case.supply.n_base_eq2,
+        capped: case.supply.capped,
+        grains_per_void: case.filter.grains_per_void,
+        mass_ratio: case.supply.mass_ratio,
+        one_by_one: case.one_by_one(case.supply.n_base),
         runs_to_walk: runs_to_walk(&case),
         increments: case.increments(),
-        bytes: case.bytes(case.n_base, threads).saturating_add(case.kept_bytes()),
+        bytes: case.bytes(case.supply.n_base, threads).saturating_add(case.kept_bytes()),
         bytes_allowed: case.memory,
         memory: case.memory_in_words(threads),
         core_seconds: case.core_seconds_here(),

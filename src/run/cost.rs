@@ -8,7 +8,7 @@
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
 use super::planned::{first_replicates, likely_replicates, replicates_of_end};
-use crate::case::{Case, PackingPlan};
+use crate::case::{Case, CaseNetwork, PackingPlan};
 use crate::constrictions::Curve;
 use crate::packing::is_wide;
 use crate::scene::NetworkSource;
@@ -117,14 +117,16 @@ impl Case {
     }
 
     fn foreseen(&self) -> Foreseen {
-        let files = FILES_S + if self.packed.is_some() { PACKED_FILES_S } else { 0.0 };
+        let files = FILES_S + if self.filter.packed.is_some() { PACKED_FILES_S } else { 0.0 };
         let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
-        let ends = &self.curve_ends;
+        let ends = &self.filter.curve_ends;
         let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
-        let own = self.of_replicate(self.n_base, most_s);
-        let of_base = |f: f64| self.of_replicate((self.n_base as f64 * f) as u64, most_s);
-        let of_thickness = |factor: f64| match self.copies {
-            None => self.of_thickness(factor).ok().map(|other| other.of_replicate(other.n_base, most_s)),
+        let own = self.of_replicate(self.supply.n_base, most_s);
+        let of_base = |f: f64| self.of_replicate((self.supply.n_base as f64 * f) as u64, most_s);
+        let of_thickness = |factor: f64| match self.network.copies() {
+            None => {
+                self.of_thickness(factor).ok().map(|other| other.of_replicate(other.supply.n_base, most_s))
+            }
             // As many times the base on as many times the copies; no pilot walks it.
             Some(_) => {
                 let times = factor * factor.max(1.0);
@@ -141,7 +143,7 @@ impl Case {
             (likely_replicates(self, eroded), point)
         });
         let replicates = first_replicates(self);
-        let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.n_base, most_s);
+        let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.supply.n_base, most_s);
         let ends = ends.iter().map(|end| (replicates_of_end(replicates), of_end(&end.curve)));
         let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
         let first = begun.and(replicates as f64, &own);
@@ -153,7 +155,7 @@ impl Case {
     fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
         let runs = self.scene.walk.runs as f64;
         let guess = self.guessed(n_base);
-        let [voids, constrictions, ..] = self.counts.map(|n| n as f64);
+        let (voids, constrictions) = (self.network.voids as f64, self.network.constrictions as f64);
         let besides = runs * guess.solved + (voids + constrictions) * NETWORK_S;
         match pilot(self, n_base, runs * guess.seconds, most_s) {
             Some(work) => {
@@ -172,13 +174,13 @@ impl Case {
 
     /// Seconds of one run that meets a clean network all the way.
     fn guessed(&self, n_base: u64) -> Guess {
-        let [voids, constrictions, _, layers] = self.counts.map(|n| n as f64);
+        let CaseNetwork { voids, constrictions, layers, .. } = self.network;
         let each = self.takes_each(n_base);
         let one_by_one = self.one_by_one(n_base) as f64;
-        let increments = self.increments() as f64 + SPREAD * layers.sqrt();
-        let occupied = if each { 0.0 } else { self.slower() * voids * increments };
+        let increments = self.increments() as f64 + SPREAD * (layers as f64).sqrt();
+        let occupied = if each { 0.0 } else { self.slower() * voids as f64 * increments };
         let solved = match self.scene.exit_rule().needs_flow() {
-            true => (increments / SOLVED_EVERY + 2.0) * constrictions * SOLVE_S,
+            true => (increments / SOLVED_EVERY + 2.0) * constrictions as f64 * SOLVE_S,
             false => 0.0,
         };
         let seconds = COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base));
@@ -208,22 +210,24 @@ impl Case {
     /// the chance that it has on the clean network, or until it leaves.
     fn moves_of_each(&self, n_base: u64) -> f64 {
         let shares = || (0..PARTS).map(|part| (part as f64 + 0.5) / PARTS as f64);
-        let areas: Vec<(f64, f64)> =
-            shares().map(|share| self.curve.quantile(share) / self.unit_mm).map(|d| (d, d * d)).collect();
+        let areas: Vec<(f64, f64)> = shares()
+            .map(|share| self.filter.curve.quantile(share) / self.filter.unit_mm)
+            .map(|d| (d, d * d))
+            .collect();
         let all: f64 = areas.iter().map(|(_, area)| area).sum();
-        let most = MOVES_A_LAYER * (self.counts[3] as f64).max(1.0);
+        let most = MOVES_A_LAYER * (self.network.layers as f64).max(1.0);
         let moves = |d: f64| {
             let stopped =
                 areas.iter().take_while(|(size, _)| *size < d).map(|(_, area)| area).sum::<f64>() / all;
             if stopped > 0.0 { (1.0 - libm::pow(1.0 - stopped, most)) / stopped } else { most }
         };
-        let walked = self.sampler.part(self.first_word(n_base)..1 << 64);
+        let walked = self.supply.sampler.part(self.first_word(n_base)..1 << 64);
         shares().filter_map(|share| walked.d_by_number(share)).map(moves).sum::<f64>() / PARTS as f64
     }
 
     /// Bytes that the program takes where its walks take so many.
     pub fn program_bytes(&self, walks: u64) -> u64 {
-        let [voids, constrictions, ..] = self.counts;
+        let CaseNetwork { voids, constrictions, .. } = self.network;
         // A network is being built, and a page is being written.
         walks.saturating_add(PROGRAM_BYTES).saturating_add(100 * (voids + constrictions))
     }

@@ -32,17 +32,17 @@ pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<
     let one = |(part, end): (u64, &'a OtherCurve)| {
         let other = case.with_curve(end.curve.clone());
         // What a user or a cap says of the amount of base holds for every curve.
-        let by_grains = case.n_base_eq2 == Some(case.n_base);
+        let by_grains = case.supply.n_base_eq2 == Some(case.supply.n_base);
         let n_base = case.times_base(if by_grains { end.times_grains } else { 1.0 });
         let walked = some_replicates(&other, part, 1..=u64::from(fit), n_base, context)?;
         Ok(BegunEnd { end, case: other, part, n_base, walked })
     };
-    each((before..).zip(&case.curve_ends).collect(), fit, one)
+    each((before..).zip(&case.filter.curve_ends).collect(), fit, one)
 }
 
 /// Whether walks of the case fit into the memory side by side.
 fn fit(case: &Case) -> bool {
-    case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1
+    case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1
 }
 
 /// Walks each end of the range of the curve: one replicate where it is clear that the class stays, else as
@@ -67,7 +67,7 @@ pub fn curve_range(
     let worst = [Verdict::Continuing, Verdict::Some].into_iter().find(|class| allowed.contains(class));
     let could_be = case.scene.stop.decide_percent.map(|_| worst.unwrap_or(Verdict::None));
     let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
-    Ok(CurveRange::new(verdict, &runs, ends, case.library.is_some(), could_be))
+    Ok(CurveRange::new(verdict, &runs, ends, case.filter.library.is_some(), could_be))
 }
 
 /// Walks one end; beside it the worst class that its walks allow where a confidence level was asked for.
@@ -102,6 +102,6 @@ fn of_end(
             Classed { verdict, ..usual }
         }
     };
-    let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.curve.dc(50.0).unwrap_or(f64::NAN);
+    let dc50_factor = end.curve.dc(50.0).unwrap_or(f64::NAN) / case.filter.curve.dc(50.0).unwrap_or(f64::NAN);
     Ok((CurveEnd { curve: end.name.clone(), dc50_factor, walked }, could_be))
 }

@@ -1,6 +1,7 @@
 //! What one run of a case erodes on one network, and nothing else of it: for studies that walk many cases.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::callbacks::Callbacks;
 use super::error::RunError;
@@ -21,14 +22,14 @@ const SIZE_CLASSES: usize = 2;
 /// A walk that goes wrong, or that was stopped; particles that do not fit.
 pub fn eroded(
     case: &Case,
-    (network, open): (&Network, Option<&PlainExits>),
+    (network, open): (&Arc<Network>, Option<&PlainExits>),
     (seed, run): (u64, u64),
     clogged: Clogged,
     callbacks: &Callbacks,
 ) -> Result<(Eroded, Clogged), RunError> {
-    let plan = plan(case, network, &clogged.blocked, case.n_base);
-    let supply = plan.supply(case.sampler.clone(), case.n_base, case.increments(), seed, run);
-    let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
+    let plan = plan(case, network, &clogged.blocked, case.supply.n_base);
+    let supply = plan.supply(case.supply.sampler.clone(), case.supply.n_base, case.increments(), seed, run);
+    let (smallest, largest) = (case.supply.sampler.smallest(), case.supply.sampler.largest());
     let classes = SizeClasses::logarithmic(smallest, largest, SIZE_CLASSES);
     let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
     let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
@@ -57,7 +58,7 @@ mod tests {
             let case = Case::new(Scene::built_in(&settings).unwrap()).unwrap();
             let outcome = walk_case(&case, &Callbacks::default()).unwrap();
             let seed = replicate_seed(case.scene.walk.seed, 1);
-            let network = case.network(seed).unwrap();
+            let network = Arc::new(case.network(seed).unwrap());
             let mut clogged = Clogged::none(&network);
             for run in &outcome.replicates[0].runs {
                 let open = PlainExits::unblocked(&network);
@@ -83,7 +84,7 @@ mod tests {
                     small.iter().chain(&[other, engine]).map(ToString::to_string).collect();
                 let case = Case::new(Scene::built_in(&settings).unwrap()).unwrap();
                 assert!(!case.begins_with_plain_exits());
-                let network = case.network(5).unwrap();
+                let network = Arc::new(case.network(5).unwrap());
                 let known = PlainExits::unblocked(&network);
                 let [a, b] = [None, Some(&known)].map(|open| {
                     let clogged = Clogged::none(&network);

@@ -147,14 +147,14 @@ mod tests {
     /// What is found of a scene, and of its soils on its network without it: all but the list above.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
         let filter = GivenFilter {
-            gradation: case.filter.clone(),
+            gradation: case.filter.gradation.clone(),
             is_measured: case.filter_is_measured(),
-            grains_per_void: case.grains_per_void,
+            grains_per_void: case.filter.grains_per_void,
         };
         let plan = NetworkWalk {
             increments: case.increments(),
             filter: Some(filter),
-            ..NetworkWalk::new(case.base.clone(), case.n_base)
+            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
         };
         let shared = |notes: Vec<Note>, own: &[&str]| {
             let shared = notes.into_iter().filter(|note| !own.contains(&&*note.id()));
@@ -184,20 +184,33 @@ mod tests {
         }
     }
 
+    /// Percent finer by mass (mm).
+    type Points = &'static [(f64, f64)];
+    const SAND: Points = &[(0.2, 0.0), (0.6, 100.0)];
+    const FILTER: Points = &[(1.0, 0.0), (3.0, 100.0)];
+    const GAP: Points = &[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
+    const SILT: Points = &[(0.01, 0.0), (0.075, 40.0), (0.3, 100.0)];
+    const BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)];
+    const NEARLY_BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.0, 60.0), (4.0, 100.0)];
+    const GRAVELLY: Points = &[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)];
+    const HIDDEN: Points = &[(0.3, 25.0), (1.0, 100.0)];
+    const PASSIVE: Points = &[(0.3, 3.0), (1.0, 100.0)];
+    const PAIRS: [(Points, Points); 9] = [
+        (SAND, FILTER),
+        (SAND, GAP),
+        (SILT, FILTER),
+        (BROAD, FILTER),
+        (NEARLY_BROAD, FILTER),
+        (GRAVELLY, FILTER),
+        (HIDDEN, FILTER),
+        (PASSIVE, FILTER),
+        (FILTER, SAND),
+    ];
+
     /// The same soils on the same network, with a scene and without: each note that follows from them is
     /// reported by both with the same numbers, or stands in the list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
-        type Points = &'static [(f64, f64)];
-        const SAND: Points = &[(0.2, 0.0), (0.6, 100.0)];
-        const FILTER: Points = &[(1.0, 0.0), (3.0, 100.0)];
-        const GAP: Points = &[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
-        const SILT: Points = &[(0.01, 0.0), (0.075, 40.0), (0.3, 100.0)];
-        const BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)];
-        const NEARLY_BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.0, 60.0), (4.0, 100.0)];
-        const GRAVELLY: Points = &[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)];
-        const HIDDEN: Points = &[(0.3, 25.0), (1.0, 100.0)];
-        const PASSIVE: Points = &[(0.3, 3.0), (1.0, 100.0)];
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let write = |name: &str, points: Points| {
@@ -207,17 +220,7 @@ mod tests {
         let network = "from,to,diameter_mm\nstart,0,\n0,1,0.5\n1,end,0.4\n1,0,0.5\n";
         fs::write(path("network.csv"), network).unwrap();
         let (mut seen, mut pairs) = (BTreeSet::new(), 0);
-        for (base, filter) in [
-            (SAND, FILTER),
-            (SAND, GAP),
-            (SILT, FILTER),
-            (BROAD, FILTER),
-            (NEARLY_BROAD, FILTER),
-            (GRAVELLY, FILTER),
-            (HIDDEN, FILTER),
-            (PASSIVE, FILTER),
-            (FILTER, SAND),
-        ] {
+        for (base, filter) in PAIRS {
             write("base.csv", base).unwrap();
             write("filter.csv", filter).unwrap();
             for replicates in [1, 3, 6] {
@@ -231,7 +234,7 @@ mod tests {
                     "record.sensitivity=[]".into(),
                 ];
                 let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
-                let network = case.fixed_network.as_ref().unwrap();
+                let network = &case.network.fixed.as_ref().unwrap().network;
                 let [of_scene, of_network] = of_both(&case, network);
                 assert_eq!(of_scene, of_network, "{base:?}");
                 seen.extend(of_scene.into_iter().map(|(id, _)| id));

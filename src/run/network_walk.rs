@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
+use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
@@ -242,26 +243,29 @@ impl NetworkWalk {
         (self.n_base as f64 * coarser) as u64
     }
 
+    /// How a run with these constrictions blocked is walked.
+    fn plan(&self, network: &Network, sampler: &SizeSampler, blocked: &BitSlice) -> RunPlan {
+        RunPlan::new(self.engine, network, sampler, blocked, self.n_base / self.increments)
+            .sampled(self.sampling)
+    }
+
     fn replicate(
         &self,
-        network: &Network,
+        network: &Arc<Network>,
         sampler: &SizeSampler,
         replicate: u64,
         callbacks: &Callbacks,
     ) -> Result<Walked, RunError> {
         let seed = replicate_seed(self.seed, replicate);
         let mut blocked = BitVec::repeat(false, network.constrictions());
-        let plan = |blocked: &BitVec| {
-            RunPlan::new(self.engine, network, sampler, blocked, self.n_base / self.increments)
-                .sampled(self.sampling)
-        };
-        let first = plan(&blocked);
+        let first = self.plan(network, sampler, &blocked);
         let (mut runs, mut below) = (Vec::new(), Vec::new());
         let (mut recorded, mut at_ends) = (Recorded::default(), Vec::new());
         let mut exits = None;
         for run in 1..=self.runs {
             let begun = Instant::now();
-            let supply = plan(&blocked).supply(sampler.clone(), self.n_base, self.increments, seed, run);
+            let plan = self.plan(network, sampler, &blocked);
+            let supply = plan.supply(sampler.clone(), self.n_base, self.increments, seed, run);
             let classes =
                 SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), self.wanted.size_classes);
             let mut state = State::new(network, &supply, classes, blocked, seed, run);
@@ -278,12 +282,10 @@ impl NetworkWalk {
             })?;
             let (end, flow, left) = walk.end_with_exits(&state)?;
             exits = left;
-            let d15f = self.d15f_mm();
-            let (d15f_mm, pan_fraction) = (d15f.unwrap_or(f64::NAN), self.base.pan_fraction());
-            let of = RunId { replicate, run, d15f_mm, pan_fraction };
+            let of = self.run_id(replicate, run);
             let seconds = begun.elapsed().as_secs_f64();
             let mut metrics = RunMetrics::new(&end, &state, flow.as_ref(), of, seconds);
-            if d15f.is_none() {
+            if self.d15f_mm().is_none() {
                 metrics.run.largest_eroded_over_d15f = None;
             }
             recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, of));
@@ -302,6 +304,11 @@ impl NetworkWalk {
             below,
         };
         Ok((result, at_ends))
+    }
+
+    fn run_id(&self, replicate: u64, run: u64) -> RunId {
+        let d15f_mm = self.d15f_mm().unwrap_or(f64::NAN);
+        RunId { replicate, run, d15f_mm, pan_fraction: self.base.pan_fraction() }
     }
 }
 
@@ -340,11 +347,11 @@ mod tests {
                 replicates: 3,
                 engine: Engine::ALL.into_iter().find(|e| e.name() == engine).unwrap(),
                 filter: Some(GivenFilter {
-                    gradation: case.filter.clone(),
+                    gradation: case.filter.gradation.clone(),
                     is_measured: false,
                     grains_per_void: None,
                 }),
-                ..NetworkWalk::new(case.base.clone(), 30_000)
+                ..NetworkWalk::new(case.base.gradation.clone(), 30_000)
             };
             let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
             assert_eq!((found.verdict, &found.summary), (expected.model.class, &expected.summary));

@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use crate::case::{Case, replicate_seed};
+use crate::case::{Case, CaseNetwork, replicate_seed};
 use crate::gradation::Gradation;
 use crate::network::Network;
 use crate::outcome::Eroded;
@@ -49,7 +49,7 @@ const CLASSES: usize = 2;
 /// where its own is as slim, where even the narrowest takes more than `most_s`, or where it cannot be walked.
 /// On its own lattice these runs are guessed to take `whole_s`.
 pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Option<WorkByVoid> {
-    let [voids, _, start_nodes, layers] = case.counts;
+    let CaseNetwork { voids, start_nodes, layers, .. } = case.network;
     let depth = u32::try_from(layers).ok()?;
     let seconds = |width: u32| whole_s * (f64::from(width).powi(2) * f64::from(depth) / voids as f64);
     let width = (NARROWEST..=WIDEST).rev().find(|&width| seconds(width) <= most_s)?;
@@ -67,8 +67,9 @@ fn alone<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
 /// The same, for a lattice so many voids wide and deep.
 fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid> {
     let seed = replicate_seed(case.scene.walk.seed, 1);
-    let network = Network::cubic([width, width, depth], &case.curve, case.unit_mm, seed).ok()?;
-    let share = network.voids() as f64 / case.counts[0] as f64;
+    let network =
+        Network::cubic([width, width, depth], &case.filter.curve, case.filter.unit_mm, seed).ok()?;
+    let share = network.voids() as f64 / case.network.voids as f64;
     let n_base = ((n_base as f64 * share).round() as u64).max(1);
     let across = width as usize * width as usize;
     let mut work = WorkByVoid::default();
@@ -76,8 +77,9 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
     let (begun, mut counting) = (thread_seconds(), 0.0);
     for run in 1..=case.scene.walk.runs {
         let plan = plan(case, &network, &clogged.blocked, n_base);
-        let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, run);
-        let classes = SizeClasses::logarithmic(case.sampler.smallest(), case.sampler.largest(), CLASSES);
+        let supply = plan.supply(case.supply.sampler.clone(), n_base, case.increments(), seed, run);
+        let classes =
+            SizeClasses::logarithmic(case.supply.sampler.smallest(), case.supply.sampler.largest(), CLASSES);
         let mut state = State::new(&network, &supply, classes, clogged, seed, run);
         work.one_by_one += supply.total() as f64;
         Walk::new(&network, &supply, &state)

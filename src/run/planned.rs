@@ -9,7 +9,7 @@ use crate::outcome::verdict::{THRESHOLD, classify};
 /// studies, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
-    let of_ends = replicates_of_end(first) * case.curve_ends.len() as u64;
+    let of_ends = replicates_of_end(first) * case.filter.curve_ends.len() as u64;
     let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
     case.scene.walk.runs * (first + of_ends + points * replicates_at_least(case))
 }

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
@@ -26,8 +27,8 @@ use crate::scene::NetworkSource;
 use crate::store::checkpoint::{Checkpoint, CheckpointError};
 use crate::verdict::walks::{self, Walked, is_clogged};
 use crate::walk::{
-    Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Walk, WalkControl,
-    WalkError, from_words,
+    Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Supply, Walk,
+    WalkControl, WalkError, from_words,
 };
 
 /// How replicates are walked: who follows them, and what saves them.
@@ -79,7 +80,7 @@ pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<Replica
 
 /// Says that the verdict needs so many replicates, as far as is known.
 fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
-    let readings = !case.curve_ends.is_empty();
+    let readings = !case.filter.curve_ends.is_empty();
     context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
 }
 
@@ -91,7 +92,7 @@ fn all_replicates(
     let (mut wanted, mut walked) = (first_replicates(case), Vec::new());
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, part, more, case.n_base, context)?);
+        walked.extend(some_replicates(case, part, more, case.supply.n_base, context)?);
         match look(case, &walked) {
             Some(Look::Until(next)) => {
                 context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
@@ -162,49 +163,24 @@ pub(super) fn walk_replicate(
     let seed = replicate_seed(case.scene.walk.seed, replicate);
     let id = WalkId { part, replicate, seed, n_base };
     let to_walk = context.network(case, seed)?;
-    let network = &*to_walk.network;
+    let network = &to_walk.network;
     let mut clogged = Clogged::none(network);
     let first = plan(case, network, &clogged.blocked, n_base);
-    let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
-    let (mut done, mut saved) = match loaded.transpose().map_err(RunError::Checkpoint)? {
-        Some(Some((done, saved))) => (done, Some(saved)),
-        _ => (Done::default(), None),
-    };
-    if done.complete {
-        done.runs.iter().for_each(|_| context.tell(Event::RunDone));
-        done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
-    }
+    let (mut done, mut saved) = load(id, context)?;
     let mut exits = if done.complete { None } else { to_walk.exits(case).map(Cow::Borrowed) };
     while !done.complete {
         let of = RunId {
             replicate,
             run: done.runs.len() as u64 + 1,
-            d15f_mm: case.filter.d(15.0).unwrap_or(f64::NAN),
+            d15f_mm: case.filter.gradation.d(15.0).unwrap_or(f64::NAN),
             pan_fraction: case.pan_by_mass_only(),
         };
+        let run = RunContext { case, network, id, of };
         let begun = Instant::now();
-        let walk = RunContext { case, network, id, of };
-        let (state, network, flow, left) =
-            walk.run(clogged, exits.take(), &mut done, saved.take(), context)?;
+        let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
+        run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
         // What the run leaves open is what the next begins with.
-        exits = left.map(Cow::Owned);
-        let seconds = begun.elapsed().as_secs_f64();
-        let metrics = RunMetrics::new(&network, &state, flow.as_ref(), of, seconds);
-        let recorder = std::mem::take(&mut done.recorder);
-        if part == 0 {
-            done.recorded.append(Recorded::new(&network, &state, flow.as_ref(), &recorder, of));
-        }
-        done.below.push(metrics.below_threshold);
-        done.runs.push(metrics.run);
-        done.complete = done.runs.len() as u64 == case.scene.walk.runs;
-        clogged = state.into_clogged();
-        context.tell(Event::RunDone);
-        if let (Some(run), Some(below)) = (done.runs.last(), done.below.last()) {
-            tell_walked(id, run, *below, context);
-        }
-        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
-            checkpoints.save_finished(id, &done);
-        }
+        (clogged, exits) = (end.state.into_clogged(), end.exits.map(Cow::Owned));
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
     Ok(ReplicateResult {
@@ -214,6 +190,19 @@ pub(super) fn walk_replicate(
         left_out: first.left_out().to_vec(),
         below: done.below,
     })
+}
+
+/// What is done of a replicate, and where a run of it was saved; a replicate that is whole is told.
+fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoint>), RunError> {
+    let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
+    let Some(Some((done, saved))) = loaded.transpose().map_err(RunError::Checkpoint)? else {
+        return Ok((Done::default(), None));
+    };
+    if done.complete {
+        done.runs.iter().for_each(|_| context.tell(Event::RunDone));
+        done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
+    }
+    Ok((done, Some(saved)))
 }
 
 /// Ends a replicate that has not begun, where the caller asked to stop.
@@ -233,7 +222,7 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
     let clogging = (case.arching(n_base), case.scene.leaves_openings());
-    RunPlan::with_clogging(engine, network, &case.sampler, blocked, share, clogging)
+    RunPlan::with_clogging(engine, network, &case.supply.sampler, blocked, share, clogging)
         .sampled(case.scene.walk.sampling)
 }
 
@@ -244,7 +233,7 @@ pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
-    Ok(plan(case, &network, &open, case.n_base).left_out().to_vec())
+    Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
 }
 
 /// Finds out whether every replicate that is known to be walked has a network: one with a distribution of
@@ -262,25 +251,29 @@ pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError>
         network.map(drop).map_err(|error| RunError::Refused(format!("replicate {replicate}: {error}")))
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
-    let fit = case.side_by_side(case.n_base, rayon::current_num_threads() as u64) > 1;
+    let fit = case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1;
     each(replicates.collect(), fit, one).map(drop)
 }
 
-/// What is left of a run: its state, its network, the flow through it, and its exits.
-type RunEnd<'a> = (State, Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
+/// What is left of a run.
+struct RunEnd<'a> {
+    state: State,
+    network: Cow<'a, Network>,
+    flow: Option<FlowRecord>,
+    exits: Option<PlainExits>,
+}
 
 /// One run of one replicate.
 struct RunContext<'a> {
     case: &'a Case,
-    network: &'a Network,
+    network: &'a Arc<Network>,
     id: WalkId,
     of: RunId,
 }
 
 impl RunContext<'_> {
-    /// Walks from the start, with the network's exits where they are known, or from where it was saved; the
-    /// state, the network, the flow and the exits at the end.
-    fn run(
+    /// Walks from the start, with the network's exits where they are known, or from where it was saved.
+    fn walk(
         &self,
         clogged: Clogged,
         exits: Option<Cow<PlainExits>>,
@@ -289,33 +282,14 @@ impl RunContext<'_> {
         context: &ReplicateContext,
     ) -> Result<RunEnd<'_>, RunError> {
         let Self { case, network, id, of } = *self;
-        let WalkId { part, seed, n_base, .. } = id;
-        let clogged = match &saved {
-            // What is left of constrictions now comes with the state.
-            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
-            _ => clogged,
-        };
-        let plan = plan(case, network, &clogged.blocked, n_base);
-        let supply = plan.supply(case.sampler.clone(), n_base, case.increments(), seed, of.run);
-        let (smallest, largest) = (case.sampler.smallest(), case.sampler.largest());
-        let classes = SizeClasses::logarithmic(smallest, largest, case.scene.record.wanted().size_classes);
-        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
-        let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-        if let Some(saved) = saved {
-            if saved.label.network != network.fingerprint() {
-                return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
-                    file: saved.path().to_owned(),
-                }));
-            }
-            state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
-        }
+        let (supply, mut state) = self.begin(clogged, saved)?;
         let mut walk = Walk::with_exits(network, &supply, &state, exits);
         let (mut last, mut failed) = (Instant::now(), None);
         let mut wanted = case.scene.record.wanted();
         // One replicate is picture enough.
         wanted.voids = wanted.voids.filter(|_| of.replicate == 1);
         let walked = walk.run(&mut state, &mut |state| {
-            if part == 0 {
+            if id.part == 0 {
                 done.recorder.observe(&wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
@@ -341,10 +315,53 @@ impl RunContext<'_> {
         let (end, flow, exits) = walk.end_with_exits(&state)?;
         // The network outlives what the run was fed from.
         let network = match end {
-            Cow::Borrowed(_) => Cow::Borrowed(network),
+            Cow::Borrowed(_) => Cow::Borrowed(&**network),
             Cow::Owned(directed) => Cow::Owned(directed),
         };
-        Ok((state, network, flow, exits))
+        Ok(RunEnd { state, network, flow, exits })
+    }
+
+    /// What the run is fed from, and its state at the start or where it was saved.
+    fn begin(&self, clogged: Clogged, saved: Option<Checkpoint>) -> Result<(Supply, State), RunError> {
+        let Self { case, network, id: WalkId { seed, n_base, .. }, of } = *self;
+        let clogged = match &saved {
+            // What is left of constrictions now comes with the state.
+            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
+            _ => clogged,
+        };
+        let (plan, sampler) = (plan(case, network, &clogged.blocked, n_base), &case.supply.sampler);
+        let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, of.run);
+        let classes = case.scene.record.wanted().size_classes;
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), classes);
+        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
+        let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
+        if let Some(saved) = saved {
+            if saved.label.network != network.fingerprint() {
+                return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
+                    file: saved.path().to_owned(),
+                }));
+            }
+            state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
+        }
+        Ok((supply, state))
+    }
+
+    /// Adds the run to what is done of its replicate, tells of it, and saves the replicate where it is whole.
+    fn record(&self, end: &RunEnd, seconds: f64, done: &mut Done, context: &ReplicateContext) {
+        let RunEnd { state, network, flow, .. } = end;
+        let metrics = RunMetrics::new(network, state, flow.as_ref(), self.of, seconds);
+        let recorder = std::mem::take(&mut done.recorder);
+        if self.id.part == 0 {
+            done.recorded.append(Recorded::new(network, state, flow.as_ref(), &recorder, self.of));
+        }
+        context.tell(Event::RunDone);
+        tell_walked(self.id, &metrics.run, metrics.below_threshold, context);
+        done.below.push(metrics.below_threshold);
+        done.runs.push(metrics.run);
+        done.complete = done.runs.len() as u64 == self.case.scene.walk.runs;
+        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
+            checkpoints.save_finished(self.id, done);
+        }
     }
 }
 
@@ -391,7 +408,7 @@ mod tests {
     /// The figures and rows of a replicate, times apart.
     fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
         let context = ReplicateContext { callbacks: &Callbacks::default(), checkpoints: None, networks };
-        let mut walked = walk_replicate(case, 0, 1, case.n_base, &context).unwrap();
+        let mut walked = walk_replicate(case, 0, 1, case.supply.n_base, &context).unwrap();
         walked.replicate.runs.iter_mut().for_each(|run| run.seconds = 0.0);
         assert_eq!(walked.replicate.runs.len(), 2);
         format!("{:?} {:?}", walked.replicate, walked.recorded)

@@ -15,8 +15,8 @@ use crate::outcome::digest::digest;
 use crate::outcome::left_out::LeftOut;
 use crate::outcome::record::Note;
 use crate::outcome::record::{
-    ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Verdict,
-    VoidRow, commit,
+    ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Stopping,
+    Verdict, VoidRow, commit,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -37,22 +37,14 @@ pub fn outcome(
     seconds: f64,
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
-    let unsure = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
     let inputs = rule_inputs(case, walked);
     let rules = rules::apply(&inputs);
     let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
-    let mut found = notes_of_walk(case, verdict, walked);
-    found.extend(case.unchecked_clogging());
-    found.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
-    found.extend(case.notes());
-    found.extend(other.range.as_ref().map(|range| match range.agrees() {
-        true => Note::CurveRange {},
-        false => Note::CurveDecides { of_the_curve: range.verdict.words().into() },
-    }));
+    let notes = notes_before_results(case, verdict, walked, (stopping.as_ref(), other.range.as_ref()));
     let inputs_record = case.record();
     // Multiples of D0F are the sizes of a study, not of two soils.
     let in_mm = !case.is_scale_free();
-    let mut outcome = Outcome {
+    let outcome = Outcome {
         headline: None,
         practice: in_mm.then(|| practice::record(&rules, rules::tested_range(&inputs))).flatten(),
         model: Model {
@@ -61,14 +53,14 @@ pub fn outcome(
             replicates: walked.len() as u64,
             network: inputs_record.network.kind,
         },
-        notes: Vec::new(),
+        notes,
         if_dispersive: None,
         constrictions: ConstrictionsRecord { origin: case.curve_origin() },
         seed: case.scene.walk.seed,
-        n_base: case.n_base,
-        n_base_eq2: case.n_base_eq2,
-        capped: case.capped,
-        grains_per_void: case.grains_per_void,
+        n_base: case.supply.n_base,
+        n_base_eq2: case.supply.n_base_eq2,
+        capped: case.supply.capped,
+        grains_per_void: case.filter.grains_per_void,
         engine: walked.first().map_or(case.scene.walk.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
         summary,
@@ -83,7 +75,7 @@ pub fn outcome(
         infiltration: case
             .scene
             .is_lattice_by_area()
-            .then(|| infiltration(&case.curve, &case.base, case.counts[3])),
+            .then(|| infiltration(&case.filter.curve, &case.base.gradation, case.network.layers)),
         curve_range: other.range.clone(),
         arching: case.arching_record(),
         sensitivity: studies.sensitivity,
@@ -92,19 +84,45 @@ pub fn outcome(
         digest: String::new(),
         seconds,
     };
-    found.extend(outcome.notes_of_results());
+    concluded_from_results(outcome, case, inputs)
+}
+
+/// The outcome with what follows from its results: notes, whether practice accepts the filter, the digest.
+fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> Outcome {
+    let mut notes = std::mem::take(&mut outcome.notes);
+    notes.extend(outcome.notes_of_results());
     if case.scene.base.dispersive.is_none() {
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
-        found.extend(outcome.if_dispersive.map(dispersion::note));
+        notes.extend(outcome.if_dispersive.map(dispersion::note));
     }
-    outcome.notes = ordered(&outcome.rules, found);
-    let is_beyond = outcome
-        .if_dispersive
-        .and_then(|limit| limit.broken_by(&outcome.rules, Some(outcome.inputs.filter.d15_mm)));
-    let is_beyond = is_beyond.is_some();
+    outcome.notes = ordered(&outcome.rules, notes);
+    let d15f_mm = Some(outcome.inputs.filter.d15_mm);
+    let is_beyond =
+        outcome.if_dispersive.and_then(|limit| limit.broken_by(&outcome.rules, d15f_mm)).is_some();
+    let in_mm = !case.is_scale_free();
     outcome.headline = in_mm.then(|| practice::headline(&outcome.rules, is_beyond)).flatten();
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
+}
+
+/// What the walks, the case, the rule that stopped them and the range of its curve say of the verdict.
+fn notes_before_results(
+    case: &Case,
+    verdict: Verdict,
+    walked: &[ReplicateResult],
+    (stopping, range): (Option<&Stopping>, Option<&CurveRange>),
+) -> Vec<Note> {
+    let of_network = (case.network.layers, case.scene.leaves_openings());
+    let mut notes = said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network);
+    notes.extend(case.unchecked_clogging());
+    let unsure = stopping.and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
+    notes.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
+    notes.extend(case.notes());
+    notes.extend(range.map(|range| match range.agrees() {
+        true => Note::CurveRange {},
+        false => Note::CurveDecides { of_the_curve: range.verdict.words().into() },
+    }));
+    notes
 }
 
 /// Mass eroded (%) of each run, least and most, over the replicates and the range of the constriction curve.
@@ -115,12 +133,6 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
         ends.unwrap_or([low.unwrap_or(mean), high.unwrap_or(mean)]).map(|part| 100.0 * part)
     };
     summary.iter().enumerate().map(of_run).collect()
-}
-
-/// What these walks say themselves against the verdict.
-fn notes_of_walk(case: &Case, verdict: Verdict, walked: &[ReplicateResult]) -> Vec<Note> {
-    let of_network = (case.counts[3], case.scene.leaves_openings());
-    said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network)
 }
 
 /// Writes what a run can be started again from: the resolved scene and its input files.
@@ -162,11 +174,11 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
     RuleInputs {
-        filter: &case.filter,
+        filter: &case.filter.gradation,
         filter_is_measured: case.filter_is_measured(),
-        base: case.base_as_given(),
-        walked_base: &case.base,
-        base_soil: BaseSoil::of(case.base_as_given(), case.is_scale_free()),
+        base: case.base.as_given(),
+        walked_base: &case.base.gradation,
+        base_soil: BaseSoil::of(case.base.as_given(), case.is_scale_free()),
         scale_free: case.is_scale_free(),
         filter_curves: Vec::new(),
         dispersive: case.scene.base.dispersive == Some(true),

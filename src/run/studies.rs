@@ -51,7 +51,7 @@ struct Walked {
 fn points(case: &Case) -> Vec<Point<'_>> {
     let factors = case.sensitivity_factors();
     // The parts between are those of the ends of the curve's range.
-    let thicknesses = (factors.len() + case.curve_ends.len()) as u64 + 1..;
+    let thicknesses = (factors.len() + case.filter.curve_ends.len()) as u64 + 1..;
     let of_base = |(part, factor): (u64, f64)| Point {
         case: Cow::Borrowed(case),
         part,
@@ -61,7 +61,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
     // What cannot be is said among what is left out.
     let of_thickness = |(part, factor): (u64, f64)| {
         let other = case.of_thickness(factor).ok()?;
-        Some(Point { part, n_base: other.n_base, case: Cow::Owned(other), base_factor: None })
+        Some(Point { part, n_base: other.supply.n_base, case: Cow::Owned(other), base_factor: None })
     };
     let thick = thicknesses.zip(case.thickness_factors()).filter_map(of_thickness);
     (1..).zip(factors).map(of_base).chain(thick).collect()
@@ -138,7 +138,7 @@ impl Studies {
     fn add_own(&mut self, case: &Case, own: &[ReplicateResult], verdict: Verdict) {
         let judged = || Classed { verdict, ..classed(own) };
         if !self.sensitivity.is_empty() {
-            self.sensitivity.push(of_base(judged(), case, 1.0, case.n_base));
+            self.sensitivity.push(of_base(judged(), case, 1.0, case.supply.n_base));
             self.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
         }
         if !self.thickness.is_empty() {
@@ -167,7 +167,7 @@ fn walk_all(
     let (mut small, large): (Vec<_>, Vec<_>) = jobs.into_iter().partition(is_small);
     // The longest first, so that no thread is left with one at the end.
     small.sort_by_key(|&(point, _)| {
-        Reverse(points[point].n_base.saturating_mul(points[point].case.counts[3]))
+        Reverse(points[point].n_base.saturating_mul(points[point].case.network.layers))
     });
     let walked: Result<Vec<_>, RunError> = small.into_par_iter().with_max_len(1).map(one).collect();
     let mut walked = walked?;
@@ -179,16 +179,17 @@ fn walk_all(
 }
 
 fn of_base(walked: Classed, case: &Case, factor: f64, n_base: u64) -> Sensitivity {
-    let [grains_per_void, mass_ratio] = [case.grains_per_void, case.mass_ratio].map(|of| Some(of? * factor));
+    let [grains_per_void, mass_ratio] =
+        [case.filter.grains_per_void, case.supply.mass_ratio].map(|of| Some(of? * factor));
     Sensitivity { factor, n_base, grains_per_void, mass_ratio, walked }
 }
 
 fn of_thickness(walked: Classed, case: &Case, other: &Case) -> OfThickness {
     OfThickness {
-        factor: other.counts[3] as f64 / case.counts[3] as f64,
-        layers: other.counts[3],
+        factor: other.network.layers as f64 / case.network.layers as f64,
+        layers: other.network.layers,
         thickness_mm: other.thickness(),
-        n_base: other.n_base,
+        n_base: other.supply.n_base,
         walked,
     }
 }

@@ -183,19 +183,9 @@ fn walk_here(
     resumed: bool,
     callbacks: &Callbacks,
 ) -> Result<FinishedRun, RunError> {
-    let wanted = options.out.as_deref();
     let files = files_of(&scene);
-    let claim = || match wanted {
-        Some(path) => {
-            let folder = claim(path, FolderKind::Run, options.overwrite)?;
-            if options.overwrite {
-                outlive_clear(&folder, FolderKind::Run, &files)?;
-            }
-            Ok(folder)
-        }
-        None => claim_first_free("voidwalk-run"),
-    };
-    let at = wanted.unwrap_or(Path::new("."));
+    let at = options.out.as_deref().unwrap_or(Path::new("."));
+    let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
     let unit = SizeUnit::of(case.is_scale_free(), false);
     (callbacks.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
@@ -206,14 +196,7 @@ fn walk_here(
     }
     let begun = begun(&folder, &fingerprint, options.overwrite)?;
     if begun.is_none() {
-        if resumed {
-            // Its own scene and files are all that there is of it.
-            clear_but_scene(&folder)?;
-        } else {
-            outlive_clear(&folder, FolderKind::Run, &files)?;
-            clear(&folder, FolderKind::Run)?;
-        }
-        checkpoints::discard(folder.path())?;
+        clear_for(&folder, &files, resumed)?;
     } else if let Some(outcome) = without_page(&folder, &case)? {
         callbacks.results(FolderKind::Run, folder.path())?;
         checkpoints::discard(folder.path())?;
@@ -240,6 +223,28 @@ fn walk_here(
     checkpoints.clear()?;
     unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
+}
+
+/// Claims the folder of a run of a scene of these files, which must not go with what it replaces.
+fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
+    let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
+    let folder = claim(path, FolderKind::Run, options.overwrite)?;
+    if options.overwrite {
+        outlive_clear(&folder, FolderKind::Run, files)?;
+    }
+    Ok(folder)
+}
+
+/// Clears the folder of a run that begins anew.
+fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
+    if resumed {
+        // Its own scene and files are all that there is of it.
+        clear_but_scene(folder)?;
+    } else {
+        outlive_clear(folder, FolderKind::Run, files)?;
+        clear(folder, FolderKind::Run)?;
+    }
+    Ok(checkpoints::discard(folder.path())?)
 }
 
 /// The files that a scene is made of, itself included where it is one.

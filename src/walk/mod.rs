@@ -101,6 +101,7 @@ pub use tally::Tally;
 pub use threads::threads;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
@@ -148,6 +149,8 @@ pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 pub struct Walk<'a> {
     /// A copy of its own where water gives constrictions their direction.
     network: Cow<'a, Network>,
+    /// The network as it was given, where its exits are to outlive the walk.
+    kept: Option<&'a Arc<Network>>,
     directions: Option<Directions>,
     /// Why the flow is not known.
     no_flow: Option<FlowError>,
@@ -162,10 +165,13 @@ pub struct Walk<'a> {
 
 /// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first
 /// runs of many walks, or left by a run to the next.
+///
+/// They keep their network, so that no other one takes its place in memory and is taken for it.
 #[derive(Clone)]
 pub struct PlainExits {
-    /// Number of blocked constrictions that they hold for: nothing opens again, so it names them.
-    blocked: u64,
+    network: Arc<Network>,
+    /// The blocked constrictions that they hold for.
+    blocked: BitVec,
     table: ExitTable,
     /// How passive particles are split, where there were any.
     shares: Option<counts::Shares>,
@@ -176,12 +182,18 @@ type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
 
 impl PlainExits {
     /// Those of this network with nothing blocked.
-    pub fn unblocked(network: &Network) -> Self {
-        Self::new(network, &BitVec::<usize>::repeat(false, network.constrictions()), 0, true)
+    pub fn unblocked(network: &Arc<Network>) -> Self {
+        let blocked = BitVec::repeat(false, network.constrictions());
+        let (table, shares) = Self::work_out(network, &blocked, true);
+        Self { network: network.clone(), blocked, table, shares }
     }
 
-    /// Of what `blocked` leaves open, so many in all; with or without the shares of passive particles.
-    fn new(network: &Network, blocked: &BitSlice, count: u64, with_shares: bool) -> Self {
+    /// Of what `blocked` leaves open; with or without the shares of passive particles.
+    fn work_out(
+        network: &Network,
+        blocked: &BitSlice,
+        with_shares: bool,
+    ) -> (ExitTable, Option<counts::Shares>) {
         let (ways, voids) = (Ways::Unblocked(blocked), 0..network.voids() as u32);
         let mut table = ExitTable::empty(network, blocked);
         let mut shares = with_shares.then(|| counts::Shares::empty(network));
@@ -191,27 +203,43 @@ impl PlainExits {
                 shares.set(network, of_void);
             }
         });
-        Self { blocked: count, table, shares }
+        (table, shares)
+    }
+
+    /// Whether they are those of this very network with these constrictions blocked.
+    fn are_of(&self, network: &Network, blocked: &BitSlice) -> bool {
+        std::ptr::eq(&*self.network, network) && self.blocked == *blocked
     }
 
     /// The same for a run that begins with them.
-    fn again(mut self, network: &Network, blocked: &BitSlice) -> Self {
-        if self.blocked > 0 {
-            self.table.class_anew(network, blocked);
+    fn again(self) -> (ExitTable, Option<counts::Shares>) {
+        let Self { network, blocked, mut table, shares } = self;
+        if blocked.any() {
+            table.class_anew(&network, &blocked);
         }
-        self
+        (table, shares)
     }
 }
 
 impl<'a> Walk<'a> {
     /// Prepares to walk from `state` on.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
-        Self::with_exits(network, supply, state, None)
+        Self::prepare(network, supply, state, None)
     }
 
-    /// As [`Walk::new`], with exits of this network that are known already; they are worked out where they
-    /// are those of another state, or more hangs on who goes where than what is blocked.
+    /// As [`Walk::new`], with exits that are known already; they are worked out where they are those of
+    /// another network or state, or where a particle's way depends on more than what is blocked.
     pub fn with_exits(
+        network: &'a Arc<Network>,
+        supply: &'a Supply,
+        state: &State,
+        known: Option<Cow<PlainExits>>,
+    ) -> Self {
+        let known = known.filter(|known| known.are_of(network, &state.blocked));
+        Self { kept: Some(network), ..Self::prepare(network, supply, state, known) }
+    }
+
+    fn prepare(
         network: &'a Network,
         supply: &'a Supply,
         state: &State,
@@ -228,18 +256,13 @@ impl<'a> Walk<'a> {
         let weighed = weighed(directions.as_ref());
         let ways = state.ways(weighed);
         let (table, shares) = match (supply.arching(), &state.openings) {
-            (None, None) => {
-                let of = |known: &Cow<PlainExits>| known.blocked == state.tally.blocked;
-                let PlainExits { table, shares, .. } =
-                    match known.filter(|known| !network.exit_rule().needs_flow() && of(known)) {
-                        Some(known) => known.into_owned().again(&network, &state.blocked),
-                        None => {
-                            let with_shares = !matches!(state.passive, Passive::OneByOne);
-                            PlainExits::new(&network, &state.blocked, state.tally.blocked, with_shares)
-                        }
-                    };
-                (table, shares)
-            }
+            (None, None) => match known.filter(|_| !network.exit_rule().needs_flow()) {
+                Some(known) => known.into_owned().again(),
+                None => {
+                    let with_shares = !matches!(state.passive, Passive::OneByOne);
+                    PlainExits::work_out(&network, &state.blocked, with_shares)
+                }
+            },
             (Some(arching), _) if arching.of_void().is_some() => (ExitTable::general(&network, ways), None),
             _ => (ExitTable::by_widths(&network, ways), None),
         };
@@ -247,6 +270,7 @@ impl<'a> Walk<'a> {
         let passive = counts::PassiveWalk::new(&network, supply, state, shares);
         Self {
             network,
+            kept: None,
             directions,
             no_flow,
             supply,
@@ -268,12 +292,13 @@ impl<'a> Walk<'a> {
         Ok((network, record))
     }
 
-    /// The same, and the exits that the next run on this network may begin with.
+    /// The same, and the exits that the next run on this network may begin with, of a walk that was prepared
+    /// by [`Walk::with_exits`].
     ///
     /// # Errors
     /// [`WalkError::Flow`].
     pub fn end_with_exits(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
-        let Self { mut network, directions, no_flow, supply, table, passive, .. } = self;
+        let Self { mut network, kept, directions, no_flow, supply, table, passive, .. } = self;
         let error = |source| WalkError::Flow { increment: state.increment, source };
         if let Some(source) = no_flow {
             return Err(error(source));
@@ -283,8 +308,10 @@ impl<'a> Walk<'a> {
             None => None,
         };
         let is_plain = !network.exit_rule().needs_flow() && state.openings.is_none();
-        let exits = (is_plain && supply.arching().is_none()).then(|| PlainExits {
-            blocked: state.tally.blocked,
+        let kept = kept.filter(|_| is_plain && supply.arching().is_none());
+        let exits = kept.map(|network| PlainExits {
+            network: network.clone(),
+            blocked: state.blocked.clone(),
             table,
             shares: passive.map(counts::PassiveWalk::into_shares),
         });

@@ -1,11 +1,16 @@
 //! Whole runs by every kernel, number of threads and kind of memory: the same bits.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use bitvec::vec::BitVec;
-use voidwalk::constrictions;
+use voidwalk::constrictions::{self, Curve, CurveUnit};
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
 use voidwalk::store::{Column, Placement};
-use voidwalk::walk::{CHUNK, Isa, Sampling, SizeClasses, State, Supply, Walk, WalkControl, threads};
+use voidwalk::walk::{
+    CHUNK, Isa, PlainExits, Sampling, SizeClasses, State, Supply, Walk, WalkControl, threads,
+};
 
 /// Two runs of `n` particles of a base with D85 = Dc`percent`: every column after increments 7 and 60, and at
 /// the end.
@@ -140,4 +145,34 @@ fn mapped_files_change_no_bit() {
     };
     assert!(on(&Placement::Memory) == on(&Placement::Mapped(folder.path().to_owned())));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+/// Exits that are known of another network, or of other blocked constrictions, of the same numbers.
+#[test]
+fn exits_of_another_network_or_blocked_set_are_not_taken() {
+    let curve = Curve::from_points(&[(0.0, 0.1), (100.0, 0.3)], CurveUnit::Mm).unwrap();
+    let [network, other] =
+        [7, 8].map(|seed| Arc::new(Network::cubic([8, 8, 12], &curve, 1.0, seed).unwrap()));
+    let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5).unwrap(), 1.0).unwrap();
+    let supply = Supply::new(sampler, 20_000, 100);
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
+    let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
+    let walked = |known: Option<&PlainExits>, blocked: &BitVec| {
+        let mut state = State::new(&network, &supply, classes.clone(), blocked.clone(), 7, 1);
+        let mut walk = Walk::with_exits(&network, &supply, &state, known.map(Cow::Borrowed));
+        walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
+        let (_, _, exits) = walk.end_with_exits(&state).unwrap();
+        (state.tally, state.blocked, exits.unwrap())
+    };
+    let (first, blocked, left) = walked(None, &open);
+    for known in [PlainExits::unblocked(&network), PlainExits::unblocked(&other)] {
+        assert_eq!(walked(Some(&known), &open).0, first);
+    }
+    // As many constrictions are blocked, and others.
+    let mut shifted = blocked.clone();
+    shifted.rotate_left(1);
+    assert_ne!(walked(None, &shifted).0, walked(None, &blocked).0);
+    for blocked in [&blocked, &shifted] {
+        assert_eq!(walked(Some(&left), blocked).0, walked(None, blocked).0);
+    }
 }

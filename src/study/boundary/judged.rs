@@ -1,7 +1,7 @@
 //! A row at one ratio with its sizes, and what a reader must know of the model there.
 
 use super::row::Row;
-use crate::case::{Case, StatedBase};
+use crate::case::{Case, CaseBase, CaseSupply, StatedBase};
 use crate::outcome::record::Note;
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
@@ -44,21 +44,23 @@ impl Judged {
     pub fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
         let (has_size, d85) = (row.d85_mm.is_some(), row.d85_mm.unwrap_or(1.0));
         let scaled = |stated: &StatedBase| -> Result<StatedBase, RunError> {
-            let factor = d85 / row.stated.gradation.d(85.0).unwrap_or(d85);
+            let factor = d85 / row.stated.base.gradation.d(85.0).unwrap_or(d85);
             let sizes = |gradation: &crate::gradation::Gradation| {
                 gradation.scaled(factor).map_err(crate::case::CaseError::from)
             };
-            let regraded_from = match &stated.regraded_from {
+            let regraded_from = match &stated.base.regraded_from {
                 Some((given, at)) => Some((sizes(given)?, at * factor)),
                 None => None,
             };
-            Ok(StatedBase { gradation: sizes(&stated.gradation)?, regraded_from, ..stated.clone() })
+            let base = CaseBase { gradation: sizes(&stated.base.gradation)?, regraded_from };
+            Ok(StatedBase { base, ..stated.clone() })
         };
         let stated = if has_size { row.stated.clone() } else { scaled(&row.stated)? };
         let mut case = row.case.enlarged(ratio * d85 / row.d15f(), &stated)?;
         if let Ok(walked) = row.at(ratio) {
-            case.counts = walked.counts;
-            (case.n_base, case.n_base_eq2, case.capped) = (walked.n_base, walked.n_base_eq2, walked.capped);
+            let CaseSupply { n_base, n_base_eq2, capped, .. } = walked.supply;
+            case.network = walked.network;
+            case.supply = CaseSupply { n_base, n_base_eq2, capped, ..case.supply };
         }
         let base_name = case.record().base.name;
         let mut real_thickness = None;

@@ -1,6 +1,7 @@
 //! One density and thickness, ready to be walked at any ratio.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::options::Thickness;
 use super::plan::Wanted;
@@ -47,7 +48,7 @@ impl Row {
     /// The same at the ends of the range in which the constriction curve is known.
     pub fn at_curve_ends(&self) -> Vec<Self> {
         let case = &self.case;
-        let names_itself = case.guessed_density.is_some() || case.library.is_some();
+        let names_itself = case.filter.guessed_density.is_some() || case.filter.library.is_some();
         let of = |end: &OtherCurve| {
             let density = match names_itself {
                 true => end.name.replace(" = ", " "),
@@ -58,15 +59,15 @@ impl Row {
             let mut case = self.case.with_curve(end.curve.clone());
             // What a user says of it holds for every curve.
             let times = if case.scene.filter.grains_per_void.is_none() { end.times_grains } else { 1.0 };
-            case.grains_per_void = case.grains_per_void.map(|grains| grains * times);
+            case.filter.grains_per_void = case.filter.grains_per_void.map(|grains| grains * times);
             Self { case, wanted, end_of, ..self.clone() }
         };
-        self.case.curve_ends.iter().map(of).collect()
+        self.case.filter.curve_ends.iter().map(of).collect()
     }
 
     /// D15F in the case's own unit.
     pub fn d15f(&self) -> f64 {
-        self.case.filter.d(15.0).unwrap_or(f64::NAN)
+        self.case.filter.gradation.d(15.0).unwrap_or(f64::NAN)
     }
 
     /// Networks that are searched: none with a density that nobody knows, whose ends are searched instead.
@@ -90,7 +91,7 @@ impl Row {
     /// The thickness that was asked for and that of one layer (mm), where the layers hang on the ratio.
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.wanted.thickness else { return None };
-        let layer = self.case.filter.d_by_number(50.0).unwrap_or(self.case.unit_mm);
+        let layer = self.case.filter.gradation.d_by_number(50.0).unwrap_or(self.case.filter.unit_mm);
         Some((mm, layer * self.factor(ratio)?))
     }
 
@@ -137,22 +138,26 @@ impl Row {
         let too_few = || -> Option<bool> {
             let Amount::MassRatio(mass_ratio, _) = self.case.scene.base.amount() else { return None };
             let base = self.base.scaled(self.d15f() / ratio).ok()?;
-            let per_grain = base.particles_per_unit_volume() / self.case.filter.particles_per_unit_volume();
-            Some(mass_ratio * self.case.grains_per_void? * self.case.counts[0] as f64 * per_grain < 1.0)
+            let per_grain =
+                base.particles_per_unit_volume() / self.case.filter.gradation.particles_per_unit_volume();
+            Some(
+                mass_ratio * self.case.filter.grains_per_void? * self.case.network.voids as f64 * per_grain
+                    < 1.0,
+            )
         };
         if too_few() == Some(true) { Beyond::Below } else { Beyond::Above }
     }
 
     /// Where a lone particle of one size has its boundary, by the closed form: a start for the search.
     pub fn start(&self) -> f64 {
-        let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.counts[3]).max(1);
-        self.d15f() / Passage::new(&self.case.curve).coarsest_through(layers, 1.0 - THRESHOLD)
+        let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.network.layers).max(1);
+        self.d15f() / Passage::new(&self.case.filter.curve).coarsest_through(layers, 1.0 - THRESHOLD)
     }
 
     /// Start nodes, by which the search knows how many ratios to try: more where walks take little. As
     /// many as the usual lattice has where water flows, or of another network than a lattice.
     pub fn across(&self) -> u64 {
-        if self.case.scene.is_lattice_by_area() { self.case.counts[2] } else { USUAL_ACROSS }
+        if self.case.scene.is_lattice_by_area() { self.case.network.start_nodes } else { USUAL_ACROSS }
     }
 
     /// Searches the boundaries of network `number`, counted from 1.
@@ -215,7 +220,7 @@ pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
     /// The network that was walked last, and its exits.
-    network: Option<(Network, PlainExits)>,
+    network: Option<(Arc<Network>, PlainExits)>,
     /// What the first run left of the constrictions, by step.
     clogged: BTreeMap<i64, Clogged>,
     callbacks: &'a Callbacks<'a>,
@@ -241,7 +246,7 @@ impl OneNetwork<'_> {
         let (network, open) = match self.network.take().filter(|(kept, _)| case.has_layers_of(kept)) {
             Some(kept) => kept,
             None => {
-                let network = case.network(self.seed)?;
+                let network = Arc::new(case.network(self.seed)?);
                 let open = PlainExits::unblocked(&network);
                 (network, open)
             }

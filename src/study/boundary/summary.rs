@@ -80,7 +80,7 @@ pub(super) fn boundaries(
         commit: commit(),
         base: base(first, &judged.base_name),
         filter: format!("{}, constrictions {}", record.filter.name, record.filter.curve_name),
-        filter_cu: first.case.filter.cu(),
+        filter_cu: first.case.filter.gradation.cu(),
         filter_d15_mm: first.filter_has_size.then(|| first.d15f()),
         inputs: inputs(first),
         threshold: THRESHOLD,
@@ -276,10 +276,9 @@ fn inputs(row: &Row) -> Vec<InputFile> {
 }
 
 fn base(row: &Row, name: &str) -> BaseStated {
-    let walked = &row.stated.gradation;
-    let given = row.stated.regraded_from.as_ref().map_or(walked, |(given, _)| given);
+    let (walked, given) = (&row.stated.base.gradation, row.stated.base.as_given());
     // Of a base without a size nothing in mm is known.
-    let cut = row.stated.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
+    let cut = row.stated.base.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
         name: name.into(),
         cu: walked.cu(),
@@ -314,7 +313,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let [no_erosion, continuing] = [&first, &second].map(|networks| Boundary::of(networks, row.d85_mm));
     let holds_to = if no_erosion.is_none() { holds_to(done) } else { None };
     let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
-    let layers = row.layers(ratio).unwrap_or(row.case.counts[3]);
+    let layers = row.layers(ratio).unwrap_or(row.case.network.layers);
     let of_layers = || {
         // Of a thickness in layers the case's own thickness, as large as the filter is at the boundary.
         no_erosion.as_ref()?;
@@ -338,7 +337,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
             Thickness::Mm(mm) => Some(row.thicker_than_asked(ratio).unwrap_or(mm)),
             _ => of_layers(),
         },
-        grains_per_void: row.case.grains_per_void,
+        grains_per_void: row.case.filter.grains_per_void,
         no_erosion,
         no_erosion_notes: of_boundary.clone(),
         holds_to,
@@ -377,6 +376,6 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
 
 /// What is to be said where the base's pan fraction alone is enough to erode.
 fn of_pan(row: &Row) -> Option<Note> {
-    let pan = row.stated.gradation.pan_fraction();
+    let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
 }
