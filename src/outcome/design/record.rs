@@ -14,7 +14,7 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 
 /// The whole of `design.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Design {
     /// Version of voidwalk.
     pub version: String,
@@ -74,7 +74,7 @@ pub struct Design {
 
 /// What is known of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseStated {
     /// Its name.
     pub name: String,
@@ -104,7 +104,7 @@ pub struct BaseStated {
 
 /// The boundaries of one density and thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DesignRow {
     /// How densely the filter is packed.
     pub density: String,
@@ -185,7 +185,7 @@ impl DesignRow {
 
 /// A boundary over networks: D15F/D85B, and the same in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundary {
     /// Median over networks.
     pub median: f64,
@@ -203,7 +203,7 @@ pub struct Boundary {
 
 /// Median and band of a size (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Range {
     /// Median over networks.
     pub median: f64,
@@ -215,7 +215,7 @@ pub struct Range {
 
 /// What one network says; `None` where its boundary lies beyond the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkBoundaries {
     /// Network, counted from 1.
     pub network: u64,
@@ -227,7 +227,7 @@ pub struct NetworkBoundaries {
 
 /// A row of `design.csv`: every ratio that was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkRow {
     /// Density, as in `design.json`.
     pub density: String,
