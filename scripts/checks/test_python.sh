@@ -22,14 +22,14 @@ step() { printf '%4d s  %s\n' "$SECONDS" "$1"; }
 profile=${PROFILE:-release}
 step "program and module"
 cargo build --profile "$profile" --workspace --bins
+# Cargo's folder of profile dev has another name. This program also says what the types of the package are.
+export VOIDWALK_PROGRAM=$PWD/target/${profile/#dev/debug}/voidwalk
 step "pip install"
 PATH=$PWD/$environment/bin:$PATH MATURIN_PEP517_ARGS="--profile $profile" $environment/bin/pip install --quiet \
     --disable-pip-version-check --no-build-isolation --force-reinstall --no-deps .
 
 # From elsewhere, so that what is tested is what was installed. A test that walks for long has the other worker beside it.
 here=$PWD
-# Cargo's folder of profile dev has another name.
-export VOIDWALK_PROGRAM=$here/target/${profile/#dev/debug}/voidwalk
 cd target
 step "tests"
 python/bin/python -m pytest -c "$here/pyproject.toml" --rootdir "$here" -p no:cacheprovider --timeout 300 -n 2 --dist worksteal \

@@ -1,22 +1,20 @@
 #!/usr/bin/env python3
-"""Writes scripts/python/python/voidwalk/records.py, the types of every JSON record, from the JSON Schemas of the crate;
-with --check it only compares. With --settings FILE it writes settings.py beside it, the types of a scene's settings, from
-what ``voidwalk init --json`` prints."""
+"""Writes records.py and settings.py into scripts/python/python/voidwalk: the types of every JSON record and of a scene's settings,
+from what the program prints. The program is that of this checkout, or what VOIDWALK_PROGRAM names."""
 
 from __future__ import annotations
 
 import json
 import keyword
+import os
+import subprocess
 import sys
 import textwrap
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 ROOT = Path(__file__).resolve().parents[2]
-SCHEMAS = ROOT / "src" / "store" / "schemas"
-WRITTEN = Path(__file__).resolve().parent / "python" / "voidwalk" / "records.py"
-
-SETTINGS = WRITTEN.with_name("settings.py")
+PACKAGE = Path(__file__).resolve().parent / "python" / "voidwalk"
 
 #: What a user meets, the most important first; each gives the name of its type.
 ROOTS = {
@@ -196,11 +194,18 @@ def comment(said: str) -> str:
     return "".join(f"    #: {line}\n" for line in textwrap.wrap(plain, 106))
 
 
-def text() -> str:
-    """The module."""
+def printed(*words: str) -> Any:
+    """What `voidwalk init` prints."""
+    named = os.environ.get("VOIDWALK_PROGRAM")
+    program = [named] if named else ["cargo", "run", "--locked", "--quiet", "--bin", "voidwalk", "--"]
+    return json.loads(subprocess.check_output([*program, "init", *words], cwd=ROOT))
+
+
+def records_text() -> str:
+    """The module of the records."""
     types = Types()
     for name, called in ROOTS.items():
-        schema = json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
+        schema = printed("--schema", name)
         types.named(called, schema, schema.get("$defs", {}))
     listed = "".join(f'    "{name}",\n' for name in sorted(types.texts))
     return HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(types.texts.values())
@@ -208,7 +213,7 @@ def text() -> str:
 
 SETTINGS_HEAD = '''"""The types of a scene's settings, as :attr:`voidwalk.Scene.settings` gives them: lengths in mm, as numbers.
 
-Made by ``scripts/python/records.py --settings`` from what ``voidwalk init --json`` prints. A setting that a scene
+Made by ``scripts/python/records.py`` from what ``voidwalk init --json`` prints. A setting that a scene
 does not have is not there.
 """
 
@@ -252,17 +257,11 @@ def settings_text(told: Any) -> str:
     return SETTINGS_HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(classes)
 
 
-def main() -> None:
-    if sys.argv[1:2] == ["--settings"]:
-        told = json.loads(Path(sys.argv[2]).read_text(encoding="utf-8"))
-        SETTINGS.write_text(settings_text(told), encoding="utf-8")
-        return
-    if sys.argv[1:] == ["--check"]:
-        if WRITTEN.read_text(encoding="utf-8") != text():
-            sys.exit(f"{WRITTEN.name} is not what the schemas say: run scripts/python/records.py")
-        return
-    WRITTEN.write_text(text(), encoding="utf-8")
+def write() -> None:
+    """Writes both modules."""
+    (PACKAGE / "records.py").write_text(records_text(), encoding="utf-8")
+    (PACKAGE / "settings.py").write_text(settings_text(printed("--json")), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    write()

@@ -19,7 +19,7 @@ use crate::run::replicates::have_networks;
 
 /// What the cases of a plan would take; sizes and times are estimates.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PlanCheck {
     /// The plan's file.
     pub plan: String,
@@ -49,7 +49,7 @@ pub struct PlanCheck {
 
 /// What one case would take.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CaseCheck {
     /// Its name.
     pub case: String,

@@ -8,10 +8,9 @@ pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, Wal
 pub use super::study_args::{
     BoundaryArgs, CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs,
 };
-use super::values::{density, form, length, threads};
+use super::values::{density, length, schema_of, threads};
 use crate::run::machine::bytes_from_words;
 use crate::scene::Density;
-use crate::store::format::Format;
 
 /// Will this filter hold this soil? A random-walk network model of base-filter combinations.
 #[derive(Debug, Parser)]
@@ -51,8 +50,8 @@ pub enum Command {
         #[arg(long, conflicts_with = "path")]
         json: bool,
         /// Print the JSON Schema of a file that the program writes instead, such as outcome for outcome.json
-        #[arg(long, value_name = "NAME", conflicts_with_all = ["path", "json"], value_parser = form)]
-        schema: Option<Format>,
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["path", "json"], value_parser = schema_of)]
+        schema: Option<String>,
     },
     /// Write example files to try the program with: sheets, a scene, a plan and a notebook
     Examples {

@@ -6,12 +6,12 @@ use super::print::{as_it_is, json, shown, to_stdout};
 use crate::cases::CasePlan;
 use crate::run::{RunError, write_built_in, write_new};
 use crate::scene::Scene;
-use crate::store::format::{self, Format};
+use crate::store::format;
 
 /// Writes the built-in scene or a plan, or says what may be set, or what a file holds.
-pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<Format>) -> Result<(), RunError> {
-    if let Some(form) = schema {
-        to_stdout(form.schema);
+pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<String>) -> Result<(), RunError> {
+    if let Some(schema) = schema {
+        to_stdout(&schema);
         return Ok(());
     }
     if as_json {

@@ -27,7 +27,6 @@ mod progress;
 mod report;
 mod rules;
 mod run;
-#[cfg(test)]
 mod schemas;
 #[cfg(feature = "serve")]
 mod serve;
@@ -46,6 +45,7 @@ use clap::FromArgMatches;
 
 use crate::run::{Exit, RunError};
 use args::{Arguments, Command};
+pub use schemas::schema;
 use start::START;
 pub use start::Start;
 

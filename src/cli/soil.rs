@@ -18,7 +18,7 @@ use crate::store::format;
 
 /// The soils of a file.
 #[derive(Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(super) struct Soils {
     /// Each soil, in the order of the file.
     soils: Vec<SoilSummary>,

@@ -3,11 +3,12 @@
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
+use super::schemas::schema;
 use crate::constrictions::Facets;
 use crate::run::RunError;
 use crate::scene::{Density, SheetUnits};
 use crate::schema::length::{LENGTHS, millimetres};
-use crate::store::format::{FORMATS, Format};
+use crate::store::format::FORMATS;
 
 /// A setting and its value.
 pub(super) fn assignment(text: &str) -> Result<String, String> {
@@ -57,10 +58,10 @@ pub(super) fn sheet_units(text: &str) -> Result<SheetUnits, String> {
     named.ok_or_else(|| SheetUnits::ALL.map(SheetUnits::name).join(" or "))
 }
 
-/// The form of a file of JSON, by its name.
-pub(super) fn form(text: &str) -> Result<Format, String> {
+/// The JSON Schema of a file, by the name of its form.
+pub(super) fn schema_of(text: &str) -> Result<String, String> {
     let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
-    Format::named(text).ok_or_else(|| format!("one of {}", names.join(", ")))
+    schema(text).ok_or_else(|| format!("one of {}", names.join(", ")))
 }
 
 /// A number of threads.

@@ -27,7 +27,7 @@ pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
 /// from Dc5 to Dc75 (`results/triangulation.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Facets {
     /// Every facet between two voids.
     #[default]

@@ -14,7 +14,7 @@ pub const SUMMARY_PERCENT: [f64; 13] =
 
 /// The figures of a packing's constrictions, as in `constrictions.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Summary {
     /// Grains, hidden ones left out.
     pub grains: usize,

@@ -29,7 +29,7 @@ pub struct Regraded {
 
 /// Why practice regrades a base, or leaves it as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RegradeReason {
     /// What practice asks of the soil.
     pub cause: RegradeCause,
@@ -39,7 +39,7 @@ pub struct RegradeReason {
 
 /// What of a soil has it regraded, or not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "id", content = "from_mm", rename_all = "snake_case")]
 pub enum RegradeCause {
     /// It has a gap that begins at this size (mm).

@@ -9,7 +9,7 @@ use super::rule_note::RuleNote;
 
 /// A filter rule, applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct AppliedRule {
     /// Its name for programs, as `sherard-dunnigan`.
     pub id: String,
@@ -83,7 +83,7 @@ impl AppliedRule {
 
 /// On which side of a value the true one lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum ValueBound {
     /// It is no more than the value.
     #[serde(rename = "at most")]
@@ -95,7 +95,7 @@ pub enum ValueBound {
 
 /// What is left of a filter without its finer part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WithoutFiner {
     /// The part that is taken out (% of the filter's mass).
     pub percent: f64,
@@ -105,7 +105,7 @@ pub struct WithoutFiner {
 
 /// What a rule limits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum RuleQuantity {
     /// A size of the filter.
     D15F,
@@ -165,7 +165,7 @@ impl fmt::Display for RuleQuantity {
 
 /// What a rule is a rule of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RuleRole {
     /// The filter retains the base without erosion.

@@ -6,7 +6,7 @@ use super::record::{BaseRecord, Inputs};
 
 /// D85 of a base (mm), of the base as it is walked.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseSize {
     /// 85 % finer by mass.
     pub d85_mm: f64,

@@ -9,7 +9,7 @@ use crate::outcome::record::Note;
 
 /// A finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct LedgerLine {
     /// Name of the case.
     pub case: String,
@@ -67,7 +67,7 @@ pub struct LedgerLine {
 
 /// The whole of `campaign.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Campaign {
     /// What the plan is about, in a line.
     pub title: String,
@@ -83,7 +83,7 @@ pub struct Campaign {
 
 /// How thick the filter is that was modelled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ModelledThickness {
     /// Layers of voids.
     pub layers: u64,
@@ -104,7 +104,7 @@ impl ModelledThickness {
 
 /// Where and when a case was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Made {
     /// Name of the machine.
     pub host: String,

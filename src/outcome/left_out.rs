@@ -6,7 +6,7 @@ use crate::walk::Shortcut;
 
 /// A part of the program that a scene does not need, or a study of which nothing is walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "schema::LeftOut"))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(with = "schema::LeftOut"))]
 #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
 pub enum LeftOut {
     /// A lattice, where the voids of a packing are the network.
@@ -49,7 +49,7 @@ pub enum LayerKind {
     Copy,
 }
 
-#[cfg(test)]
+#[cfg(feature = "cli")]
 mod schema {
     /// A part of the program that a scene does not need.
     #[derive(schemars::JsonSchema)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Something that the model does not contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ModelLimit {
     /// Flow, gradient and time.

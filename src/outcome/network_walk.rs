@@ -6,7 +6,7 @@ use super::record::{BaseRecord, LeftOut, ModelLimit, Note, Replicate, RunSummary
 
 /// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkWalkRecord {
     /// The class that the replicates together support.
     pub verdict: Verdict,
@@ -48,7 +48,7 @@ pub struct NetworkWalkRecord {
 
 /// Networks that were given; where there are several, the numbers are those of the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct GivenNetwork {
     /// Networks that the replicates took in turn.
     pub networks: u64,

@@ -30,7 +30,7 @@ macro_rules! notes {
     )*) => {
         /// A note with its numbers, in the order of every face.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-        #[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "schema::Note"))]
+        #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(with = "schema::Note"))]
         #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
         pub enum Note {
             $($(#[$doc])* $name {
@@ -82,7 +82,7 @@ macro_rules! notes {
             }
         }
 
-        #[cfg(test)]
+        #[cfg(feature = "cli")]
         mod schema {
             /// A note with its numbers.
             #[derive(schemars::JsonSchema)]

@@ -7,7 +7,7 @@ pub use crate::packing::Measure;
 
 /// A row of `constrictions.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveRow {
     /// Percent of the constrictions that are smaller, by number.
     pub percent_smaller: f64,
@@ -21,7 +21,7 @@ pub const FLOATING_PERCENT: f64 = 35.0;
 
 /// The finer part of a filter that was packed, where the whole was not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PackedPart {
     /// Percent of the filter's mass that is in it.
     pub percent: f64,
@@ -37,7 +37,7 @@ pub struct PackedPart {
 
 /// Where a packing was taken from that another scene's filter of the same shape had been packed into.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SameShape {
     /// Its folder.
     pub folder: String,
@@ -47,7 +47,7 @@ pub struct SameShape {
 
 /// The whole of `packing.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PackingRecord {
     /// Fingerprint of everything that the grains follow from: gradation, settings and protocol.
     pub fingerprint: String,

@@ -33,7 +33,7 @@ pub const Z: f64 = 1.766;
 
 /// The whole of `percolation.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PercolationStudy {
     /// Version of voidwalk.
     pub version: String,
@@ -60,7 +60,7 @@ pub struct PercolationStudy {
 
 /// The thresholds of one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SizeThreshold {
     /// Voids along each side.
     pub size: u64,
@@ -72,7 +72,7 @@ pub struct SizeThreshold {
 
 /// The thresholds of a lattice that is no cube.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BoxThreshold {
     /// Voids along x and y, and layers.
     pub shape: [u32; 3],
@@ -84,7 +84,7 @@ pub struct BoxThreshold {
 
 /// A fit of `p(L) = threshold - amplitude L^(-1 / NU_PARALLEL)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct OneLength {
     /// Threshold of the infinite lattice.
     pub threshold: f64,
@@ -100,7 +100,7 @@ pub struct OneLength {
 
 /// A fit of `L d^nu = offset + slope ln(L d^(nu / z))`, `d = threshold - p(L)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ManyStarts {
     /// Threshold of the infinite lattice.
     pub threshold: f64,

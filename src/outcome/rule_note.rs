@@ -7,7 +7,7 @@ macro_rules! notes {
     ($($(#[$doc:meta])* $id:ident $(($($type:ty),*))?,)*) => {
         /// What a rule says beside its result.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-        #[cfg_attr(test, derive(schemars::JsonSchema), schemars(with = "schema::RuleNote"))]
+        #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(with = "schema::RuleNote"))]
         #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
         pub enum RuleNote {
             $($(#[$doc])* $id $(($($type),*))?,)*
@@ -21,7 +21,7 @@ macro_rules! notes {
             }
         }
 
-        #[cfg(test)]
+        #[cfg(feature = "cli")]
         mod schema {
             /// What a rule says beside its result.
             #[derive(schemars::JsonSchema)]

@@ -6,7 +6,7 @@ use super::record::{CurveRange, Outcome, RunSummary, Verdict};
 
 /// What leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum UndecidedBy {
     /// The ends of the constriction curve's range give another class than the curve itself.
     #[serde(rename = "constriction curve")]

@@ -2,7 +2,7 @@
 
 /// Observables of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Measure {
     /// Volume of the voids by that of the grains.
     pub void_ratio: f64,

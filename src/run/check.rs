@@ -20,7 +20,7 @@ use crate::verdict::ordered;
 
 /// What a run of a scene would do; sizes and times are estimates.
 #[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Check {
     /// Base particles of a run.
     pub n_base: u64,
@@ -65,7 +65,7 @@ pub struct Check {
 
 /// The packing that a scene needs.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PackingCheck {
     /// Grains.
     pub grains: u64,

@@ -8,7 +8,7 @@ use crate::schema::{Alternative, Group, KeyInfo};
 
 /// Every setting of a scene, and which exclude each other. Values stand as they are written in TOML.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SceneReference {
     /// The sections in the order in which they are written.
     pub sections: Vec<SectionReference>,
@@ -18,7 +18,7 @@ pub struct SceneReference {
 
 /// A section of a scene.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SectionReference {
     /// Its name, empty for the settings at the top.
     pub name: &'static str,
@@ -30,7 +30,7 @@ pub struct SectionReference {
 
 /// A setting.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SettingReference {
     /// Its full name: `base.cu`.
     pub name: String,
@@ -51,7 +51,7 @@ pub struct SettingReference {
 
 /// Settings that exclude each other.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ExclusiveSettings {
     /// What they say: `give the base`.
     pub says: &'static str,
@@ -61,7 +61,7 @@ pub struct ExclusiveSettings {
 
 /// One way to say what [`ExclusiveSettings`] say.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WayReference {
     /// Settings that say it, each by itself.
     pub by: &'static [&'static str],

@@ -24,18 +24,11 @@ pub struct Format {
     number: u32,
     /// The file; what prints it, where it is no file.
     pub file: &'static str,
-    /// Its JSON Schema, made from the types that are written; a test holds the two together.
-    pub schema: &'static str,
 }
 
 macro_rules! formats {
     ($($(#[$what:meta])* $constant:ident = $name:literal / $number:literal, $file:literal;)*) => {
-        $($(#[$what])* pub const $constant: Format = Format {
-            name: $name,
-            number: $number,
-            file: $file,
-            schema: include_str!(concat!("schemas/", $name, ".json")),
-        };)*
+        $($(#[$what])* pub const $constant: Format = Format { name: $name, number: $number, file: $file };)*
 
         /// Every form.
         pub const FORMATS: &[Format] = &[$($constant),*];
@@ -98,11 +91,6 @@ struct Beginning {
 }
 
 impl Format {
-    /// The form of this name, as `outcome`.
-    pub fn named(name: &str) -> Option<Self> {
-        FORMATS.iter().copied().find(|format| format.name == name)
-    }
-
     /// Its name, without the program's and without its number.
     pub fn name(self) -> &'static str {
         self.name

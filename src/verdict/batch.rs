@@ -21,7 +21,7 @@ pub const NAMED: usize = 3;
 
 /// What practice says of one sample and one filter. Sizes are in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BatchRow {
     /// The sample.
     pub sample: String,
@@ -100,7 +100,7 @@ pub struct BatchRow {
 
 /// Continuing erosion into an open joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct JointErosion {
     /// Its probability (%); `None` where it is not known, or below the least that the source states.
     pub percent: Option<f64>,

@@ -11,7 +11,7 @@ use crate::gradation::{GradationError, curves_in_file, file_and_soil, notes_in_f
 
 /// A filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BatchFilter {
     /// As it was named, and as the rows name it.
     pub name: String,

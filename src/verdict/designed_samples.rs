@@ -12,7 +12,7 @@ use crate::outcome::record::{IfDispersive, InputFile, Note, SheetCover, commit};
 
 /// The whole of `designs.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DesignedSamples {
     /// Version of the program.
     pub version: String,
@@ -40,7 +40,7 @@ pub struct DesignedSamples {
 
 /// How coarse a filter may be for one sample. Sizes are in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct DesignedSample {
     /// The sample.
     pub sample: String,

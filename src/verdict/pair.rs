@@ -10,7 +10,7 @@ use crate::outcome::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, 
 
 /// What is said of two sieve curves by the rules of practice alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PairRules {
     /// The filter.
     pub filter: FilterSizes,
@@ -43,7 +43,7 @@ pub struct PairOptions {
 /// Sizes of a filter (mm), of the curve that keeps the limit of design worst where it is an envelope; `None`
 /// where they lie in a finest tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FilterSizes {
     /// Its curves, where there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -65,7 +65,7 @@ pub struct FilterSizes {
 /// A base as practice describes it (mm), of the curve that keeps the limit of design worst where it is an
 /// envelope; `None` where a size lies in a finest tail of unknown size.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseSizes {
     /// Its curves, where there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -11,7 +11,7 @@ use crate::outcome::verdict::THRESHOLD;
 
 /// The whole of `batch.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkedBatch {
     /// Version of the program.
     pub version: String,
@@ -48,7 +48,7 @@ pub struct WalkedBatch {
 
 /// One sample and one filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkedRow {
     /// What practice says.
     #[serde(flatten)]
@@ -64,7 +64,7 @@ pub struct WalkedRow {
 
 /// What the walk of one sample says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SampleWalk {
     /// Folder of its results, inside the batch's.
     pub folder: String,

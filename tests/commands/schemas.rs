@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use serde_json::Value;
-use voidwalk::store::format::Format;
+use voidwalk::cli::schema;
 
 /// Keys that say nothing of what is allowed.
 const REMARKS: [&str; 8] =
@@ -24,7 +24,7 @@ pub fn beginning(text: &str) -> (String, String) {
 pub fn schema_of(text: &str) -> Value {
     let (form, _) = beginning(text);
     let name = form.trim_start_matches("voidwalk-").split('/').next().unwrap();
-    serde_json::from_str(Format::named(name).unwrap().schema).unwrap()
+    serde_json::from_str(&schema(name).unwrap()).unwrap()
 }
 
 /// A record says all that its schema requires, and nothing that this does not know.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use voidwalk::case::CaseError;
+use voidwalk::cli;
 use voidwalk::gradation::soils_in_file;
 use voidwalk::outcome::design::Specification;
 use voidwalk::outcome::design::specification::{ProductMargin, SizeBand};
@@ -135,8 +136,8 @@ pub fn percolation(
 
 /// The JSON Schema of a form, by its name.
 #[pyfunction]
-pub fn schema(name: &str) -> PyResult<&'static str> {
+pub fn schema(name: &str) -> PyResult<String> {
     let names: Vec<&str> = format::FORMATS.iter().map(|form| form.name()).collect();
     let problem = || refused(format!("name = {name} is not allowed; one of {}", names.join(", ")));
-    Ok(format::Format::named(name).ok_or_else(problem)?.schema)
+    cli::schema(name).ok_or_else(problem)
 }

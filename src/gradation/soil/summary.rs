@@ -9,12 +9,12 @@ use crate::gradation::group::{FINES_MM, GRAVEL_MM};
 
 /// What was understood of a soil, and what follows from its curve.
 #[derive(Clone, Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SoilSummary {
     /// What its sheet or column calls it, or the file.
     pub name: String,
     /// Opening (mm) and percent finer by mass; sizes rise.
-    #[cfg_attr(test, schemars(with = "Vec<[f64; 2]>"))]
+    #[cfg_attr(feature = "cli", schemars(with = "Vec<[f64; 2]>"))]
     pub points: Vec<CurvePoint>,
     /// D5 (mm); this and the others are `None` where they lie below the finest opening.
     pub d5_mm: Option<f64>,

@@ -13,7 +13,7 @@ pub const BETWEEN_STEPS: f64 = 0.005;
 
 /// The whole of `boundary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundaries {
     /// Version of voidwalk.
     pub version: String,
@@ -65,7 +65,7 @@ pub struct Boundaries {
 
 /// What is known of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseStated {
     /// Its name.
     pub name: String,
@@ -89,7 +89,7 @@ pub struct BaseStated {
 
 /// The boundaries of one density and thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BoundaryRow {
     /// How densely the filter is packed.
     pub density: String,
@@ -170,7 +170,7 @@ impl BoundaryRow {
 
 /// A boundary over networks: D15F/D85B, and the same in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundary {
     /// Median over networks.
     pub median: f64,
@@ -188,7 +188,7 @@ pub struct Boundary {
 
 /// Median and band of a size (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Range {
     /// Median over networks.
     pub median: f64,
@@ -200,7 +200,7 @@ pub struct Range {
 
 /// What one network says; `None` where its boundary lies beyond the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkBoundaries {
     /// Network, counted from 1.
     pub network: u64,
@@ -212,7 +212,7 @@ pub struct NetworkBoundaries {
 
 /// A row of `boundary.csv`: every ratio that was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkRow {
     /// Density, as in `boundary.json`.
     pub density: String,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// On which side of all that was searched something lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Beyond {
     /// At smaller ratios.

@@ -9,7 +9,7 @@ use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDES
 
 /// What a product does not keep of what a band is asked for beside D15F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum NotKept {
     /// Cu of its fine side.

@@ -6,7 +6,7 @@ use crate::outcome::record::Note;
 
 /// A note on a row of a design, or on a curve of the base for which a filter is specified.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RowNote {
     /// The row or the curve that it is of, in words; `None` where it is of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -9,7 +9,7 @@ use crate::gradation::{FINES_MM, us_sieve};
 
 /// A series of sieves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum SieveSeries {
     /// Sieves of the United States (ASTM E11), by inches and numbers.

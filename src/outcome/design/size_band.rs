@@ -9,7 +9,7 @@ use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
 
 /// The two sides of a band as sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SizeBand {
     /// D5, D15 and D60 of both sides.
     pub sizes: Vec<BandSize>,
@@ -22,7 +22,7 @@ pub struct SizeBand {
 
 /// A size of both sides of a band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BandSize {
     /// Percent finer.
     pub percent: f64,
@@ -34,7 +34,7 @@ pub struct BandSize {
 
 /// What a delivery may have finer than a sieve. A row of `specification.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SieveLimit {
     /// Name of the sieve.
     pub sieve: String,

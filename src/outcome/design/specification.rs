@@ -14,7 +14,7 @@ use crate::outcome::record::{IfDispersive, InputFile, RuleNote, SheetCover};
 
 /// The whole of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Specification {
     /// Version of voidwalk.
     pub version: String,
@@ -71,7 +71,7 @@ pub struct Specification {
 
 /// A curve of the base, and the limits of D15F that follow from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SpecifiedCurve {
     /// Its name.
     pub curve: String,
@@ -104,7 +104,7 @@ pub struct SpecifiedCurve {
 
 /// A step of the procedure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SpecificationStep {
     /// Its number, from 1.
     pub step: u64,
@@ -123,7 +123,7 @@ pub struct SpecificationStep {
 
 /// A step of the procedure by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum StepName {
     /// Plot the gradation of the base.
@@ -154,7 +154,7 @@ pub enum StepName {
 
 /// What else to know of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum StepNote {
     /// Curves of the base.
@@ -214,7 +214,7 @@ pub const ENTERED_BY: &str = "minimum D10F";
 
 /// A number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct StepValue {
     /// What it is, as `maximum D15F`.
     pub name: String,
@@ -238,7 +238,7 @@ impl StepValue {
 
 /// Why there is no band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum NoBand {
     /// Of the minimum D15F only the most is known, and it is above the maximum.
@@ -275,7 +275,7 @@ pub enum NoBand {
 
 /// A standard product beside a specification. A row of `specification_products.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ProductMargin {
     /// Its name.
     pub product: String,

@@ -11,7 +11,7 @@ use super::inputs::NetworkKind;
 /// assert_eq!(Verdict::ALL.map(Verdict::words)[..2], ["no erosion", "some erosion"]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Verdict {
     /// Less than the threshold eroded in the first run.
     #[serde(rename = "no erosion")]
@@ -44,7 +44,7 @@ impl Verdict {
 
 /// What the walks say together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Model {
     /// The class that the replicates together support.
     pub class: Verdict,
@@ -59,7 +59,7 @@ pub struct Model {
 
 /// What a rule that adds replicates until they are enough arrived at.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Stopping {
     /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the
     /// base).
@@ -83,7 +83,7 @@ pub struct Stopping {
 
 /// Why replicates do not reach what was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ShortOf {
     /// The first run alone does not separate two classes.
@@ -120,7 +120,7 @@ pub enum ShortOf {
 /// assert!(of.low.unwrap() < of.mean && of.mean < of.high.unwrap());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Statistic {
     /// Mean over the replicates.
     pub mean: f64,

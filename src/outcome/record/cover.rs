@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(SheetCover { date: None, ..dated }, stated);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SheetCover {
     /// The project.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What went in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Inputs {
     /// The filter and its constrictions.
     pub filter: FilterRecord,
@@ -22,7 +22,7 @@ pub struct Inputs {
 
 /// Where a filter's constrictions come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CurveOrigin {
     /// The library of packings.
@@ -37,7 +37,7 @@ pub enum CurveOrigin {
 
 /// What is known of a filter's constrictions besides their sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ConstrictionsRecord {
     /// Where they come from.
     pub origin: CurveOrigin,
@@ -45,7 +45,7 @@ pub struct ConstrictionsRecord {
 
 /// The filter: its gradation by mass and its constrictions by number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct FilterRecord {
     /// As the user calls it.
     pub name: String,
@@ -77,7 +77,7 @@ pub struct FilterRecord {
 
 /// The base soil.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseRecord {
     /// As the user calls it.
     pub name: String,
@@ -109,7 +109,7 @@ pub struct BaseRecord {
 
 /// A base before it was regraded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SampledBase {
     /// 85 % finer by mass.
     pub d85_mm: Option<f64>,
@@ -123,7 +123,7 @@ pub struct SampledBase {
 
 /// The void network.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkRecord {
     /// Where it comes from.
     pub kind: NetworkKind,
@@ -156,7 +156,7 @@ pub struct NetworkRecord {
 
 /// The network that was walked, where its constrictions have no direction of their own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkSummary {
     /// `lattice`, `graph` or `file`.
     pub kind: String,
@@ -182,7 +182,7 @@ pub struct NetworkSummary {
 
 /// How a network was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum NetworkKind {
     /// Directed cubic lattice.
@@ -197,7 +197,7 @@ pub enum NetworkKind {
 
 /// The ratios of characteristic sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Ratios {
     /// D15F / D85B.
     pub d15f_over_d85b: f64,

@@ -9,7 +9,7 @@ pub fn commit() -> Option<String> {
 
 /// The whole of `manifest.json`: what made the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// Version of voidwalk.
     pub version: String,
@@ -35,7 +35,7 @@ pub struct Manifest {
 
 /// A file that was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct InputFile {
     /// Its name as given.
     pub name: String,

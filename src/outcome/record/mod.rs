@@ -56,7 +56,7 @@ pub use super::rule_note::{RuleNote, d15f_between};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Outcome {
     /// The answer of filter practice; `None` without two sieve curves in mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -138,7 +138,7 @@ pub struct Outcome {
 
 /// A law by which particles arch in a constriction that they fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ArchingRecord {
     /// Its name in a scene.
     pub law: String,
@@ -158,7 +158,7 @@ pub struct ArchingRecord {
 
 /// How the concentration of each void is worked out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ArchingByVoidRecord {
     /// Diameter of a sphere with the volume of a void, mm.
     pub void_mm: f64,
@@ -168,7 +168,7 @@ pub struct ArchingByVoidRecord {
 
 /// One new network, walked once or twice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Replicate {
     /// The seed that gives this replicate alone.
     pub seed: u64,
@@ -180,7 +180,7 @@ pub struct Replicate {
 
 /// The end of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Run {
     /// 1 or 2.
     pub run: u64,
@@ -253,7 +253,7 @@ pub struct Run {
 
 /// What the voids of one connectivity (entrances and exits) did in a run; Table 3 of the paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ByConnectivity {
     /// Entrances and exits; that a void is a start node counts as an entrance.
     pub connectivity: u64,
@@ -277,7 +277,7 @@ pub struct ByConnectivity {
 
 /// Statistics of one run over the replicates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RunSummary {
     /// 1 or 2.
     pub run: u64,
@@ -298,7 +298,7 @@ pub struct RunSummary {
 
 /// Eq. (1) of the paper: how far single particles come in the clean filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Infiltration {
     /// Layers of the network.
     pub layers: u64,
@@ -312,7 +312,7 @@ pub struct Infiltration {
 
 /// One size of the base in the clean filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct InfiltrationSize {
     /// As `D85B`.
     pub name: String,

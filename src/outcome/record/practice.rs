@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What filter practice says of a pair, for programs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Practice {
     /// All of it, as the headline has it.
     pub class: PracticeClass,
@@ -25,7 +25,7 @@ pub struct Practice {
 
 /// Whether a filter meets the rules checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum PracticeClass {
     /// The limit of design is kept, and the filter holds its own finer part. Whether it drains, and holds a
     /// base that may be dispersive, is said beside it.
@@ -41,7 +41,7 @@ pub enum PracticeClass {
 
 /// The answer of filter practice, with which every face begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum Headline {
     /// The limit of design is kept, and no other rule of retention, stability, drainage or placing is broken.
     #[serde(rename = "meets the rules checked")]
@@ -131,7 +131,7 @@ impl Headline {
 
 /// What practice allows if a base is dispersive, of which nobody has said whether it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct IfDispersive {
     /// The most that D15F (mm) may be then.
     pub d15f_max_mm: f64,
@@ -145,7 +145,7 @@ pub struct IfDispersive {
 
 /// Why the limit of a dispersive base is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum DispersiveLack {
     /// No source that was read gives a limit of design for such fines: at most that of no erosion.
     #[serde(rename = "limit of design")]
@@ -164,7 +164,7 @@ pub enum DispersiveLack {
 /// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
 /// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum TestedClass {
     /// Within the boundary of no erosion.
     #[serde(rename = "no erosion")]

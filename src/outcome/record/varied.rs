@@ -6,7 +6,7 @@ use super::{Statistic, Verdict};
 
 /// The replicates of a case of which one thing was changed, and their class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Classed {
     /// How many replicates were walked.
     pub replicates: u64,
@@ -25,7 +25,7 @@ pub struct Classed {
 ///
 /// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
     /// Multiple of the outcome's own `n_base`.
     pub factor: f64,
@@ -42,7 +42,7 @@ pub struct Sensitivity {
 
 /// The same case with a filter of this thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct OfThickness {
     /// Multiple of the outcome's own thickness.
     pub factor: f64,
@@ -59,7 +59,7 @@ pub struct OfThickness {
 
 /// The walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveRange {
     /// The class by the curve itself.
     pub verdict: Verdict,
@@ -80,7 +80,7 @@ pub struct CurveRange {
 
 /// The replicates walked with another constriction curve, all else and all random numbers the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveEnd {
     /// Which curve it is, in words.
     pub curve: String,
