@@ -2,11 +2,12 @@
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
+use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::soil::Soils;
 use crate::cases::PlanCheck;
 use crate::constrictions::Summary;
+use crate::gradation::SoilSummary;
 use crate::outcome::boundary::Boundaries;
 use crate::outcome::design::Specification;
 use crate::outcome::ledger::{Campaign, LedgerLine};
@@ -19,8 +20,11 @@ use crate::scene::SceneReference;
 use crate::store::format::{self, Format};
 use crate::verdict::{DesignedSamples, PairRules, WalkedBatch};
 
+/// Makes the schema of a type.
+type Made = fn() -> Schema;
+
 /// What each form holds beside its beginning.
-const CONTENTS: &[(Format, fn() -> Schema)] = &[
+const CONTENTS: &[(Format, Made)] = &[
     (format::OUTCOME, of::<Outcome>),
     (format::MANIFEST, of::<Manifest>),
     (format::BOUNDARY, of::<Boundaries>),
@@ -42,7 +46,7 @@ const CONTENTS: &[(Format, fn() -> Schema)] = &[
 /// What Python's `walk` gives is no file: its types are made from its schema.
 const NETWORK_WALK: &str = "network-walk";
 
-/// The JSON Schema of a file, by the name of its form, such as `outcome`: indented, with a newline at its end.
+/// The JSON Schema of a file, by the name of its form, as `outcome`: indented, with a newline at its end.
 pub fn schema(name: &str) -> Option<String> {
     let content = CONTENTS.iter().find(|(form, _)| form.name() == name);
     let of_file = content.map(|(form, content)| headed(*form, content()));
@@ -50,8 +54,15 @@ pub fn schema(name: &str) -> Option<String> {
     Some(serde_json::to_string_pretty(&schema).expect("JSON of a map") + "\n")
 }
 
+/// The soils of a file.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Soils {
+    /// Each soil, in the order of the file.
+    pub(super) soils: Vec<SoilSummary>,
+}
+
 /// A file of which only the beginning is anybody's business.
-#[derive(serde::Serialize, JsonSchema)]
+#[derive(Serialize, JsonSchema)]
 struct Nothing {}
 
 /// The schema of a type as it is written.

@@ -4,10 +4,9 @@ use std::fmt::Write;
 #[cfg(feature = "xlsx")]
 use std::path::Path;
 
-use serde::Serialize;
-
 use super::args::SoilArgs;
 use super::print::{as_it_is, json, plain, shown, to_stdout};
+use super::schemas::Soils;
 use crate::case::CaseError;
 use crate::gradation::{Gradation, SoilSummary, named_soils_in, soils_in_file};
 #[cfg(feature = "xlsx")]
@@ -15,14 +14,6 @@ use crate::report::soil_template;
 use crate::report::soils_figure;
 use crate::run::{RunError, write_new};
 use crate::store::format;
-
-/// The soils of a file.
-#[derive(Serialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub(super) struct Soils {
-    /// Each soil, in the order of the file.
-    soils: Vec<SoilSummary>,
-}
 
 /// Shows the soils of a file.
 pub fn soil(args: &SoilArgs) -> Result<(), RunError> {

@@ -54,7 +54,7 @@ mod schema {
     /// A part of the program that a scene does not need.
     #[derive(schemars::JsonSchema)]
     #[allow(dead_code)]
-    pub struct LeftOut {
+    pub(super) struct LeftOut {
         /// Its name.
         id: String,
         /// Its numbers; missing without any.

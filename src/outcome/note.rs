@@ -87,7 +87,7 @@ macro_rules! notes {
             /// A note with its numbers.
             #[derive(schemars::JsonSchema)]
             #[allow(dead_code)]
-            pub struct Note {
+            pub(super) struct Note {
                 /// Its name.
                 id: NoteId,
                 /// Its numbers by name, with the unit in the name.

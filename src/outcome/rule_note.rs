@@ -26,7 +26,7 @@ macro_rules! notes {
             /// What a rule says beside its result.
             #[derive(schemars::JsonSchema)]
             #[allow(dead_code)]
-            pub struct RuleNote {
+            pub(super) struct RuleNote {
                 /// Its name.
                 id: RuleNoteId,
                 /// Its number, or its numbers in order; missing without any.

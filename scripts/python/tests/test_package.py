@@ -73,7 +73,7 @@ def test_the_settings_of_a_scene_are_those_of_the_program() -> None:
 
     words = [sys.executable, "-m", "voidwalk", "init", "--json"]
     told = json.loads(subprocess.run(words, capture_output=True, check=True).stdout)
-    assert records.SETTINGS.read_text(encoding="utf-8") == records.settings_text(told)
+    assert Path(str(settings.__file__)).read_text(encoding="utf-8") == records.settings_text(told)
     typed = SceneSettings.__annotations__
     scene = vw.Scene(settings={"base.regrade": "no", "stop.decide_percent": 99.0, "walk.exit": "area"})
     for name, value in scene.settings.items():
