@@ -66,7 +66,9 @@ fn instead_of_argument(name: &str, command: &Command, words: &[String]) -> Optio
         if walks && ["base", "filter"].contains(&flag) {
             return Some(JUDGE.into());
         }
-        let takes_settings = used.get_arguments().any(|arg| arg.get_long() == Some("set"));
+        // Those of a specification are of its page alone.
+        let is_walked = used.get_name() != "design";
+        let takes_settings = is_walked && used.get_arguments().any(|arg| arg.get_long() == Some("set"));
         return takes_settings.then(|| as_setting(name, words)).flatten();
     }
     if let Some(quoted) = unquoted(words) {

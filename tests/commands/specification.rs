@@ -30,7 +30,7 @@ fn steps_limits_and_products_fill_a_folder() {
     let said = String::from_utf8(output.stdout).unwrap();
     for words in [
         "\nPractice: D15F from ",
-        "\nLimit: D15F 2.40\u{202f}mm (Sherard and Dunnigan's limit of design)",
+        "\nLimit: D15F 2.40 mm (Sherard and Dunnigan's limit of design)",
         "\nNot a complete specification: ",
         "ASTM C33 fine aggregate",
         "report: ",

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::tests::{found, of_base, timeless, tiny};
+use super::tests::{SHORT, found, of_base, timeless, tiny};
 use super::*;
 use crate::outcome::boundary::BoundaryRow;
 use crate::outcome::record::Note;
@@ -112,10 +112,10 @@ fn a_search_goes_on_from_an_end_that_was_not_searched() {
         stop: &stop,
         ..Callbacks::default()
     };
-    let error = run(&of("stopped", 1), &callbacks).unwrap_err();
+    let error = run_within(&of("stopped", 1), SHORT, &callbacks).unwrap_err();
     // Two networks of either thickness, and one end.
     assert!(error.to_string().starts_with("after 5 of 8 networks"), "{error}");
-    assert_eq!(timeless(&run(&of("stopped", 3), &Callbacks::default()).unwrap()), timeless(&whole));
+    assert_eq!(timeless(&found(&of("stopped", 3))), timeless(&whole));
 }
 
 /// An end that another row has, too, stays a row of its own, and is searched once.

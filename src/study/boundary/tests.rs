@@ -15,6 +15,9 @@ use crate::scene::Scene;
 /// A lattice that takes moments, and few networks.
 const SMALL: [&str; 4] = ["network.nx=9", "network.ny=9", "network.nz=10", "replicates=3"];
 
+/// D15F/D85B between which these tests search.
+pub(super) const SHORT: [f64; 2] = [0.8, 30.0];
+
 fn settings(more: &[&str]) -> Vec<String> {
     let is_thick = |setting: &&&str| !setting.starts_with("network.nz") || !more.contains(&"no layers");
     let all = SMALL.iter().filter(is_thick).chain(more.iter().filter(|setting| **setting != "no layers"));
@@ -38,7 +41,7 @@ pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
 }
 
 pub(super) fn found(options: &BoundaryOptions) -> Boundaries {
-    found_within(options, [0.8, 30.0])
+    found_within(options, SHORT)
 }
 
 /// The same between other D15F/D85B.
@@ -222,7 +225,7 @@ fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() 
         stop: &stop,
         ..Callbacks::default()
     };
-    let error = run(&options, &callbacks).unwrap_err();
+    let error = run_within(&options, SHORT, &callbacks).unwrap_err();
     assert_eq!(error.exit().code(), 3, "{error}");
     assert!(error.to_string().starts_with("after 1 of 3 networks"), "{error}");
     assert!(!path.join("boundary.json").exists() && !path.join("boundary.csv").exists());
@@ -235,7 +238,7 @@ fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() 
         },
         ..Callbacks::default()
     };
-    let resumed = run(&options, &callbacks).unwrap();
+    let resumed = run_within(&options, SHORT, &callbacks).unwrap();
     assert!(said.lock().unwrap()[0].starts_with("1 of 3 networks are done already"));
     assert_eq!(timeless(&resumed), timeless(&whole));
     let names: Vec<_> = std::fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect();
@@ -280,8 +283,8 @@ fn what_cannot_be_is_refused_before_any_work() {
             "filter.cu or filter.sieve is missing",
         ),
         (BoundaryOptions { filter: Some("cu1.5-lose".into()), ..plain() }, "cu1.5-loose"),
-        (options(&out, &["stop.decide_percent=99"]), "do not go with a all"),
-        (options(&out, &["runs=1"]), "runs = 1 does not go with a all"),
+        (options(&out, &["stop.decide_percent=99"]), "do not go with `boundary`"),
+        (options(&out, &["runs=1"]), "runs = 1 does not go with `boundary`"),
         (
             BoundaryOptions { base: base("b.csv", &sand), ..options(&out, &["base.sieve=c.csv"]) },
             "would put another soil in the place of the base",
