@@ -59,7 +59,6 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
         .contents()
         .section("Density and thickness", &tables::boundaries(&all))
         .section("Other notes", &others(rest))
-        .section("Network by network", &tables::networks(&all))
         .section("How this was made", &tables::made(&all, &walks))
         .write(folder, "boundary.html", &footer)
 }

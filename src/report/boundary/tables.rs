@@ -86,21 +86,6 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
     }
 }
 
-/// What each network says.
-pub(super) fn networks(all: &Boundaries) -> Markup {
-    let digits = |value: Option<f64>| value.map_or_else(|| "beyond".to_owned(), |v| format!("{v:.3}"));
-    html! {
-        @for row in &all.boundaries {
-            h3 { (clean(&format!("{}, {}", row.density, row.thickness))) }
-            (Table::of(&row.networks)
-                .number("Network", |of| of.network)
-                .number("No erosion up to D15F/D85B", |of| digits(of.no_erosion))
-                .number("Continuing from", |of| digits(of.continuing))
-                .render())
-        }
-    }
-}
-
 /// A coefficient of uniformity, or that it is not known.
 fn cu(of: Option<f64>) -> String {
     of.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
