@@ -5,7 +5,7 @@ folder's JSON.
     pip install openpyxl
     scripts/checks/check_workbooks.py [--libreoffice] RUN SPECIFICATION
 
-RUN holds outcome.json and verdict.xlsx (voidwalk judge --xlsx), SPECIFICATION what voidwalk design --steps wrote. openpyxl reads the
+RUN holds outcome.json and verdict.xlsx (voidwalk judge --xlsx), SPECIFICATION what voidwalk design wrote. openpyxl reads the
 cells; --libreoffice also has LibreOffice Calc open the workbook and write each sheet as CSV, with the digits that it holds (15).
 LibreOffice offers to repair a workbook that is broken and, without a window, refuses it: a copy that is cut short shows that it does.
 Ends with 1 where a number of a workbook is not that of the JSON, a sheet is missing, or LibreOffice refuses the workbook.
