@@ -1,5 +1,5 @@
 //! A case with another constriction curve, or in other sizes: its filter against a base that is scaled, as
-//! a design tries many of.
+//! a search of boundaries tries many of.
 //!
 //! A walk knows sizes as multiples of the finest filter grain alone. So a filter that is s times as large is
 //! walked as a base 1/s times as large: its network stays the same to the bit, and with it every random

@@ -66,7 +66,7 @@ struct Drawn {
 }
 
 /// The filters that were asked for last. Drawing takes most of the time of a small case, and a check, a run
-/// or a design asks for the same filter at its own density and at both ends of the range, several times.
+/// or a search asks for the same filter at its own density and at both ends of the range, several times.
 static KEPT: Mutex<VecDeque<Arc<Drawn>>> = Mutex::new(VecDeque::new());
 
 /// Filters that are kept, of 200 kB each: those of one comparison.

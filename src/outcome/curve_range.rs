@@ -73,11 +73,6 @@ impl CurveRange {
         self.whole() == Verdict::Undecided && self.verdict != Verdict::Undecided
     }
 
-    /// Whether least and most eroded are those of 95 % intervals, and not of single replicates.
-    pub fn has_intervals(&self) -> bool {
-        self.ends.iter().flat_map(|end| &end.walked.runs).any(|run| run.low.is_some())
-    }
-
     /// Whether the ends have the class of the curve itself.
     pub fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.walked.verdict == self.verdict)

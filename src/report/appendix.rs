@@ -12,9 +12,6 @@ use crate::outcome::soil_sizes::us_sieve;
 /// Rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
 
-/// What the appendix of two soils is called.
-pub(super) const TWO_SOILS: &str = "Appendix: the two gradations";
-
 /// A gradation: what it is, its name, and its rows of size and percent finer.
 pub(super) struct TabledSoil<'a> {
     /// What it is, as `Filter`.
@@ -44,7 +41,8 @@ pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
              read from are kept in the folder " code { "inputs" } " of this run."
         }
     };
-    html! { section.appendix { h2 { (TWO_SOILS) } (note) (gradations(&soils, unit, "outcome.json")) } }
+    let gradations = gradations(&soils, unit, "outcome.json");
+    html! { section.appendix { h2 { "Appendix: the two gradations" } (note) (gradations) } }
 }
 
 /// How a gradation is read between its rows.

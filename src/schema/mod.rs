@@ -168,9 +168,6 @@ macro_rules! section {
         }
 
         impl $Section {
-            /// Name of the section in a scene.
-            pub const SECTION: &'static str = $section;
-
             /// What a user is told of the section.
             pub const ABOUT: &'static [&'static str] = &[$($about),*];
 

@@ -23,7 +23,7 @@ pub fn setting(note: &Note) -> String {
     filled(note, note.entry().setting, SizeUnit::Mm)
 }
 
-/// The sentence of a note on a part of a design, behind the name of that part.
+/// The sentence of a note on a part of boundaries or of a specification, behind the name of that part.
 pub fn row_note(row: &RowNote, unit: SizeUnit) -> String {
     let words = sentence(&row.note, unit);
     row.row.as_ref().map_or(words.clone(), |name| format!("{name}: {words}"))

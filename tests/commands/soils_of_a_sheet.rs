@@ -1,4 +1,4 @@
-//! Every sheet of a design says what soils it is for: their files, their gradations and their sizes.
+//! Every sheet of a specification says what soils it is for: their files, their gradations and their sizes.
 
 use std::fs;
 use std::path::Path;

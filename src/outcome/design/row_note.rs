@@ -1,10 +1,10 @@
-//! A note on a part of a design.
+//! A note on a part of boundaries or of a specification.
 
 use serde::{Deserialize, Serialize};
 
 use crate::outcome::record::Note;
 
-/// A note on a row of a design, or on a curve of the base for which a filter is specified.
+/// A note on a row of boundaries, or on a curve of the base for which a filter is specified.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct RowNote {

@@ -27,13 +27,13 @@ pub struct Specification {
     pub dispersive: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// What its sheet says of itself; nothing as a part of a design.
+    /// What its sheet says of itself.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
     /// Whether inches stand beside mm on its page.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// Every file that was read; empty as a part of a design, which has them itself.
+    /// Every file that was read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
     /// The curves of the base, in the order of the file.
