@@ -119,9 +119,9 @@ class Server:
             if "refused" in sheet:
                 return sheet
             ids[role] = sheet["id"]
-        asked = {**ids, **{name: 1 for name in ("dispersive", "as_given") if flags[name]}}
-        if "joint_mm" in flags:
-            asked["joint_mm"] = flags["joint_mm"]
+        changes = ["base.dispersive=true"] * flags["dispersive"]
+        changes += [f"filter.joint_mm={flags['joint_mm']}"] * ("joint_mm" in flags)
+        asked = {**ids, **({"as_given": 1} if flags["as_given"] else {}), "changes": "\n".join(changes)}
         got = self.ask("api/rules?" + urllib.parse.urlencode(asked))
         return got if "refused" in got else told(got)
 

@@ -11,7 +11,7 @@ use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
 use crate::verdict::batch::{NAMED, governing};
-use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
+use crate::verdict::{BatchFilter, BatchRow, BatchTable, WalkedRow};
 use crate::words::batch::{EXCHANGED, MAY_GOVERN};
 
 /// Voids across the lattice of a first look, as `voidwalk boundary` searches.
@@ -66,12 +66,11 @@ impl BatchPlan {
         samples: &Path,
         filters: &[PathBuf],
         tables: &TableOptions,
-        rules: PairOptions,
         walks: BatchWalks,
         options: &CaseOptions,
     ) -> Result<Self, RunError> {
         refuse_twice(filters)?;
-        let table = BatchTable::read(samples, filters, rules).map_err(RunError::refused)?;
+        let table = BatchTable::read(samples, filters, tables.of_rules()?).map_err(RunError::refused)?;
         if walks == BatchWalks::OneBase {
             table.one_base(samples).map_err(RunError::Refused)?;
         }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::setting_options::{OfRules, SettingOptions};
 pub use super::shared_args::{AcceptArgs, ResultArgs, SceneArgs, SettingArgs, WalkArgs};
 pub use super::study_args::{
     BoundaryArgs, CampaignArgs, ConstrictionsArgs, DesignArgs, PackArgs, PercolationArgs,
@@ -109,13 +110,9 @@ pub struct RulesArgs {
     /// With --each or several filters: write the table into this new file
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
-    /// The base is dispersive: stricter limits if it has many fines
-    #[arg(long)]
-    pub dispersive: bool,
-    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
-    /// continuing erosion into it
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
-    pub joint_mm: Option<f64>,
+    /// What the sheets do not say of the two.
+    #[command(flatten)]
+    pub settings: SettingOptions<OfRules>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
@@ -183,13 +180,6 @@ pub struct TableArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// The base is dispersive: stricter limits if it has many fines (base.dispersive)
-    #[arg(long)]
-    pub dispersive: bool,
-    /// Width of an open joint at the exit, in mm or with its unit, as 2 or 1/8in: adds the probability of
-    /// continuing erosion into it (filter.joint_mm)
-    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
-    pub joint_mm: Option<f64>,
     /// What is set in it besides, and how it is prepared.
     #[command(flatten)]
     pub set: SettingArgs,

@@ -38,7 +38,7 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
     for filter in &table.filters {
         text.push('\n');
         text += &of_filter(rows, filter, false);
-        text += &to_walk(args, rows, Path::new(&filter.name));
+        text += &to_walk(&args.base, options, rows, Path::new(&filter.name));
     }
     if let Some(path) = &args.csv {
         text += &format!("\n{}\n", shown(path));
@@ -88,18 +88,18 @@ pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -
 }
 
 /// The command that walks the samples that govern.
-fn to_walk(args: &RulesArgs, rows: &[BatchRow], filter: &Path) -> String {
+fn to_walk(samples: &Path, options: PairOptions, rows: &[BatchRow], filter: &Path) -> String {
     let paths: Vec<String> = paths(rows, filter).iter().map(to_copy).collect();
     let (which, walk) = match paths.len() {
         0 => return String::new(),
         1 => ("the one that governs", format!("{} {}", paths[0], to_copy(filter))),
         _ => {
-            let samples = to_copy(&args.base);
+            let samples = to_copy(samples);
             ("those that govern", format!("{samples} {} --each --governing", to_copy(filter)))
         }
     };
-    let dispersive = if args.dispersive { " --dispersive" } else { "" };
-    let as_given = if args.as_given { " --as-given" } else { "" };
-    let joint = args.joint_mm.map_or_else(String::new, |mm| format!(" --joint-mm {mm}"));
+    let dispersive = if options.dispersive { " --dispersive" } else { "" };
+    let as_given = if options.as_given { " --as-given" } else { "" };
+    let joint = options.joint_mm.map_or_else(String::new, |mm| format!(" --joint-mm {mm}"));
     format!("  Nothing was walked. To walk {which}: voidwalk judge {walk}{dispersive}{joint}{as_given}\n")
 }

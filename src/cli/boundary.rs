@@ -3,7 +3,6 @@
 use super::args::BoundaryArgs;
 use super::print::{as_it_is, counted, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::values::with_options;
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, Range};
 use crate::outcome::quantity::{NumberRole, SizeUnit, significant};
 use crate::outcome::record::Note;
@@ -17,14 +16,13 @@ use crate::words::{FOREMOST, row_note, sentence};
 
 /// Finds the boundaries and writes them into a folder.
 pub fn boundary(args: &BoundaryArgs) -> Result<(), RunError> {
-    let seed = args.seed.map(|seed| format!("seed={seed}"));
     let options = BoundaryOptions {
         base: args.base.clone(),
         filter: args.filter.clone(),
         densities: args.densities.clone(),
         pack: args.pack,
         thicknesses: args.thicknesses.iter().flat_map(|list| list.0.clone()).collect(),
-        settings: with_options(&args.settings, [("--seed", seed)])?,
+        settings: args.settings.assignments.clone(),
         as_sampled: args.as_sampled,
         as_given: args.as_given,
         out: args.out.clone(),

@@ -5,7 +5,6 @@ use std::fmt::Write;
 use super::args::{SceneArgs, SettingArgs};
 use super::check_plan::check_plan;
 use super::print::{as_it_is, json, plain, to_stdout};
-use super::values::with_options;
 use crate::cases::CasePlan;
 use crate::constrictions::shipped;
 use crate::outcome::quantity::{SizeUnit, whole};
@@ -18,19 +17,6 @@ use crate::words::left_out::left_out;
 use crate::words::sentence;
 
 impl SettingArgs {
-    /// All settings that the arguments give.
-    ///
-    /// # Errors
-    /// One is given by an option of its own and by --set, too.
-    pub fn settings(&self) -> Result<Vec<String>, RunError> {
-        let options = [
-            ("--seed", self.seed.map(|seed| format!("seed={seed}"))),
-            ("--target-error", self.target_error.map(|pp| format!("stop.target_error_pp={pp:?}"))),
-            ("--decide", self.decide.map(|percent| format!("stop.decide_percent={percent:?}"))),
-        ];
-        with_options(&self.settings, options)
-    }
-
     /// How the scene is prepared.
     pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
         PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
@@ -40,10 +26,10 @@ impl SettingArgs {
 impl SceneArgs {
     /// The scene that the arguments name, with their settings applied.
     pub fn scene(&self) -> Result<Scene, RunError> {
-        let settings = self.set.settings()?;
+        let settings = &self.set.settings.assignments;
         Ok(match &self.scene {
-            Some(path) => Scene::read(path, &settings)?,
-            None => Scene::built_in(&settings)?,
+            Some(path) => Scene::read(path, settings)?,
+            None => Scene::built_in(settings)?,
         })
     }
 }

@@ -19,10 +19,9 @@ const LISTED: usize = 20;
 /// # Errors
 /// A plan that cannot be read, settings beside it, and its cases that are wrong.
 pub(super) fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
-    if !set.settings()?.is_empty() {
+    if !set.settings.assignments.is_empty() {
         return Err(RunError::refused(
-            "--set, --seed, --target-error and --decide go with a scene: a plan has the settings of all its \
-             cases under [set]",
+            "settings go with a scene: a plan has those of all its cases under [set]",
         ));
     }
     let plan = CasePlan::read(path)?;

@@ -4,7 +4,6 @@ use super::args::DesignArgs;
 use super::design_each::{by_option, design_each};
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::progress::followed;
-use super::values::with_options;
 use crate::outcome::design::Specification;
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
@@ -23,24 +22,25 @@ const FOLDER: &str = "voidwalk-specification";
 /// The same for many samples.
 const EACH_FOLDER: &str = "voidwalk-designs";
 
-/// The setting besides those of the cover that a specification takes.
-const UNITS: &str = "about.units";
+/// The settings besides those of the cover that a specification takes.
+const OTHERS: [&str; 2] = ["about.units", "base.dispersive"];
 
 /// Makes the specification for a base, or for each of many samples, and writes it into a folder.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    let takes = [About::texts(), vec![UNITS.into()]].concat();
+    let takes = [About::texts(), OTHERS.map(String::from).to_vec()].concat();
+    let settings = &args.settings.assignments;
     let is_taken = |set: &str| takes.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
-    if let Some(other) = args.settings.iter().find(|set| !is_taken(set)) {
+    if let Some(other) = settings.iter().find(|set| !is_taken(set)) {
         let problem =
             format!("a specification walks nothing, and takes no other settings than {}", takes.join(", "));
         return Err(RunError::Refused(format!("--set {other}: {problem}")));
     }
-    let units = args.units.map(|units| format!("about.units={}", units.name()));
-    let about = Scene::built_in(&with_options(&args.settings, [("--units", units)])?)?.about;
+    let scene = Scene::built_in(settings)?;
+    let about = &scene.about;
     let folder = if args.each { EACH_FOLDER } else { FOLDER };
     let options = SpecifyOptions {
         base: args.base.clone(),
-        dispersive: args.dispersive,
+        dispersive: scene.base.dispersive == Some(true),
         finer: args.finer,
         sieves: args.sieves,
         cover: about.cover(),

@@ -5,28 +5,20 @@ use super::judge_each::judge_each;
 use super::print::{shown, to_stdout};
 use super::progress::followed;
 use super::run::show;
-use super::values::{of_soils, with_options};
 use crate::run::{self, RunError};
 use crate::scene::{Scene, TableOptions};
 
 impl TableArgs {
     /// What a scene of two tables is given besides them.
-    ///
-    /// # Errors
-    /// A setting is given by an option of its own and by --set, too.
-    pub fn options(&self) -> Result<TableOptions, RunError> {
-        let [dispersive, joint] = of_soils(self.dispersive, self.joint_mm);
-        let options = [dispersive, joint];
-        let changes = with_options(&self.set.settings()?, options)?;
-        let (as_sampled, as_given) = (self.as_sampled, self.as_given);
-        Ok(TableOptions {
+    pub fn options(&self) -> TableOptions {
+        TableOptions {
             density: self.density,
             pack: self.pack,
             quick: self.quick,
-            as_sampled,
-            as_given,
-            changes,
-        })
+            as_sampled: self.as_sampled,
+            as_given: self.as_given,
+            changes: self.set.settings.assignments.clone(),
+        }
     }
 }
 
@@ -37,7 +29,7 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
         _ => return judge_each(args),
     };
     let (tables, quiet) = (&args.tables, args.results.walk.quiet);
-    let scene = Scene::of_tables(&args.base, filter, &tables.options()?)?;
+    let scene = Scene::of_tables(&args.base, filter, &tables.options())?;
     let options = args.results.options(&tables.set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
     if !tables.set.json && !quiet {

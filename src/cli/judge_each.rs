@@ -14,7 +14,7 @@ use crate::cases::{CaseOptions, CasePart};
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
-use crate::verdict::{BatchRow, PairOptions, WalkedBatch, WalkedRow};
+use crate::verdict::{BatchRow, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, walked_columns, walks};
 use crate::words::left_out::left_out_line;
 
@@ -37,10 +37,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         (true, false, true) => BatchWalks::FirstLook,
         (true, false, false) => BatchWalks::GoverningInFull,
     };
-    let rules =
-        PairOptions { dispersive: tables.dispersive, joint_mm: tables.joint_mm, as_given: tables.as_given };
-    let of_scenes = tables.options()?;
-    let plan = BatchPlan::new(&args.base, &args.filters, &of_scenes, rules, walks, &options)?;
+    let plan = BatchPlan::new(&args.base, &args.filters, &tables.options(), walks, &options)?;
     let found = if results.overwrite { None } else { batch::found(&plan, &options)? };
     let batch = match found {
         Some(found) => found,

@@ -30,6 +30,7 @@ mod run;
 mod schemas;
 #[cfg(feature = "serve")]
 mod serve;
+mod setting_options;
 mod shared_args;
 mod shell;
 mod soil;

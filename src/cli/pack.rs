@@ -3,7 +3,6 @@
 use super::args::PackArgs;
 use super::print::{as_it_is, plain, to_stdout};
 use super::progress::followed;
-use super::values::with_options;
 use crate::outcome::quantity::{SizeUnit, whole};
 use crate::run::{self, FinishedPacking, PackOptions, RunError};
 use crate::scene::Scene;
@@ -12,9 +11,7 @@ use crate::words::sentence;
 
 /// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {
-    let seed = args.seed.map(|seed| format!("packing.seed={seed}"));
-    let settings = with_options(&args.settings, [("--seed", seed)])?;
-    let spec = Scene::read_packing(&args.filter, &settings)?;
+    let spec = Scene::read_packing(&args.filter, &args.settings.assignments)?;
     let options = PackOptions {
         out: args.out.clone(),
         overwrite: args.overwrite,

@@ -7,10 +7,11 @@ use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::quantity::{SizeUnit, significant};
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::run::RunError;
+use crate::scene::TableOptions;
 use crate::store::format;
+use crate::verdict::PairRules;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
-use crate::verdict::{PairOptions, PairRules};
 use crate::words::left_out::NOT_COVERED;
 use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
 use crate::words::rule_note::{regrade_reason, rule_notes};
@@ -23,8 +24,8 @@ const INDENT: usize = 14;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
-    let options =
-        PairOptions { dispersive: args.dispersive, joint_mm: args.joint_mm, as_given: args.as_given };
+    let changes = args.settings.assignments.clone();
+    let options = TableOptions { as_given: args.as_given, changes, ..TableOptions::default() }.of_rules()?;
     let filter = match &args.filters[..] {
         [filter] if !args.each => filter,
         _ => return each(args, options),

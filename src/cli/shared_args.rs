@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::exit::FailOn;
-use super::values::{assignment, decide, seed, target_error, threads};
+use super::setting_options::{OfScene, SettingOptions};
+use super::values::threads;
 use crate::run::CheckpointInterval;
 use crate::run::machine::bytes_from_words;
 
@@ -70,19 +71,9 @@ pub struct SceneArgs {
 /// What is set in a scene, and how it is prepared.
 #[derive(Debug, Args)]
 pub struct SettingArgs {
-    /// Replace a setting, for example --set base.cu=3; can be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
-    pub settings: Vec<String>,
-    /// Seed: the same seed gives the same bits
-    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
-    pub seed: Option<u64>,
-    /// Add replicates until the 95 % interval of the eroded mass is within this of its mean, such as 0.1pp
-    /// (percentage points)
-    #[arg(long, value_name = "ERROR", value_parser = target_error, allow_hyphen_values = true)]
-    pub target_error: Option<f64>,
-    /// Add replicates until the verdict is right with this probability, such as 99.9%
-    #[arg(long, value_name = "PERCENT", value_parser = decide, allow_hyphen_values = true)]
-    pub decide: Option<f64>,
+    /// Its settings.
+    #[command(flatten)]
+    pub settings: SettingOptions<OfScene>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub packings: PathBuf,

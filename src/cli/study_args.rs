@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::setting_options::{OfBoundary, OfPacking, OfSpecification, SettingOptions};
 use super::shared_args::WalkArgs;
-use super::values::{assignment, facets, lattice_size, seed, sheet_units, threads, time};
+use super::values::{facets, lattice_size, seed, threads, time};
 use crate::cases::CasePart;
 use crate::constrictions::{DEFAULT_MERGE_OVERLAP, Facets};
 use crate::outcome::design::SieveSeries;
 use crate::packing::{CellOption, LengthUnit};
 use crate::run::machine::bytes_from_words;
-use crate::scene::SheetUnits;
 use crate::study::boundary::ThicknessList;
 
 /// For which base, and where the specification goes.
@@ -32,15 +32,9 @@ pub struct DesignArgs {
     /// Sieves at which the limits are stated: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]
     pub sieves: SieveSeries,
-    /// Units of page and terminal: us has inches beside mm, metric has none (about.units)
-    #[arg(long, value_name = "UNITS", value_parser = sheet_units)]
-    pub units: Option<SheetUnits>,
-    /// The base is dispersive: stricter limits if it has many fines
-    #[arg(long)]
-    pub dispersive: bool,
-    /// What the page says of itself, for example --set about.project="Main dam"; can be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
-    pub settings: Vec<String>,
+    /// Settings of the base and of the page.
+    #[command(flatten)]
+    pub settings: SettingOptions<OfSpecification>,
     /// Folder for the results [default: voidwalk-specification; with --each voidwalk-designs]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -84,13 +78,9 @@ pub struct BoundaryArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be
-    /// repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
-    pub settings: Vec<String>,
-    /// Seed: the same seed gives the same bits
-    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
-    pub seed: Option<u64>,
+    /// Settings of the walks.
+    #[command(flatten)]
+    pub settings: SettingOptions<OfBoundary>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "voidwalk-boundary")]
     pub out: PathBuf,
@@ -164,12 +154,9 @@ pub struct PackArgs {
     /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
     /// scene works too
     pub filter: PathBuf,
-    /// Replace a setting, for example --set packing.grains=20000; can be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
-    pub settings: Vec<String>,
-    /// Seed for the sizes and positions of the grains
-    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
-    pub seed: Option<u64>,
+    /// Its settings.
+    #[command(flatten)]
+    pub settings: SettingOptions<OfPacking>,
     /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
     /// own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]

@@ -1,12 +1,10 @@
 //! Values of options, as a user writes them, with what to write instead where they are not understood.
 
-use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use super::schemas::schema;
 use crate::constrictions::Facets;
-use crate::run::RunError;
-use crate::scene::{Density, SheetUnits};
+use crate::scene::Density;
 use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::format::FORMATS;
 
@@ -52,12 +50,6 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
-/// What a sheet shows beside mm.
-pub(super) fn sheet_units(text: &str) -> Result<SheetUnits, String> {
-    let named = SheetUnits::ALL.into_iter().find(|units| units.name() == text);
-    named.ok_or_else(|| SheetUnits::ALL.map(SheetUnits::name).join(" or "))
-}
-
 /// The JSON Schema of a file, by the name of its form.
 pub(super) fn schema_of(text: &str) -> Result<String, String> {
     let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
@@ -80,78 +72,13 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
     millimetres(text).ok_or_else(|| format!("write {LENGTHS}"))
 }
 
-/// How far the interval may reach, in percentage points.
-pub(super) fn target_error(text: &str) -> Result<f64, String> {
-    let allowed = "write a number of percentage points above 0 and below 100 with its unit, as 0.5pp";
-    number_with(text, "pp", f64::MIN_POSITIVE..=99.999_999, allowed)
-}
-
-/// The probability with which the verdict is to be right, in percent.
-pub(super) fn decide(text: &str) -> Result<f64, String> {
-    let allowed = "write a probability from 50% to 99.999% with its unit, as 99.9%";
-    number_with(text, "%", 50.0..=99.999, allowed)
-}
-
-/// A number of a range, with its unit.
-fn number_with(text: &str, unit: &str, range: RangeInclusive<f64>, allowed: &str) -> Result<f64, String> {
-    let number = text.trim().strip_suffix(unit).and_then(|digits| digits.trim().parse::<f64>().ok());
-    number.filter(|n| range.contains(n)).ok_or_else(|| allowed.to_owned())
-}
-
-/// What a sieve table cannot say, as options and settings.
-pub(super) fn of_soils(dispersive: bool, joint_mm: Option<f64>) -> [(&'static str, Option<String>); 2] {
-    [
-        ("--dispersive", dispersive.then(|| "base.dispersive=true".to_owned())),
-        ("--joint-mm", joint_mm.map(|mm| format!("filter.joint_mm={mm:?}"))),
-    ]
-}
-
-/// Settings given by --set, and those that options of their own give.
-///
-/// # Errors
-/// One is given both ways.
-pub(super) fn with_options<const N: usize>(
-    settings: &[String],
-    options: [(&str, Option<String>); N],
-) -> Result<Vec<String>, RunError> {
-    let key = |setting: &str| setting.split('=').next().unwrap_or_default().trim().to_owned();
-    let mut all = settings.to_vec();
-    for (option, said) in options {
-        let Some(said) = said else { continue };
-        if let Some(setting) = settings.iter().find(|setting| key(setting) == key(&said)) {
-            let problem = format!("{option} and --set {setting} say the same thing twice: give one");
-            return Err(RunError::Refused(problem));
-        }
-        all.push(said);
-    }
-    Ok(all)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{assignment, decide, seed, target_error, with_options};
+    use super::{assignment, seed};
 
     #[test]
-    fn numbers_carry_their_unit_and_lie_in_their_range() {
-        assert_eq!(target_error("0.1pp"), Ok(0.1));
-        assert_eq!(decide(" 99.9 %"), Ok(99.9));
-        for text in ["0.1", "pp", "nanpp", "0.1%", "1e400pp", "0pp", "-1pp", "100pp"] {
-            assert!(target_error(text).unwrap_err().contains("as 0.5pp"), "{text}");
-        }
-        for text in ["99", "150%", "100%", "0.999", "%", "nan%", "-99%"] {
-            assert!(decide(text).unwrap_err().contains("from 50% to 99.999%"), "{text}");
-        }
+    fn values_are_read_or_refused() {
         assert!(seed("-1").is_err() && seed("18446744073709551615") == Ok(u64::MAX));
         assert!(assignment("filter.cu").is_err() && assignment("=3").is_err() && assignment("a=").is_ok());
-    }
-
-    #[test]
-    fn what_is_said_twice_is_refused() {
-        let set = [" seed = 4".to_owned(), "base.cu=2".to_owned()];
-        let seed = |seed: Option<u64>| [("--seed", seed.map(|seed| format!("seed={seed}")))];
-        let said = with_options(&set, seed(Some(3))).unwrap_err().to_string();
-        assert!(said.contains("--seed and --set  seed = 4 say the same thing twice: give one"), "{said}");
-        assert_eq!(with_options(&set, seed(None)).unwrap(), set);
-        assert_eq!(with_options(&set[1..], seed(Some(3))).unwrap(), ["base.cu=2", "seed=3"]);
     }
 }

@@ -108,7 +108,7 @@ notes! {
     /// The replicates leave two classes open.
     ReplicatesLeaveOpen {} "replicates" "uncertainty.md"
         "The replicates do not separate the classes."
-        "--decide 99% adds replicates until the class is that certain.";
+        "--decide-percent 99 adds replicates until the class is that certain.";
     /// A class that needs a second run.
     SecondRunMissing {} "second run" "uncertainty.md"
         "Some and continuing erosion differ by the second run, and only a first was asked for."

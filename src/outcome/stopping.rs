@@ -45,12 +45,10 @@ section! {
     /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
     /// ```
     pub struct StopRule in "stop" {
-        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base
-        /// (or --target-error 0.1pp).
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base.
         pub target_error_pp: Option<f64> = None, off "0.1",
             only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
-        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks (or
-        /// --decide 99.9%).
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks.
         pub decide_percent: Option<f64> = None, off "99.9",
             within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
         /// Where it gives up, and says what it would take.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::values::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
-use crate::verdict::Mistake;
+use crate::verdict::{Mistake, PairOptions};
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,6 +53,9 @@ const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
 /// Settings that say what the filter is.
 const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
 
+/// Settings that no sieve table states and that rules of practice depend on.
+const OF_RULES: [&str; 2] = ["base.dispersive", "filter.joint_mm"];
+
 impl TableOptions {
     /// The settings that say all of this.
     ///
@@ -80,6 +83,21 @@ impl TableOptions {
         }
         settings.extend(self.changes.iter().cloned());
         Ok(settings)
+    }
+
+    /// The facts that the rules of practice are told besides the two tables.
+    ///
+    /// # Errors
+    /// A value that is not allowed.
+    pub fn of_rules(&self) -> Result<PairOptions, SceneError> {
+        let is_one = |change: &&String| OF_RULES.contains(&setting_name(change));
+        let stated: Vec<String> = self.changes.iter().filter(is_one).cloned().collect();
+        let scene = Scene::built_in(&stated)?;
+        Ok(PairOptions {
+            dispersive: scene.base.dispersive == Some(true),
+            joint_mm: scene.filter.joint_mm,
+            as_given: self.as_given,
+        })
     }
 
     /// How a base in a table is walked, as a setting.
@@ -209,9 +227,13 @@ pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) 
 
 /// The first of these settings that is among the changes.
 fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
-    let name_of = |change: &String| change.split_once('=').map_or("", |(name, _)| name).trim().to_owned();
-    let set: Vec<String> = changes.iter().map(name_of).collect();
-    names.iter().copied().find(|name| set.iter().any(|set| set == name))
+    let is_set = |name: &str| changes.iter().any(|change| setting_name(change) == name);
+    names.iter().copied().find(|name| is_set(name))
+}
+
+/// The name in `name=value`.
+fn setting_name(change: &str) -> &str {
+    change.split_once('=').map_or("", |(name, _)| name).trim()
 }
 
 /// A path as a TOML string, so that one like `1e5` stays a name.
@@ -315,6 +337,15 @@ mod tests {
         assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
         let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
         assert!(odd.contains("there is no setting `base.uc`"), "{odd}");
+    }
+
+    #[test]
+    fn rules_are_told_of_dispersion_and_joints_by_the_same_settings_as_walks() {
+        let told = with(&["base.dispersive=true", "filter.joint_mm=1/8in", "filter.d0_mm=2"]).of_rules();
+        assert_eq!(told.unwrap(), PairOptions { dispersive: true, joint_mm: Some(3.175), as_given: false });
+        assert_eq!(with(&["base.dispersive=false"]).of_rules().unwrap(), PairOptions::default());
+        let refused = with(&["filter.joint_mm=wide"]).of_rules().unwrap_err().to_string();
+        assert!(refused.contains("filter.joint_mm: `wide` is not allowed"), "{refused}");
     }
 
     #[test]

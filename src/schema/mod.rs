@@ -20,8 +20,8 @@ pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, w
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 
-/// What `voidwalk init` writes of a setting.
-#[derive(Clone, Debug, PartialEq)]
+/// What a user is told of a setting, and which values it takes.
+#[derive(Clone, Debug)]
 pub struct KeyInfo {
     /// Its section, empty for the settings at the top.
     pub section: &'static str,
@@ -41,6 +41,8 @@ pub struct KeyInfo {
     pub shown: String,
     /// Whether the built-in scene has that value; else it is an example.
     pub is_set: bool,
+    /// Tells whether it may have a value.
+    pub admits: fn(&Value) -> bool,
 }
 
 impl KeyInfo {
@@ -190,6 +192,10 @@ macro_rules! section {
                         allowed: allowed.words,
                         shown: written.unwrap_or_default(),
                         is_set: stringify!($state) == "set",
+                        admits: |value| {
+                            let allowed: Checked = $allowed;
+                            allowed.read(value).is_some()
+                        },
                     }
                 }),*]
             }

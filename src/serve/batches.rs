@@ -26,11 +26,6 @@ pub struct AskedBatch {
     /// Which pairs are walked, and how: `governing`, `look`, `alone`, or `filters` for one base.
     pub walks: String,
     #[serde(default)]
-    pub dispersive: bool,
-    /// An open joint beside the base, a length; empty without one.
-    #[serde(default)]
-    pub joint: String,
-    #[serde(default)]
     pub density: String,
     #[serde(default)]
     pub pack: bool,

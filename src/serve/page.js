@@ -209,8 +209,7 @@ async function showPair() {
   if (state.base) query.set("base", state.base);
   if (state.filter) query.set("filter", state.filter);
   if (state.more.length) query.set("more", state.more.join("\n"));
-  if ($("#dispersion").value === "true") query.set("dispersive", "1");
-  if ($("#joint").value.trim()) query.set("joint_mm", $("#joint").value.trim());
+  if (ofSoils().length) query.set("changes", ofSoils().join("\n"));
   if ($("#as-given").checked) query.set("as_given", "1");
   $("#soil-options").hidden = !state.base;
   showSamples(query);
@@ -419,10 +418,8 @@ async function walkFilters(walks, problem) {
   show($(problem), "");
   const { density, pack, as_sampled, as_given, changes } = asked();
   const quick = walks === "filters" && $("#quick").checked;
-  // What is ticked beside the rules goes with the rules, too.
-  const [dispersive, joint] = [$("#dispersion").value === "true", $("#joint").value.trim()];
   try {
-    await ask("api/batch", { base: state.base, filters: filters(), walks, dispersive, joint, density, pack, quick, as_sampled, as_given, changes });
+    await ask("api/batch", { base: state.base, filters: filters(), walks, density, pack, quick, as_sampled, as_given, changes });
     await poll();
     $("#results").scrollIntoView({ block: "start" });
   } catch (error) {

@@ -27,7 +27,6 @@ use crate::report;
 use crate::run::error::Exit;
 use crate::run::{self, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
-use crate::schema::length::{LENGTHS, millimetres};
 use crate::store::open_regular;
 use crate::text::is_plain_part;
 use crate::verdict::{PairOptions, PairRules};
@@ -281,15 +280,13 @@ impl Routes {
     }
 
     fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
-        let joint_mm = joint(Some(asked.joint.clone()).filter(|text| !text.trim().is_empty()))?;
-        let AskedBatch { dispersive, as_given, as_sampled, pack, quick, .. } = *asked;
-        let rules = PairOptions { dispersive, joint_mm, as_given };
+        let AskedBatch { as_given, as_sampled, pack, quick, .. } = *asked;
         bounded(&asked.changes)?;
         let (density, changes) = (density(&asked.density)?, asked.changes.clone());
         let tables = TableOptions { density, pack, quick, as_sampled, as_given, changes };
         let walks = asked.walks().map_err(wrong)?;
         let options = of_cases(&self.root, &self.prepare, "");
-        BatchPlan::new(samples, filters, &tables, rules, walks, &options).map_err(wrong)
+        BatchPlan::new(samples, filters, &tables, walks, &options).map_err(wrong)
     }
 
     /// Every rule of practice on two sheets.
@@ -381,15 +378,11 @@ impl Routes {
 
 /// What is said of two soils besides their sheets.
 fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
-    let joint_mm = joint(request.parameter("joint_mm"))?;
-    let is_ticked = |name: &str| request.parameter(name).is_some();
-    Ok(PairOptions { dispersive: is_ticked("dispersive"), joint_mm, as_given: is_ticked("as_given") })
-}
-
-/// The width of an open joint (mm).
-fn joint(text: Option<String>) -> Result<Option<f64>, Problem> {
-    let no_length = |text: String| wrong(format!("the open joint: {text}: write {LENGTHS}"));
-    text.map(|text| millimetres(&text).ok_or_else(|| no_length(text))).transpose()
+    let changes: Vec<String> =
+        request.parameter("changes").iter().flat_map(|all| all.lines().map(String::from)).collect();
+    bounded(&changes)?;
+    let as_given = request.parameter("as_given").is_some();
+    TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
 }
 
 /// Whether a job's folder is there itself, and no link to one elsewhere.

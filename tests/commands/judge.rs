@@ -143,7 +143,7 @@ fn a_first_look_says_so_beside_the_verdict() {
     assert!(!has(&[], "few_replicates") && !has(&[], "one_replicate"));
     assert!(has(&["--set", "replicates=4"], "few_replicates"));
     // A rule that may add none is no better.
-    let most = ["--set", "stop.most_replicates=2", "--decide", "50%", "--set", "replicates=2"];
+    let most = ["--set", "stop.most_replicates=2", "--decide-percent", "50", "--set", "replicates=2"];
     assert!(has(&most, "few_replicates"));
     assert!(has(&["--set", "replicates=1"], "one_replicate"));
     let judged =

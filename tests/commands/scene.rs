@@ -165,7 +165,7 @@ fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
     let root = tempfile::tempdir().unwrap();
     let folder = |name: &str| root.path().join(name);
     // Coarser constrictions than the base anywhere: clear after the first look.
-    let clear = ["--set", "base.d85_at_dc=0", "--decide", "99.9%"];
+    let clear = ["--set", "base.d85_at_dc=0", "--decide-percent", "99.9"];
     assert!(run_small(&folder("clear"), &clear).status.success());
     let clear = outcome(&folder("clear"));
     assert_eq!(
@@ -174,7 +174,7 @@ fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
     );
     assert_eq!(clear["model"]["class"], clear["stopping"]["verdict"]);
 
-    let target = ["--set", "record.sensitivity=[]", "--target-error", "1.5pp", "--threads"];
+    let target = ["--set", "record.sensitivity=[]", "--target-error-pp", "1.5", "--threads"];
     for threads in ["1", "3"] {
         assert!(run_small(&folder(threads), &[&target[..], &[threads]].concat()).status.success());
     }
@@ -189,15 +189,14 @@ fn a_run_goes_on_until_its_rule_is_met_or_says_what_it_would_take() {
     assert!(voidwalk(&["run", scene.to_str().unwrap(), "--out", again.to_str().unwrap()]).status.success());
     assert_eq!(without_seconds(close), without_seconds(outcome(&again)));
 
-    let hopeless = ["--target-error", "0.01pp", "--set", "stop.most_replicates=10"];
+    let hopeless = ["--target-error-pp", "0.01", "--set", "stop.most_replicates=10"];
     let output = run_small(&folder("hopeless"), &hopeless);
     assert!(output.status.success());
     let found = outcome(&folder("hopeless"))["notes"].to_string();
     assert!(found.contains("target_missed"), "{found}");
-    for (flag, value) in [("--target-error", "0.1"), ("--decide", "99.9"), ("--decide", "many%")] {
-        refused(&voidwalk(&["run", flag, value]), &["with its unit"]);
+    for value in ["100", "many", "99%"] {
+        refused(&voidwalk(&["run", "--decide-percent", value]), &["from 50 to 99.999 (%)"]);
     }
-    refused(&voidwalk(&["run", "--decide", "100%"]), &["from 50% to 99.999%"]);
 }
 
 /// Particles that do not fit the memory that is allowed live in files: `check` says so, and the run gives the same results.

@@ -160,7 +160,9 @@ fn every_sample_of_a_sheet_has_its_rules() {
         assert!(told.contains(&on_terminal(1)), "{sentences}");
     }
     assert!(!table.to_string().contains("sheets"), "{table}");
-    for wrong in ["base=1", "base=9&filter=2", "base=1&filter=9", "base=1&filter=2&joint_mm=wide"] {
+    for wrong in
+        ["base=1", "base=9&filter=2", "base=1&filter=9", "base=1&filter=2&changes=filter.joint_mm=wide"]
+    {
         let (status, _, said) = served.get(&format!("api/samples?{wrong}"));
         assert_eq!(status, 422, "{wrong}: {}", String::from_utf8_lossy(&said));
     }
@@ -176,7 +178,10 @@ fn every_sample_of_a_sheet_has_its_rules() {
     let seven = ["2"; 7].join("%0A");
     assert_eq!(served.get(&format!("api/samples?base=1&filter={seven}")).0, 422);
     // Stricter where the soils are dispersive.
-    assert_eq!(served.get(&format!("api/samples?{query}&dispersive=1&joint_mm=2")).0, 200);
+    assert_eq!(
+        served.get(&format!("api/samples?{query}&changes=base.dispersive=true%0Afilter.joint_mm=2")).0,
+        200
+    );
 }
 
 #[test]
@@ -245,7 +250,7 @@ fn names_do_no_harm_and_mistakes_have_the_words_of_the_command_line() {
     }
     for (joint, status) in [("2.5", 200), ("0", 422), ("nan", 422), ("x", 422)] {
         assert_eq!(
-            served.get(&format!("api/rules?base=1&filter=1&dispersive=1&joint_mm={joint}")).0,
+            served.get(&format!("api/rules?base=1&filter=1&changes=filter.joint_mm={joint}")).0,
             status,
             "{joint}"
         );

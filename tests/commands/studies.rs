@@ -145,7 +145,7 @@ fn the_scene_among_its_variations_has_the_verdict_of_its_page() {
              [network]\nnx = 8\nny = 8\nnz = 10\n[record]\nsensitivity = [2.0]\n"
         )
     };
-    let level = ["--decide", "99.999%", "--set", "stop.most_replicates=10", "--set", "replicates=5"];
+    let level = ["--decide-percent", "99.999", "--set", "stop.most_replicates=10", "--set", "replicates=5"];
     let of_level = scene("curve = \"cu1.5-loose\"", 3.2);
     let of_curve = scene("cu = 1.5\nestimate = 0.5", 3.8);
     let cases: [(&str, &[&str], &str); 2] = [
