@@ -4,6 +4,7 @@ use super::args::DesignArgs;
 use super::design_each::{by_option, design_each};
 use super::print::{as_it_is, json, plain, shown, to_stdout};
 use super::progress::followed;
+use super::setting_options::{CommandSettings, OfSpecification};
 use crate::outcome::design::Specification;
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
@@ -22,12 +23,9 @@ const FOLDER: &str = "voidwalk-specification";
 /// The same for many samples.
 const EACH_FOLDER: &str = "voidwalk-designs";
 
-/// The settings besides those of the cover that a specification takes.
-const OTHERS: [&str; 2] = ["about.units", "base.dispersive"];
-
 /// Makes the specification for a base, or for each of many samples, and writes it into a folder.
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
-    let takes = [About::texts(), OTHERS.map(String::from).to_vec()].concat();
+    let takes = [About::texts(), OfSpecification::OPTIONS.iter().map(ToString::to_string).collect()].concat();
     let settings = &args.settings.assignments;
     let is_taken = |set: &str| takes.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
     if let Some(other) = settings.iter().find(|set| !is_taken(set)) {

@@ -129,7 +129,8 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
     }
 }
 
-const SET: &str = "set";
+/// The name of `--set`.
+pub(super) const SET: &str = "set";
 
 /// The option of a setting, without its dashes.
 pub(super) fn option_name(key: &str) -> String {
@@ -205,7 +206,7 @@ mod tests {
             (["--seed", "-1"], "a whole number from 0 to 18446744073709551615"),
             (["--decide-percent", "150"], "a probability from 50 to 99.999"),
             (["--target-error-pp", "0"], "above 0 and below 100"),
-            (["--joint-mm", "2 furlongs"], "1/8in"),
+            (["--joint-mm", "2 furlongs"], "3/8in"),
             (["--units", "yards"], "\"us\""),
         ] {
             let problem = read::<OfScene>(&words).unwrap_err().to_string();

@@ -11,11 +11,12 @@ use clap_mangen::roff::{Roff, bold, roman};
 use super::examples::command;
 use super::exit::EXIT_CODES;
 use super::print::{shown, to_stdout};
+use super::setting_options::SET;
 use super::values::FACETS;
 use crate::constrictions::shipped;
 use crate::packing::LengthUnit;
 use crate::run::RunError;
-use crate::scene::{Density, LibraryDensity, Scene, SheetUnits};
+use crate::scene::{Density, LibraryDensity, Scene};
 use crate::schema::KeyInfo;
 use crate::store::format::FORMATS;
 use crate::store::{StoreError, write_whole};
@@ -117,15 +118,17 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
             [named(&LibraryDensity::ALL.map(LibraryDensity::name)), named(&["friction=", "estimate="])]
                 .concat()
         }
-        "settings" => assignments(),
+        SET => assignments(),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
-        "units" => named(&SheetUnits::ALL.map(SheetUnits::name)),
         "unit" => named(&LengthUnit::ALL.map(LengthUnit::name)),
         "facets" => named(&FACETS.map(|(word, _)| word)),
         "filter" if command == "boundary" && shell == Shell::Bash => {
             shipped().iter().map(|filter| filter.name.clone()).collect()
         }
-        _ => return arg,
+        id => match Scene::keys().into_iter().find(|key| key.full_name() == id) {
+            Some(key) if !key.offered.is_empty() => key.offered,
+            _ => return arg,
+        },
     };
     arg.value_parser(PossibleValuesParser::new(values))
 }
@@ -218,14 +221,14 @@ mod tests {
                 let own = own.find_subcommand(sub.get_name()).unwrap().clone();
                 for value in arg.get_possible_values() {
                     let Some(long) = arg.get_long() else { continue };
-                    if arg.get_id() == "settings" && !value.get_name().ends_with('=') {
+                    if arg.get_id() == SET && !value.get_name().ends_with('=') {
                         settings.insert(value.get_name().to_owned());
                     }
                     let value = match value.get_name() {
                         of if of.ends_with('=') => format!("{of}1"),
                         of => of.to_owned(),
                     };
-                    let words = ["voidwalk".to_owned(), format!("--{long}"), value];
+                    let words = ["voidwalk".to_owned(), format!("--{long}={value}")];
                     let read = own.clone().ignore_errors(false).try_get_matches_from(words.clone());
                     let wrong = read.err().filter(|error| error.kind() == ErrorKind::ValueValidation);
                     assert!(wrong.is_none(), "{words:?}: {wrong:?}");

@@ -181,7 +181,12 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// A page shows the columns of these names alone.
+    ///
+    /// # Panics
+    /// There is no column of that name.
     pub fn only(mut self, names: &[&str]) -> Self {
+        let is_there = |name: &&&str| self.0.iter().any(|column| column.names[0] == **name);
+        assert_eq!(names.iter().find(|name| !is_there(name)), None, "columns that a page shows");
         let others = self.0.iter_mut().filter(|column| !names.contains(&column.names[0].as_str()));
         others.for_each(|column| column.page.heading.clear());
         self
