@@ -33,12 +33,12 @@ pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;
 pub use first_passage::FirstPassage;
-pub use flow::{Flow, FlowError, Permeability, Turned, permeability_mm2};
+pub use flow::{Flow, FlowError, Permeability, permeability_mm2};
 pub use graph::GraphShape;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
 pub use reach::Reachability;
-pub use undirected::{Link, LinkEnd, LinkedVoids, WIDE};
+pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE};
 
 use twins::Undirected;
 

@@ -349,16 +349,16 @@ impl<'a> Walk<'a> {
             return Err(error);
         }
         let Some(directions) = &mut self.directions else { return Ok(()) };
-        if let Some(turned) = directions.renew(self.network.to_mut(), state)? {
+        if directions.renew(self.network.to_mut(), state)? {
             let Self { network, table, passive, directions, .. } = self;
             let ways = state.ways(weighed(directions.as_ref()));
             let renew_passive = || {
                 let Some(passive) = passive else { return };
-                let voids = turned.groups().flatten();
+                let voids = 0..network.voids() as u32;
                 exits::of_each(network, ways, voids, |exits| passive.set(network, exits));
                 passive.forget_trap();
             };
-            rayon::join(|| table.renew(network, ways, &turned), renew_passive);
+            rayon::join(|| table.renew(network, ways), renew_passive);
             self.trap = trapped::Search::new(&self.network, self.supply.arching());
             self.all_caught = false;
         }

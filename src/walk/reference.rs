@@ -39,8 +39,8 @@ struct Beside {
 /// A run, particle by particle.
 pub struct Reference<'a> {
     network: Cow<'a, Network>,
-    /// The flow, the last increment before it was solved, and the constrictions blocked by then.
-    flow: Option<(Flow, u64, usize)>,
+    /// The flow, and the changes of constrictions by the time it was solved.
+    flow: Option<(Flow, usize)>,
     supply: &'a Supply,
     seed: u64,
     run: u64,
@@ -84,7 +84,7 @@ impl<'a> Reference<'a> {
         let passive_limit = supply.passive_limit(network.finest_open(|c| blocked[c]));
         Self {
             network: Cow::Borrowed(network),
-            flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0, 0)),
+            flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0)),
             supply,
             seed,
             run,
@@ -207,13 +207,24 @@ impl<'a> Reference<'a> {
         if whole == 0.0 { 0.0 } else { (3.0 * (f64::from(width) / whole).powi(power)).min(1.0) }
     }
 
-    /// Solves the flow before the first increment; then where one in a hundred constrictions has been blocked
-    /// since, or any in the last ten increments.
+    /// Solves the flow before the first increment; then where what has closed since carried more of it than
+    /// the tolerance.
     fn direct(&mut self) {
-        let Some((mut flow, solved_at, blocked_then)) = self.flow.take() else { return };
+        let Some((mut flow, changes_then)) = self.flow.take() else { return };
         let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
-        let since = changes - blocked_then;
-        let due = 100 * since >= self.network.passages() || self.increment > solved_at + 10;
+        let carried: f64 = match &self.widths {
+            None => self.history[changes_then..].iter().map(|&(_, exit)| flow.share(exit)).sum(),
+            Some(widths) => {
+                let lost = |&exit: &usize| {
+                    let then = self.part(exit, self.widths_then[exit], 4);
+                    let lost = then - self.part(exit, widths[exit], 4);
+                    if then > 0.0 { flow.share(exit) * lost / then } else { 0.0 }
+                };
+                let once = |&exit: &usize| self.network.twin(exit).is_none_or(|twin| exit < twin);
+                (0..widths.len()).filter(once).map(|exit| lost(&exit)).sum()
+            }
+        };
+        let is_due = changes > changes_then && carried >= self.network.flow_tolerance();
         let blocked: BitVec = self.blocked.iter().copied().collect();
         let parts: Option<Vec<f64>> = self
             .widths
@@ -224,7 +235,7 @@ impl<'a> Reference<'a> {
             // The clean filter comes first: its pressures are where the next solution begins.
             flow.solve(network, &BitVec::repeat(false, blocked.len())).expect("small networks are solved");
         }
-        self.flow = Some(if self.increment == 1 || (since > 0 && due) {
+        self.flow = Some(if self.increment == 1 || is_due {
             match &parts {
                 None => flow.solve(network, &blocked),
                 Some(parts) => flow.solve_parts(network, parts),
@@ -232,9 +243,9 @@ impl<'a> Reference<'a> {
             .expect("small networks are solved");
             flow.direct(network);
             self.widths_then = self.widths.clone().unwrap_or_default();
-            (flow, self.increment - 1, changes)
+            (flow, changes)
         } else {
-            (flow, solved_at, blocked_then)
+            (flow, changes_then)
         });
     }
 
