@@ -4,7 +4,8 @@
 //! that have closed since the last time carried more of it than a tolerance: the sum over them of flux over
 //! inflow, which is how many of them a particle meets on its way, on average
 //! ([`Network::with_flow_tolerance`]). Where blocked constrictions leave openings, a constriction counts by the
-//! part of its conductance that it has lost. The flow is solved once more at the end. In between directions
+//! part of its conductance that it has lost. Where anything has closed it is solved after ten increments at
+//! the latest, so that no particle waits longer before ways that have closed, and once more at the end. In between directions
 //! stay as they are, and a particle in a void whose exits have all been blocked since waits where it is. When
 //! to solve follows from the history of changes alone, so a walk that continues from a checkpoint solves again
 //! what was solved before and gives directions each time, in the same order, to the same bits.
@@ -15,6 +16,9 @@ use bitvec::vec::BitVec;
 use super::State;
 use super::openings::{CONDUCTS, Weighed, part_kept};
 use crate::network::{ExitRule, Flow, FlowError, Network};
+
+/// Increments after which the flow is solved again where anything has closed since.
+const INCREMENTS: u64 = 10;
 
 /// How the permeability fell in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,7 +35,9 @@ pub(super) struct Directions {
     record: FlowRecord,
     /// Flow through the clean filter.
     clean: f64,
-    /// Constrictions blocked or narrowed in this run until the flow was solved last.
+    /// Last increment before the flow was solved.
+    solved_at: u64,
+    /// Constrictions blocked or narrowed in this run until then.
     changes_then: usize,
     /// Of those since: how many, and the flow that they carried, over the inflow.
     since: (usize, f64),
@@ -119,6 +125,7 @@ impl Directions {
             flow,
             record,
             clean,
+            solved_at: 0,
             changes_then: 0,
             since: (0, 0.0),
             widths_then: Vec::new(),
@@ -134,7 +141,7 @@ impl Directions {
                 past.set(network, so_far, true);
                 so_far += 1;
             }
-            if directions.is_due(network, state, so_far) {
+            if directions.is_due(network, state, increment, so_far) {
                 directions.solve(network, past.passable(), increment - 1, so_far)?;
                 directions.flow.direct(network);
             }
@@ -150,14 +157,15 @@ impl Directions {
         }
     }
 
-    /// Whether the flow is to be solved, after so many changes of this run.
-    fn is_due(&mut self, network: &Network, state: &State, changes: usize) -> bool {
+    /// Whether the flow is to be solved at the beginning of an increment, after so many changes of this run.
+    fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
         let (counted, mut carried) = self.since;
         for at in self.changes_then + counted..changes {
             carried += self.carried(network, state, at);
         }
         self.since = (changes - self.changes_then, carried);
-        changes > self.changes_then && carried >= network.flow_tolerance()
+        let is_late = increment > self.solved_at + INCREMENTS;
+        changes > self.changes_then && (is_late || carried >= network.flow_tolerance())
     }
 
     /// The part of the inflow that no longer goes through a constriction after a change of the run.
@@ -180,7 +188,7 @@ impl Directions {
     /// directions; whether it did.
     pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
         let changes = state.changes();
-        let is_due = self.is_due(network, state, changes);
+        let is_due = self.is_due(network, state, state.increment, changes);
         if is_due {
             self.solve(network, Passable::of(state), state.increment - 1, changes)?;
             self.flow.direct(network);
@@ -220,7 +228,7 @@ impl Directions {
         };
         let part = if self.clean > 0.0 { (found.conductance / self.clean).min(1.0) } else { 0.0 };
         self.record.k_over_k0.push((increment, part));
-        (self.changes_then, self.since) = (changes, (0, 0.0));
+        (self.solved_at, self.changes_then, self.since) = (increment, changes, (0, 0.0));
         Ok(())
     }
 }

@@ -39,8 +39,8 @@ struct Beside {
 /// A run, particle by particle.
 pub struct Reference<'a> {
     network: Cow<'a, Network>,
-    /// The flow, and the changes of constrictions by the time it was solved.
-    flow: Option<(Flow, usize)>,
+    /// The flow, the last increment before it was solved, and the changes of constrictions by then.
+    flow: Option<(Flow, u64, usize)>,
     supply: &'a Supply,
     seed: u64,
     run: u64,
@@ -84,7 +84,7 @@ impl<'a> Reference<'a> {
         let passive_limit = supply.passive_limit(network.finest_open(|c| blocked[c]));
         Self {
             network: Cow::Borrowed(network),
-            flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0)),
+            flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0, 0)),
             supply,
             seed,
             run,
@@ -208,9 +208,9 @@ impl<'a> Reference<'a> {
     }
 
     /// Solves the flow before the first increment; then where what has closed since carried more of it than
-    /// the tolerance.
+    /// the tolerance, or anything has closed since ten increments.
     fn direct(&mut self) {
-        let Some((mut flow, changes_then)) = self.flow.take() else { return };
+        let Some((mut flow, solved_at, changes_then)) = self.flow.take() else { return };
         let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
         let carried: f64 = match &self.widths {
             None => self.history[changes_then..].iter().map(|&(_, exit)| flow.share(exit)).sum(),
@@ -224,7 +224,8 @@ impl<'a> Reference<'a> {
                 (0..widths.len()).filter(once).map(|exit| lost(&exit)).sum()
             }
         };
-        let is_due = changes > changes_then && carried >= self.network.flow_tolerance();
+        let is_late = self.increment > solved_at + 10;
+        let is_due = changes > changes_then && (is_late || carried >= self.network.flow_tolerance());
         let blocked: BitVec = self.blocked.iter().copied().collect();
         let parts: Option<Vec<f64>> = self
             .widths
@@ -243,9 +244,9 @@ impl<'a> Reference<'a> {
             .expect("small networks are solved");
             flow.direct(network);
             self.widths_then = self.widths.clone().unwrap_or_default();
-            (flow, changes)
+            (flow, self.increment - 1, changes)
         } else {
-            (flow, changes_then)
+            (flow, solved_at, changes_then)
         });
     }
 
