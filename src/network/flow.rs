@@ -268,8 +268,7 @@ impl Flow {
     /// conduct.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let outside = self.pressure.len() - 1;
-        let is_side =
-            |of: &Passage| Some(of.other) == self.reservoir || of.other as usize == outside;
+        let is_side = |of: &Passage| Some(of.other) == self.reservoir || of.other as usize == outside;
         let ways = || self.passages.iter().filter(|of| self.open[of.exit as usize] > 0.0 && is_way(of));
         let mut together = Together::of(outside);
         ways().filter(|of| !is_side(of)).for_each(|of| together.join(of.one, of.other));

@@ -25,8 +25,20 @@ const INCREMENTS: u64 = 10;
 pub struct FlowRecord {
     /// Permeability of the filter before anything was blocked (mm2), where the network knows its lengths.
     pub k0_mm2: Option<f64>,
-    /// Increment, and permeability after it over that of the clean filter, each time that it was solved.
-    pub k_over_k0: Vec<(u64, f64)>,
+    /// Each time that the flow was solved.
+    pub solutions: Vec<FlowSolution>,
+}
+
+/// A solution of the flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowSolution {
+    /// Increments that were done.
+    pub increment: u64,
+    /// Permeability over that of the clean filter.
+    pub k_over_k0: f64,
+    /// Part of the inflow that went through constrictions which had closed since the solution before, summed
+    /// over the filter.
+    pub closed: f64,
 }
 
 /// The directions of a walk.
@@ -119,7 +131,7 @@ impl Directions {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &clean_filter)?;
-        let record = FlowRecord { k0_mm2: clean.k_mm2, k_over_k0: vec![] };
+        let record = FlowRecord { k0_mm2: clean.k_mm2, solutions: vec![] };
         let clean = clean.conductance;
         let mut directions = Self {
             flow,
@@ -159,13 +171,18 @@ impl Directions {
 
     /// Whether the flow is to be solved at the beginning of an increment, after so many changes of this run.
     fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
+        self.count(network, state, changes);
+        let is_late = increment > self.solved_at + INCREMENTS;
+        changes > self.changes_then && (is_late || self.since.1 >= network.flow_tolerance())
+    }
+
+    /// Counts what has closed since the flow was solved, up to so many changes of this run.
+    fn count(&mut self, network: &Network, state: &State, changes: usize) {
         let (counted, mut carried) = self.since;
         for at in self.changes_then + counted..changes {
             carried += self.carried(network, state, at);
         }
         self.since = (changes - self.changes_then, carried);
-        let is_late = increment > self.solved_at + INCREMENTS;
-        changes > self.changes_then && (is_late || carried >= network.flow_tolerance())
     }
 
     /// The part of the inflow that no longer goes through a constriction after a change of the run.
@@ -200,6 +217,7 @@ impl Directions {
     pub fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
         let changes = state.changes();
         if changes > self.changes_then {
+            self.count(network, state, changes);
             self.solve(network, Passable::of(state), state.increment, changes)?;
         }
         self.flow.direct(network);
@@ -227,7 +245,7 @@ impl Directions {
             }
         };
         let part = if self.clean > 0.0 { (found.conductance / self.clean).min(1.0) } else { 0.0 };
-        self.record.k_over_k0.push((increment, part));
+        self.record.solutions.push(FlowSolution { increment, k_over_k0: part, closed: self.since.1 });
         (self.solved_at, self.changes_then, self.since) = (increment, changes, (0, 0.0));
         Ok(())
     }

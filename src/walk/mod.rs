@@ -86,7 +86,7 @@ pub use arching::{Arching, LAWS, Law, LawName};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use crowding::{ArchSize, ByVoid, Concentration, DENSEST, VoidCrowd, WalkedConcentration};
-pub use directions::FlowRecord;
+pub use directions::{FlowRecord, FlowSolution};
 pub use engine::{Engine, Finest, RunPlan, Shortcut};
 pub use error::WalkError;
 pub use exits::ExitTable;

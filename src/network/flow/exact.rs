@@ -118,7 +118,10 @@ impl Eliminated {
     fn put_back(&mut self, node: usize) {
         let row = std::mem::take(&mut self.rows[node]);
         let fall = |to: &Neighbour| {
-            row.iter().filter(|from| from.node != to.node).map(|from| from.part * self.fall(from.node, to.node)).sum()
+            row.iter()
+                .filter(|from| from.node != to.node)
+                .map(|from| from.part * self.fall(from.node, to.node))
+                .sum()
         };
         let falls: Vec<f64> = row.iter().map(fall).collect();
         self.pressure[node] = row.iter().map(|other| other.part * self.pressure[other.node as usize]).sum();
@@ -143,12 +146,7 @@ impl Eliminated {
 
 /// The neighbours of a node, of which `gone` was one with conductance `g`, with those that it is joined with
 /// instead.
-fn joined(
-    row: &[(u32, f64)],
-    of_gone: &[Neighbour],
-    (gone, node): (u32, u32),
-    g: f64,
-) -> Vec<(u32, f64)> {
+fn joined(row: &[(u32, f64)], of_gone: &[Neighbour], (gone, node): (u32, u32), g: f64) -> Vec<(u32, f64)> {
     let mut old = row.iter().copied().filter(|&(other, _)| other != gone).peekable();
     let new = of_gone.iter().filter(|met| met.node != node).map(|met| (met.node, g * met.part));
     let mut all = Vec::with_capacity(row.len() + of_gone.len());

@@ -233,6 +233,13 @@ pub struct Run {
     /// Permeability when the run ends over that of the clean filter, where water flows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k_over_k0: Option<f64>,
+    /// Times that the flow was solved, where water flows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_solutions: Option<u64>,
+    /// The most of the inflow that went through constrictions which had closed since the flow was solved,
+    /// summed over the filter: so many on the mean way of a particle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_closed_most: Option<f64>,
     /// Permeability of the clean filter (mm2), where the network knows its lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k0_mm2: Option<f64>,
