@@ -1,6 +1,6 @@
 //! Whether a scene says all that it needs to, and nothing that does not go with the rest.
 
-use super::keys::CONCENTRATIONS;
+use super::keys::concentrations;
 use super::{NetworkMadeOf, Scene, SceneError};
 use crate::network::ExitRule;
 use crate::schema::GivenSettings;
@@ -149,8 +149,9 @@ impl Scene {
             }
             Some(law) if self.exits.concentration.is_none() => Err(s.clash(format!(
                 "walk.concentration is missing: \"{}\" depends on the solids fraction of the suspension that \
-                 enters the filter (volume of particles by volume of suspension), {CONCENTRATIONS}",
-                law.name
+                 enters the filter (volume of particles by volume of suspension), {}",
+                law.name,
+                concentrations()
             ))),
             Some(_) => Ok(()),
         }

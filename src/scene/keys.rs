@@ -169,7 +169,7 @@ section! {
         /// suspension, the same at every depth as long as particles go with the water. "marin-2018" needs
         /// it.
         pub concentration: Option<f64> = None, off "0.02",
-            only(CONCENTRATIONS, |part| *part > 0.0 && *part <= DENSEST);
+            only(concentrations(), |part| *part > 0.0 && *part <= DENSEST);
         /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that
         /// blocks it, for finer particles and water. Default: "closed". Openings need every particle walked
         /// one by one, so that fine bases take longer.
@@ -313,8 +313,10 @@ impl ExitKeys {
     }
 }
 
-/// The concentrations that a scene may state.
-pub(super) const CONCENTRATIONS: &str = "a number above 0 and up to 0.64";
+/// The concentrations that a scene may state, in words.
+pub(super) fn concentrations() -> String {
+    format!("a number above 0 and up to {DENSEST}")
+}
 
 /// Increments after which it may be kept what each void holds.
 const MOST_MOMENTS: usize = 100;

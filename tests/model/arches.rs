@@ -237,7 +237,7 @@ const RING: &str = "from,to,diameter_mm\nstart,0,\n0,1,2\n1,0,2\n1,end,0\n";
 /// At a stated concentration what erodes does not depend on how much of the base an increment inserts: 2 % or
 /// 0.2 % of it, on a dozen small lattices each, agree within three standard errors of their means. With a
 /// concentration that grows with the increment nearly all would erode at 0.2 %. Differences below some six
-/// points of 40 % are missed, as of arches that several particles of one increment join (2 % of them here).
+/// points of 36 % are missed, as of arches that several particles of one increment join (2 % of them here).
 #[test]
 fn what_erodes_does_not_depend_on_the_increments() {
     const NETWORKS: u64 = 12;
