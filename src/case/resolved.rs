@@ -14,7 +14,7 @@ const PROTOCOL: u32 = 1;
 const WATER_PROTOCOL: u32 = 1;
 
 /// What is added where particles arch: raised whenever the program gives other results for these alone.
-const ARCHING_PROTOCOL: u32 = 10_000;
+const ARCHING_PROTOCOL: u32 = 20_000;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run

@@ -5,7 +5,6 @@ mod few;
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
 
-use super::crowding::Crowd;
 use super::openings::Ways;
 use super::reads::Reads;
 use super::{Arching, Isa};
@@ -194,8 +193,6 @@ pub(super) struct OpenExits<'a> {
     pub passive_limit: f32,
     /// How particles arch; only with a table of the general form, or that has widths read.
     pub arching: Option<&'a Arching>,
-    /// The particles in each void, where arches depend on them.
-    pub crowd: Option<&'a Crowd>,
 }
 
 impl ExitTable {
@@ -224,17 +221,15 @@ impl ExitTable {
     /// The same for particles that arch or constrictions that leave openings: each particle is held against
     /// the width of the exit that it chose.
     pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
-        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
+        let Some([nx, ny, _]) = network.shape() else {
+            return Self::empty_general(network).filled(network, ways);
+        };
         let mut lattice = Lattice::new(network.voids(), nx, nx * ny, 0);
         (lattice.by_widths, lattice.classed) = (true, Vec::new());
         Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
     }
 
-    /// The same in the form that any network has.
-    pub(super) fn general(network: &Network, ways: Ways) -> Self {
-        Self::empty_general(network).filled(network, ways)
-    }
-
+    /// A table in the form that any network has, of which no void is set yet.
     fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
