@@ -1,6 +1,7 @@
 //! What a network has besides where its constrictions have no direction of their own: columns by exit.
 
 use super::exit_rule::ExitRule;
+use super::hash_column;
 
 /// The twin of an exit that has none.
 pub(super) const NO_TWIN: u32 = u32::MAX;
@@ -32,11 +33,11 @@ impl Undirected {
     /// Adds what a walk takes from it; the weights follow from the rest.
     pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
         let Self { twin, conductance, rule, rho, flow_tolerance, volume, .. } = self;
-        hash.update(bytemuck::cast_slice(twin));
-        hash.update(bytemuck::cast_slice(conductance));
+        hash_column(hash, twin, |number| number.to_le_bytes());
+        hash_column(hash, conductance, |number| number.to_le_bytes());
         hash.update(rule.name().as_bytes());
         hash.update(&rho.to_bits().to_le_bytes());
         hash.update(&flow_tolerance.to_bits().to_le_bytes());
-        hash.update(bytemuck::cast_slice(volume));
+        hash_column(hash, volume, |number| number.to_le_bytes());
     }
 }

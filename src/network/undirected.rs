@@ -11,7 +11,7 @@ use super::twins::{NO_TWIN, Undirected};
 use super::{END, Network, NetworkError};
 
 /// The tolerance of the flow in a walk where nobody sets it.
-pub const FLOW_TOLERANCE: f64 = 0.01;
+pub const FLOW_TOLERANCE: f64 = 0.03;
 
 /// Diameter, in units of the network, of a way in that nothing can block.
 pub const WIDE: f32 = 1e30;

@@ -124,7 +124,7 @@ impl Scene {
         }
         if !rule.needs_flow() {
             wrong(
-                &["walk.rho", "walk.conductance_exponent"],
+                &["walk.rho", "walk.flow_tolerance", "walk.conductance_exponent"],
                 "says nothing where no water flows: walk.exit",
             )?;
         }

@@ -99,6 +99,31 @@ fn a_flow_that_rounding_hides_is_found_by_elimination() {
     }
 }
 
+/// A way in that carries enough to count, behind which water parts so that neither way does: the wider one leads on,
+/// and the void retains nothing.
+#[test]
+fn a_void_that_water_enters_leads_on() {
+    use LinkEnd::Void;
+    let links = [
+        (OUTSIDE, Void(0), 1.0),
+        (Void(0), OUTSIDE, 1.0),
+        (OUTSIDE, Void(1), 4e-9),
+        (Void(1), Void(2), 1.0),
+        (Void(1), Void(3), 2.0),
+        (Void(2), OUTSIDE, 1.0),
+        (Void(3), OUTSIDE, 1.0),
+    ];
+    let mut network = linked(4, &links.map(|(from, to, g)| link(from, to, g)));
+    let mut flow = Flow::new(&network);
+    flow.solve(&network, &open(&network)).unwrap();
+    flow.direct(&mut network);
+    let ways = |void: u32| network.exits(void).filter(|&c| network.exit_weight(c) > 0.0).collect::<Vec<_>>();
+    let of_one = ways(1);
+    assert_eq!(of_one.iter().map(|&c| network.targets()[c]).collect::<Vec<_>>(), [3]);
+    assert!((flow.flux(of_one[0]) / (4e-9 * 4.0 / 7.0) - 1.0).abs() < 0.1);
+    assert_eq!((ways(2).len(), ways(3).len()), (1, 1));
+}
+
 /// Inlets that leak through what blocks them: no particle gets in, and what seeps is known all the same.
 #[test]
 fn a_leak_is_no_open_way() {
