@@ -67,6 +67,8 @@ pub enum Purpose {
     Strata = 12,
     /// Which particles jam.
     Arching = 13,
+    /// Circles inscribed between grains, to guess constrictions.
+    Inscribed = 14,
 }
 
 /// The full name of a stream.

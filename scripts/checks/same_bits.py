@@ -57,6 +57,8 @@ sensitivity = []
 
 # Runs: what each sets in the scene above.
 MANY = ["base.cu=3"]  # enough particles an increment that `auto` takes counts
+# A law of arching at the concentration that its scenes were recorded with.
+SUSPENSION = ["walk.arching=marin-2018", "walk.concentration=0.0121580547112462"]
 FEW_GRAINS = ["packing.grains=300", "packing.stiffness_ratio=0.01", "filter.cu=1.5"]
 LITTLE = ["network.nx=8", "network.ny=8", "network.nz=10"]
 RUNS = {
@@ -125,13 +127,12 @@ RUNS = {
     "water through slabs": ["walk.exit=flux", "network.nz=160"],
     "area along the water": ["walk.exit=area-along-flow", "base.cu=2"],
     "water on the packing's own voids": ["filter.density=loose", *FEW_GRAINS, "network.kind=graph", "walk.exit=flux", "base.mass_ratio=0.02"],
-    "arches": ["walk.arching=marin-2018", "base.d15f_over_d85b=7"],
+    "arches": [*SUSPENSION, "base.d15f_over_d85b=7"],
     "arches, counts": ["walk.arching=zuriguel-2005", "engine=counts", "base.cu=3", "base.d15f_over_d85b=14"],
     "arches, more than one keeps": ["walk.arching=critical-3", "inject_share=0.2", "base.d15f_over_d85b=9"],
-    "arches by void": ["walk.arching=marin-2018", "walk.concentration=by-void", "base.d15f_over_d85b=6"],
-    "arches, water on the lattice": ["walk.arching=marin-2018", "walk.exit=flux", "base.d15f_over_d85b=6"],
+    "arches, water on the lattice": [*SUSPENSION, "walk.exit=flux", "base.d15f_over_d85b=6"],
     "openings": ["walk.blocked=open", "base.cu=2"],
-    "openings and arches": ["walk.blocked=open", "walk.arching=marin-2018", "base.d15f_over_d85b=7"],
+    "openings and arches": ["walk.blocked=open", *SUSPENSION, "base.d15f_over_d85b=7"],
     "studies that stop": ["replicates=8", "record.sensitivity=[0.5, 2]"],
 }
 

@@ -2,7 +2,7 @@
 """Prints what arches and openings beside particles cost: processor time by that of the same scene without them, in Markdown.
 
     scripts/peers/mechanisms.py [--binary target/release/voidwalk] [--particles 2000000 200000000] [--turns 5]
-        [--instructions portable avx2 avx512] [--only by-void] [--engines particles]
+        [--instructions portable avx2 avx512] [--only marin] [--engines particles]
 
 Scenes follow one another in each turn; whole processes, one thread, medians. Another mechanism lets other particles pass, so that the
 number of moves differs: time by move is given beside the time of the scene. `--instructions` walks all of it with each set of instructions
@@ -20,19 +20,20 @@ from statistics import median
 
 from growth import measured, run
 
+SUSPENSION = ["walk.arching=marin-2018", "walk.concentration=0.05"]
+
 #: Engine, and what a base particle meets.
 SCENES = [
     ("particles", "closed, no arches", []),
     ("particles", "openings", ["walk.blocked=open"]),
     ("particles", "arches, zuriguel-2005", ["walk.arching=zuriguel-2005"]),
-    ("particles", "arches, marin-2018", ["walk.arching=marin-2018"]),
+    ("particles", "arches, marin-2018 at 0.05", SUSPENSION),
     ("particles", "arches, critical-3", ["walk.arching=critical-3"]),
-    ("particles", "arches, marin-2018 at 0.01", ["walk.arching=marin-2018", "walk.concentration=0.01"]),
-    ("particles", "arches, marin-2018 by-void", ["walk.arching=marin-2018", "walk.concentration=by-void"]),
+    ("particles", "arches, marin-2018 at 0.005", ["walk.arching=marin-2018", "walk.concentration=0.005"]),
     ("counts", "closed, no arches", []),
-    ("counts", "arches, marin-2018", ["walk.arching=marin-2018"]),
+    ("counts", "arches, marin-2018 at 0.05", SUSPENSION),
     ("expected", "closed, no arches", []),
-    ("expected", "arches, marin-2018", ["walk.arching=marin-2018"]),
+    ("expected", "arches, marin-2018 at 0.05", SUSPENSION),
 ]
 
 

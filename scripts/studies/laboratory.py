@@ -30,12 +30,12 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from arches import ERODED, THRESHOLD, Walks, crossing, each, eroded_of
+from arches import ERODED, THRESHOLD, Walks, concentrations, crossing, each, eroded_of
 
 CELL = ["measure", "filter_cu", "density", "base_cu", "network", "exit", "law", "concentration", "blocked"]
 RUNS = ["first", "second"]
 FOUND = ["", "_least", "_most", "_holds_to", "_erodes_from"]
-COLUMNS = CELL + [run + what for run in RUNS for what in FOUND] + ["k_over_k0", "walked_concentration", "replicates", "cpu_seconds"]
+COLUMNS = CELL + [run + what for run in RUNS for what in FOUND] + ["k_over_k0", "replicates", "cpu_seconds"]
 REPLICATES, LAYERS, CLOSE, LONGEST = 5, 60, 1.04, 160.0
 # How far the next ratio lies outwards.
 STEP, STEP_BY_AREA = 1.15, 1.08
@@ -43,10 +43,6 @@ FARTHEST = 16.1
 # Friction, as in the library, and number of grains of the packings of the graphs. With 10,000 grains of Cu 6 the cell takes the finer 78 % of the mass.
 FRICTIONS, GRAINS = {"loose": 0.3, "dense": 0.0}, {"1.5": 3000, "3": 6000, "6": 10000}
 MASS_RATIO = 0.05
-# What base brings into the first layer of a filter of Cu 6, whose packing the library has not whole: void ratio 0.34 loose (Table 2 of the paper) and
-# 0.2675 dense (`results/graph.md`). Of graphs: that of the same filter as a lattice.
-CONCENTRATIONS = {("6", "loose"): round(MASS_RATIO * 0.01 * 60 / 0.34, 4), ("6", "dense"): round(MASS_RATIO * 0.01 * 60 / 0.2675, 4),
-                  ("1.5", "loose"): 0.0468, ("1.5", "dense"): 0.0583, ("3", "loose"): 0.0641, ("3", "dense"): 0.0792}
 NONE, MARIN, ZURIGUEL, CRITICAL = "none", "marin-2018", "zuriguel-2005", "critical-3"
 SANDS = [("1.5", "loose"), ("1.5", "dense"), ("3", "loose"), ("3", "dense")]
 LOOSE, BEADS, BROAD, BROAD_DENSE = ("1.5", "loose"), ("1.2", "dense"), ("6", "loose"), ("6", "dense")
@@ -62,16 +58,17 @@ def plan():
 
 def cells():
     """Models and tests; a group that comes again is filled in."""
-    def lattice(filters, bases, law=NONE, exit="area", blocked="closed", measure="boundary", concentration=""):
+    def lattice(filters, bases, law=NONE, exit="area", blocked="closed", measure="boundary"):
         for of in filters:
             for base in bases:
-                given = concentration or (CONCENTRATIONS[of] if of[0] == "6" and law == MARIN else "")
-                yield measure, *of, base, "lattice", exit, law, given, blocked
+                for concentration in concentrations(law):
+                    yield measure, *of, base, "lattice", exit, law, concentration, blocked
 
     def graph(filters, bases, law=NONE, blocked="closed", exit="flux"):
         for of in filters:
             for base in bases:
-                yield "boundary", *of, base, "graph", exit, law, CONCENTRATIONS[of] if law == MARIN else "", blocked
+                for concentration in concentrations(law):
+                    yield "boundary", *of, base, "graph", exit, law, concentration, blocked
 
     tested = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
     for law in (NONE, MARIN):
@@ -122,14 +119,14 @@ def cells():
     yield from lattice(tested, ["1.2"], ZURIGUEL, measure="largest")
 
 
-INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "d15f_over_d85b", "inject_share"]
+INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "d15f_over_d85b", "inject_share"]
 
 
 def increments_cells():
     """One filter just below four of its boundaries on graphs by area, by the share of the base in an increment."""
-    for base, law, ratio in [("3", NONE, 3.1), ("1.5", NONE, 2.8), ("1.5", MARIN, 5.5), ("1.5", CRITICAL, 8.0)]:
+    for base, law, concentration, ratio in [("3", NONE, "", 3.1), ("1.5", NONE, "", 2.8), ("1.5", MARIN, 0.05, 5.5), ("1.5", CRITICAL, "", 8.0)]:
         for share in ("0.01", "0.003", "0.001"):
-            yield *LOOSE, base, law, ratio, share
+            yield *LOOSE, base, law, concentration, ratio, share
 
 
 class Models(Walks):
@@ -198,8 +195,8 @@ class Models(Walks):
 
     def increments(self, of):
         """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
-        *pair, law, ratio, share = of
-        cell = ("boundary", *pair, "graph", BY_AREA, law, CONCENTRATIONS[LOOSE] if law == MARIN else "", "closed")
+        *pair, law, concentration, ratio, share = of
+        cell = ("boundary", *pair, "graph", BY_AREA, law, concentration, "closed")
         runs = [outcome["replicates"][0]["runs"][0] for outcome in self.outcomes(cell, self.settings(cell, ratio) | {"inject_share": share})]
         print(*of, flush=True)
         kept = statistics.mean(run["k_over_k0"] for run in runs)
@@ -213,7 +210,7 @@ class Models(Walks):
 
     def boundaries(self, cell, before):
         """The boundaries of its runs, the first run's first."""
-        walked, kept, concentration = {}, {}, None
+        walked, kept = {}, {}
         runs = RUNS[: self.settings(cell, guess(cell))["runs"]]
         step = STEP_BY_AREA if cell[5] == BY_AREA else STEP
         shares = lambda run: {ratio: of[run] for ratio, of in walked.items()}
@@ -225,8 +222,7 @@ class Models(Walks):
             replicates = [replicate["runs"] for outcome in outcomes for replicate in outcome["replicates"]]
             walked[ratio] = [[of[run]["eroded_mass_fraction"] for of in replicates] for run in range(len(runs))]
             kept[ratio] = [of[0].get("k_over_k0") for of in replicates]
-            concentration = (outcomes[0].get("arching") or {}).get("concentration")
-        row = {"walked_concentration": concentration, "replicates": min((len(of) for both in walked.values() for of in both), default=0)}
+        row = {"replicates": min((len(of) for both in walked.values() for of in both), default=0)}
         for at, run in enumerate(runs):
             row |= {run + what: value for what, value in zip(FOUND, boundary(shares(at)))}
         below = [ratio for ratio, of in kept.items() if row["first_holds_to"] == round(ratio, 3) and None not in of]

@@ -13,13 +13,13 @@ is closed is walked by engine `expected` without water, all else one by one. Row
 import argparse
 from pathlib import Path
 
-from arches import Walks, each
+from arches import CONCENTRATIONS, Walks, each
 
 BLOCKED = ["closed", "open"]
 FILTERS = [(1.5, "loose"), (3, "loose")]
 BASES = [1.5, 3, 4.5]
 RATIOS = [3, 4, 5]
-CELL = ["filter_cu", "density", "base_cu", "law", "blocked"]
+CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "blocked"]
 COLUMNS = CELL + ["holds_to", "erodes_from", "no_erosion", "least", "most"]
 FLOW_CELL = CELL + ["d15f_over_d85b"]
 FLOW_COLUMNS = FLOW_CELL + [f"{name}_{run}" for run in ("first", "second") for name in ("eroded_percent", "k_over_k0", "least", "most")]
@@ -27,8 +27,9 @@ FLOW_COLUMNS = FLOW_CELL + [f"{name}_{run}" for run in ("first", "second") for n
 
 def of_cell(cell, ratio):
     """What differs from the built-in scene."""
-    filter_cu, density, base_cu, law, blocked = cell
-    return {
+    filter_cu, density, base_cu, law, concentration, blocked = cell
+    suspension = {} if concentration == "" else {"walk.concentration": concentration}
+    return suspension | {
         "filter.library": density, "filter.cu": filter_cu, "filter.d0_mm": 1, "base.cu": base_cu, "base.d15f_over_d85b": round(ratio, 6),
         "network.nx": 10, "network.ny": 10, "replicates": 5, "record.sensitivity": "[]", "record.thickness": "[]", "walk.blocked": blocked,
         "walk.arching": law,
@@ -41,12 +42,12 @@ class Openings(Walks):
     names, close = CELL, 1.04
 
     def settings(self, cell, ratio):
-        engine = "expected" if cell[4] == "closed" else "particles"
+        engine = "expected" if cell[5] == "closed" else "particles"
         return of_cell(cell, ratio) | {"network.nz": 60, "runs": 1, "engine": engine}
 
     def with_water(self, cell):
         """Erosion and permeability at the end of both runs."""
-        settings = of_cell(cell[:5], cell[5]) | {"network.nz": 30, "runs": 2, "engine": "particles", "walk.exit": "flux"}
+        settings = of_cell(cell[:6], cell[6]) | {"network.nz": 30, "runs": 2, "engine": "particles", "walk.exit": "flux"}
         outcome = self.outcome(settings)
         row = dict(zip(FLOW_CELL, cell))
         for at, run in enumerate(("first", "second")):
@@ -66,10 +67,10 @@ def main():
     parser.add_argument("--threads", default="2")
     options = parser.parse_args()
     walks = Openings(options)
-    pairs = [(*of, base, "none", blocked) for base in BASES for of in FILTERS for blocked in BLOCKED]
-    pairs += [(*FILTERS[0], BASES[0], "marin-2018", blocked) for blocked in BLOCKED]
+    pairs = [(*of, base, "none", "", blocked) for base in BASES for of in FILTERS for blocked in BLOCKED]
+    pairs += [(*FILTERS[0], BASES[0], "marin-2018", concentration, blocked) for concentration in CONCENTRATIONS for blocked in BLOCKED]
     if options.flow:
-        with_water = [(*FILTERS[0], base, "none", blocked, ratio) for base in BASES[:2] for ratio in RATIOS for blocked in BLOCKED]
+        with_water = [(*FILTERS[0], base, "none", "", blocked, ratio) for base in BASES[:2] for ratio in RATIOS for blocked in BLOCKED]
         each(options.flow, FLOW_CELL, FLOW_COLUMNS, with_water, walks.with_water)
     if options.out:
         each(options.out, CELL, COLUMNS, pairs, walks.boundary)

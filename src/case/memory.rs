@@ -29,9 +29,6 @@ const OPENING_BYTES: u64 = 3 * 4 + 8;
 /// Bytes of a narrowing, and of its columns while they are saved.
 const NARROWING_BYTES: u64 = 2 * 24;
 
-/// Bytes for a void where its particles are counted before they move: their number and diameters cubed.
-const CROWD_BYTES: u64 = 16;
-
 /// How many narrowings of an exit in a run there is room for, on average: the finest particle so far is a
 /// rarer event each time.
 const NARROWINGS: u64 = 8;
@@ -77,10 +74,9 @@ impl Case {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
         let workers = threads.max(1).saturating_mul(self.worker_bytes(n_base));
-        let of_crowd = if self.scene.concentration_is_by_void() { CROWD_BYTES } else { 0 };
         chunks
             .saturating_mul(EVENT_BYTES)
-            .saturating_add(voids * (140 + of_crowd) + constrictions * 25)
+            .saturating_add(voids * 140 + constrictions * 25)
             .saturating_add(self.flow_bytes())
             .saturating_add(self.openings_bytes(n_base))
             .saturating_add(workers)

@@ -167,6 +167,14 @@ impl Case {
     /// # Errors
     /// None that [`Case::new`] has not found.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
+        let network = self.clean_network(seed)?;
+        Ok(match self.scene.exits.flow_tolerance {
+            Some(tolerance) => network.with_flow_tolerance(tolerance),
+            None => network,
+        })
+    }
+
+    fn clean_network(&self, seed: u64) -> Result<Network, NetworkError> {
         if let Some(fixed) = &self.network.fixed {
             return Ok(fixed.network.clone());
         }

@@ -73,6 +73,15 @@ impl Case {
         }
     }
 
+    /// Volume of the voids of the filter by that of its grains, where it is known.
+    fn void_ratio(&self) -> Option<f64> {
+        match (&self.filter.packed, &self.filter.library) {
+            (Some(packed), _) => packed.void_ratio,
+            (None, Some(library)) => library.part.is_none().then_some(library.found.void_ratio),
+            (None, None) => self.shipped_curve().map(|shipped| shipped.void_ratio),
+        }
+    }
+
     /// What the constriction curve is, or what the user called it.
     fn curve_name(&self) -> String {
         let filter = &self.filter;

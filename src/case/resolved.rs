@@ -11,10 +11,10 @@ use crate::scene::{About, CurveSource, Scene};
 const PROTOCOL: u32 = 1;
 
 /// The same of cases in which water flows.
-const WATER_PROTOCOL: u32 = 1;
+const WATER_PROTOCOL: u32 = 2;
 
 /// What is added where particles arch: raised whenever the program gives other results for these alone.
-const ARCHING_PROTOCOL: u32 = 10_000;
+const ARCHING_PROTOCOL: u32 = 20_000;
 
 impl Case {
     /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
@@ -59,8 +59,8 @@ impl Case {
             protocol += ARCHING_PROTOCOL;
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
-        if self.filter.library.is_some() {
-            // Another library, or another way through it, gives other curves.
+        if self.filter.library.is_some() || scene.filter.estimate.is_some() {
+            // Another library, another way through it, or other draws of circles give other curves.
             let ends = self.filter.curve_ends.iter().map(|end| &end.curve);
             for curve in std::iter::once(&self.filter.curve).chain(ends) {
                 let points: Vec<_> = curve.points().iter().map(|point| (point.percent, point.size)).collect();

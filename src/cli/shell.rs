@@ -244,8 +244,7 @@ mod tests {
                 ("filter.density", _) => &packed[..1],
                 ("network.kind", _) => &packed[..],
                 ("network.unit", _) => &file[..],
-                ("walk.concentration", _) => &["walk.arching=\"marin-2018\""],
-                ("walk.arch_size", _) => &["walk.arching=\"marin-2018\"", "walk.concentration=\"by-void\""],
+                ("walk.arching", "marin-2018") => &["walk.concentration=0.02"],
                 ("walk.exit", "height") => &["filter.cu=1.5", "filter.density=loose", "network.kind=graph"],
                 _ => &[],
             };

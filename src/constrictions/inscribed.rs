@@ -88,7 +88,7 @@ impl Drawn {
 
     fn new(sizes: Sizes) -> Self {
         let mut generator =
-            Key { seed: 1, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 2 }.generator();
+            Key { seed: 1, purpose: Purpose::Inscribed, run: 0, increment: 0, chunk: 0 }.generator();
         let (mut dense, mut loose) = (Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS));
         for _ in 0..DRAWS {
             let radius: [f64; 4] = std::array::from_fn(|_| 0.5 * sizes.draw(unit(generator.next_u64())));

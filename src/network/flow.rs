@@ -4,73 +4,35 @@
 //! 1 in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
 //! The system is symmetric and positive, and is solved by conjugate gradients, with an approximate factor
 //! (module `elimination`) of what is open, or was until a little of it closed, from the last answer on. So an
-//! answer depends, within what is asked of it, on those before; it is the same to the bit on any number of
-//! threads.
-//!
-//! A thick network is solved near what has closed since the last time (module `stretch`), and the whole is
-//! checked. Where water has turned follows from that ([`Turned`]): elsewhere all fluxes change by one factor,
-//! and exits keep their weights.
+//! answer depends, within what is asked of it, on those before. Where conductances lie so far apart that this
+//! does not tell fluxes from residuals, voids are eliminated without subtraction (module `exact`), if the
+//! network is small enough for that. What counts as solved stands in module `thresholds`.
 
 mod elimination;
 mod error;
-mod joining;
-mod passages;
+mod exact;
 mod permeability;
-mod piece;
 mod rest;
-mod rounds;
-mod slabs;
-mod stretch;
 mod system;
-mod thick;
+mod thresholds;
 mod together;
-mod turned;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
+use super::twins::NO_TWIN;
 use super::{END, Network};
-use passages::{Meets, Passage, Passages, THROUGH};
-use slabs::each;
-use system::{CLOSEST, CONVERGED, Fit, Kept, ROUNDING, System};
-use thick::Thick;
+use exact::Eliminated;
+use system::{Kept, System};
+use thresholds::{CLEAR, CLOSELY, CLOSEST, CONVERGED, ELIMINATED, KNOWN, NO_FLUX, RESOLVED, ROUNDING};
 use together::Together;
 
 pub use error::FlowError;
 pub use permeability::permeability_mm2;
-pub use turned::Turned;
-
-/// A flux below this part of what an inlet passes on average is none: pressures are no more exact.
-const NO_FLUX: f64 = 1e-8;
-
-/// The mean flux of an inlet is at least so many times what the residual may stand for.
-const RESOLVED: f64 = 30.0;
-
-/// Where it is less than so many times that, pressures come as close as rounding lets them: fluxes that the
-/// residual may stand for are none, and what is left of a filter that clogs may be small.
-const CLEAR: f64 = 1e3;
-
-/// Flow that pressures may be wrong by, over the most that the network was found to conduct.
-const KNOWN: f64 = 5e-7;
-
-/// The same over what passes now, for a reader of every flux.
-const CLOSELY: f64 = 1e-8;
 
 /// A factor is kept until more than one in so many exits have closed: so it serves where little closes from
 /// one solution to the next, and costs fewer rounds then than making another would.
 const KEPT_UNTIL: usize = 100;
-
-/// From so many layers on balances that are each off by [`CONVERGED`] leave the flow of all of them less
-/// known than [`KNOWN`], so that every solution would be done again, to what rounding allows. Most of so
-/// thick a network is far from what closes at a time: it is solved by stretches.
-const THICK: usize = 400;
-
-/// The residual of a thick network, as part of what flows in.
-const CONVERGED_THICK: f64 = 1e-12;
-
-/// A factor of a thick network is kept until more than one in so many exits have closed: its rounds cost more
-/// beside making another.
-const KEPT_UNTIL_THICK: usize = 300;
 
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,47 +43,77 @@ pub struct Permeability {
     pub k_mm2: Option<f64>,
 }
 
+/// A constriction as water sees it.
+struct Passage {
+    /// The void that it is an exit of.
+    one: u32,
+    /// The void beyond: the reservoir is one, and so is what lies behind the filter.
+    other: u32,
+    /// The exit.
+    exit: u32,
+}
+
+/// The sides of the filter that a void hangs together with, neither by way of the other.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Meets {
+    reservoir: bool,
+    end: bool,
+}
+
+/// Both.
+const THROUGH: Meets = Meets { reservoir: true, end: true };
+
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
-    passages: Passages,
-    /// Void that each exit leads to: END is one more void, without pressure.
-    other: Vec<u32>,
+    /// Each constriction once.
+    passages: Vec<Passage>,
+    reservoir: Option<u32>,
+    /// Exits of the reservoir.
+    inlets: std::ops::Range<usize>,
     /// Pressure by void, and behind the filter.
     pressure: Vec<f64>,
     /// Conductance by exit, as it is now.
     open: Vec<f64>,
+    /// Flow times viscosity out of its void, by exit.
+    flux: Vec<f64>,
     /// Exits that were blocked when the flow was solved last.
     blocked: BitVec,
     /// Whether it was solved for parts of conductances then.
     is_of_parts: bool,
+    /// Flow times viscosity in from the reservoir.
+    through: f64,
     /// Residual that the last solution may have, over the inflow.
     accuracy: f64,
     /// Flow that no flux of the last solution is wrong by more than.
     missing: f64,
+    /// Fluxes up to this may have the wrong sign, and lead round in a circle; 0 where they follow pressures.
+    noise: f64,
     /// The most that the network was found to conduct.
     most: f64,
     /// What serves solution after solution.
     kept: Option<Kept>,
-    /// By void: whether water flowed through it when the factor or the equations that are kept were first
-    /// wanted.
+    /// By void: whether water flowed through it when the factor that is kept was first wanted.
     inside: BitVec,
-    /// Where water has turned since the network was given directions.
-    turned: Turned,
-    /// What a thick network keeps from one solution to the next.
-    thick: Option<Thick>,
 }
 
 impl Flow {
     /// Of a clean network, before it is solved: until then pressures are a guess.
     pub fn new(network: &Network) -> Self {
-        let outside = network.voids() as u32;
-        let other: Vec<u32> =
-            network.targets().iter().map(|&to| if to == END { outside } else { to }).collect();
-        let passages = Passages::of(network, &other);
-        let open = (0..network.constrictions()).map(|c| whole(network, c)).collect();
-        let blocked = BitVec::repeat(false, network.constrictions());
+        let (outside, reservoir) = (network.voids() as u32, network.reservoir());
+        let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
+        let mut passages = Vec::with_capacity(network.constrictions() / 2);
+        for one in 0..outside {
+            for c in network.exits(one) {
+                let (to, twin) = (network.targets()[c], twins.map_or(NO_TWIN, |twin| twin[c]));
+                let other = if to == END { outside } else { to };
+                if twin >= c as u32 {
+                    passages.push(Passage { one, other, exit: c as u32 });
+                }
+            }
+        }
+        let open: Vec<f64> = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let mut pressure = vec![0.0; network.voids() + 1];
-        if let Some(reservoir) = network.reservoir() {
+        if let Some(reservoir) = reservoir {
             // Falls evenly from layer to layer.
             let layers = network.layers().max(1) as f64;
             for (p, &layer) in pressure.iter_mut().zip(network.layer_of()) {
@@ -131,18 +123,20 @@ impl Flow {
         }
         Self {
             passages,
-            other,
+            reservoir,
+            inlets: reservoir.map_or(0..0, |reservoir| network.exits(reservoir)),
             pressure,
+            flux: vec![0.0; open.len()],
+            blocked: BitVec::repeat(false, open.len()),
             open,
-            blocked,
             is_of_parts: false,
+            through: 0.0,
             accuracy: CONVERGED,
             missing: 0.0,
+            noise: 0.0,
             most: 0.0,
             kept: None,
             inside: BitVec::new(),
-            turned: Turned::all(network.voids()),
-            thick: None,
         }
     }
 
@@ -156,9 +150,15 @@ impl Flow {
         self.kept.as_ref().map_or(0, |kept| kept.rounds)
     }
 
-    /// Flow times viscosity out of a void through one of its exits.
-    pub fn flux(&self, void: u32, exit: usize) -> f64 {
-        self.open[exit] * (self.pressure[void as usize] - self.pressure[self.other[exit] as usize])
+    /// Flow times viscosity through an exit, out of its void.
+    pub fn flux(&self, exit: usize) -> f64 {
+        self.flux[exit]
+    }
+
+    /// Flux through a constriction over what flows in, in size, by one of its exits; 0 where nothing does.
+    pub fn share(&self, exit: usize) -> f64 {
+        let through = self.through;
+        if through > 0.0 { (self.flux[exit] / through).abs() } else { 0.0 }
     }
 
     /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, the same for both of one
@@ -217,7 +217,7 @@ impl Flow {
             *open = now;
         }
         self.is_of_parts = true;
-        self.keep_factors(network, &changed, is_open_again);
+        self.keep_factor(network, &changed, is_open_again);
         self.solve_now(network, false, false, |_| true)
     }
 
@@ -227,53 +227,58 @@ impl Flow {
         network: &Network,
         closely: bool,
         leaks: bool,
-        is_open: impl Fn(&Passage) -> bool + Sync,
+        is_open: impl Fn(&Passage) -> bool,
     ) -> Result<Permeability, FlowError> {
-        let undirected = network.undirected.as_ref();
-        if network.reservoir().is_none() {
+        if self.reservoir.is_none() {
             return Ok(Permeability { conductance: 0.0, k_mm2: None });
         }
-        let meets = self.meet_now();
-        if self.kept.is_none() && self.thick.is_none() {
+        let meets = self.meets(|_| true);
+        if self.kept.is_none() {
             self.inside = meets.iter().map(|&meets| meets == THROUGH).collect();
         }
         let leads_through = meets.contains(&THROUGH);
         let is_passed = leads_through && (!leaks || self.meets(is_open).contains(&THROUGH));
-        let within = if is_thick(network) { CONVERGED_THICK } else { CONVERGED };
-        self.find_pressures(network, &meets, within)?;
-        if leads_through && (closely || !self.is_known(network) || is_passed && self.part(network) < CLEAR) {
-            // Where they come no closer in time, what there is has to do.
-            let _ = self.find_pressures(network, &meets, CLOSEST);
+        let tells = |flow: &Self, clear: f64| {
+            flow.missing <= KNOWN * flow.most.max(flow.through)
+                && (!is_passed || flow.part() >= clear)
+                && (!closely || flow.missing <= CLOSELY * flow.through)
+        };
+        let mut found = self.find_pressures(network, &meets, CONVERGED);
+        if leads_through && (closely || found.is_err() || !tells(self, CLEAR)) {
+            if found.is_ok() {
+                // Where they come no closer in time, what there is has to do.
+                let _ = self.find_pressures(network, &meets, CLOSEST);
+            }
+            if (found.is_err() || !tells(self, CLEAR)) && self.eliminate(network, &meets) {
+                found = Ok(());
+            }
         }
-        let through = self.through(network);
-        let tells = self.is_known(network)
-            && (!is_passed || self.part(network) >= RESOLVED)
-            && (!closely || self.missing <= CLOSELY * through);
-        if leads_through && !tells {
+        found?;
+        let through = self.through;
+        if leads_through && !tells(self, RESOLVED) {
             return Err(FlowError::Unresolved { off: self.missing / through.abs() });
         }
         let conductance = if leads_through && through > 0.0 { through } else { 0.0 };
         self.most = self.most.max(conductance);
-        let factor = undirected.and_then(|u| u.permeability_mm2);
+        let factor = network.undirected.as_ref().and_then(|u| u.permeability_mm2);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
     }
 
-    /// What each void hangs together with, by way of other voids and of such constrictions that conduct.
-    fn meets(&self, is_way: impl Fn(&Passage) -> bool + Sync) -> Vec<Meets> {
-        let voids = self.pressure.len() - 1;
-        let mut within = Together::of(voids);
-        let conducts = conducting(&self.open);
-        let is_way = |passage: &Passage| conducts(passage) && is_way(passage);
-        self.passages.join_within(&mut within, |_| true, is_way);
-        self.passages.meet(voids, within, is_way)
-    }
-
-    /// The same by all that conduct; of a thick network from what hung together before.
-    fn meet_now(&mut self) -> Vec<Meets> {
-        match &mut self.thick {
-            Some(thick) => thick.meet(&self.passages, conducting(&self.open)),
-            None => self.meets(|_| true),
+    /// The sides that each void hangs together with, by way of other voids and of such constrictions that
+    /// conduct.
+    fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
+        let outside = self.pressure.len() - 1;
+        let is_side = |of: &Passage| Some(of.other) == self.reservoir || of.other as usize == outside;
+        let ways = || self.passages.iter().filter(|of| self.open[of.exit as usize] > 0.0 && is_way(of));
+        let mut together = Together::of(outside);
+        ways().filter(|of| !is_side(of)).for_each(|of| together.join(of.one, of.other));
+        let mut of_root = vec![Meets::default(); outside];
+        for passage in ways().filter(|of| is_side(of)) {
+            let meets = &mut of_root[together.root(passage.one) as usize];
+            meets.reservoir |= Some(passage.other) == self.reservoir;
+            meets.end |= passage.other as usize == outside;
         }
+        (0..outside as u32).map(|void| of_root[together.root(void) as usize]).collect()
     }
 
     /// Conducts as these blocked constrictions let it.
@@ -281,221 +286,161 @@ impl Flow {
         assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         if std::mem::take(&mut self.is_of_parts) {
             // Nothing is blocked, and what was narrowed is whole again.
-            (self.kept, self.thick) = (None, None);
+            self.kept = None;
             self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
         }
         let mut changed = std::mem::replace(&mut self.blocked, blocked.to_bitvec());
         changed ^= blocked;
         let is_open_again = changed.iter_ones().any(|c| !blocked[c]);
-        self.keep_factors(network, &changed, is_open_again);
+        self.keep_factor(network, &changed, is_open_again);
         for c in changed.iter_ones() {
             self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
         }
     }
 
-    /// Keeps factors where few exits have changed since they were made, and none has opened again.
-    fn keep_factors(&mut self, network: &Network, changed: &BitSlice, is_open_again: bool) {
-        let kept_until = if is_thick(network) { KEPT_UNTIL_THICK } else { KEPT_UNTIL };
+    /// Keeps the factor where few exits have changed since it was made, and none has opened again.
+    fn keep_factor(&mut self, network: &Network, changed: &BitSlice, is_open_again: bool) {
         if let Some(kept) = &mut self.kept {
             kept.closed += changed.count_ones();
-            if is_open_again || kept.closed * kept_until > network.constrictions() {
+            if is_open_again || kept.closed * KEPT_UNTIL > network.constrictions() {
                 self.kept = None;
             }
         }
-        if is_open_again {
-            self.thick = None;
-        }
-        if let Some(thick) = &mut self.thick {
-            thick.change(&self.passages, |exit| changed[exit]);
-        }
     }
 
-    /// Pressures of all voids, within so much of the inflow.
+    /// Constrictions between voids that water flows through, and from them to both sides of the filter.
+    fn conducting<'a>(&'a self, meets: &'a [Meets]) -> impl Iterator<Item = (&'a Passage, f64)> {
+        let is_in = |passage: &&Passage| meets[passage.one as usize] == THROUGH;
+        let with_open = |passage: &'a Passage| (passage, self.open[passage.exit as usize]);
+        self.passages.iter().filter(is_in).map(with_open).filter(|&(_, open)| open > 0.0)
+    }
+
+    /// Pressures and fluxes, within so much of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
-        let Some(reservoir) = network.reservoir() else { return Ok(()) };
-        let (fit, turned) = match self.refilled(meets, reservoir) {
-            Some((mut thick, changed)) => {
-                let solved = thick.improve(&mut self.pressure, within, &changed);
-                let fit = self.solve_system(network, &mut thick.system, within)?;
-                self.thick = Some(thick);
-                (fit, solved.filter(|_| fit.rounds == 0))
-            }
-            None => {
-                let mut system = self.system(meets, reservoir);
-                let fit = self.solve_system(network, &mut system, within)?;
-                // One slab has no other far away.
-                if is_thick(network) && self.passages.slabs().number() > 1 {
-                    self.thick = Some(Thick::of(system, &self.passages, meets, conducting(&self.open)));
+        let Some(reservoir) = self.reservoir else { return Ok(()) };
+        let outside = meets.len() as u32;
+        let is_inside = |void: u32| self.inside[void as usize];
+        let system = System::new(meets.len(), is_inside, |system| {
+            for (&Passage { one, other, .. }, open) in self.conducting(meets) {
+                match other {
+                    _ if other == reservoir => system.hold(one, open, 1.0),
+                    _ if other == outside => system.hold(one, open, 0.0),
+                    _ => system.join(one, other, open),
                 }
-                (fit, None)
             }
+        });
+        let fit = system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?;
+        self.stand_still(meets, reservoir);
+        self.missing = fit.missing;
+        // What is asked for, but where rounding allows no more.
+        let asked = within.max(ROUNDING);
+        self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
+        self.noise = 0.0;
+        let pressure = &self.pressure;
+        let fall = |of: &Passage| pressure[of.one as usize] - pressure[of.other as usize];
+        let falls: Vec<f64> = self.passages.iter().map(fall).collect();
+        self.set_fluxes(network, &falls);
+        Ok(())
+    }
+
+    /// The same without subtraction; `false` where that takes too much work, and nothing has changed then.
+    fn eliminate(&mut self, network: &Network, meets: &[Meets]) -> bool {
+        let Some(reservoir) = self.reservoir else { return false };
+        let mut nodes: Vec<u32> = vec![0; meets.len() + 1];
+        let mut count = 0;
+        for (node, _) in nodes.iter_mut().zip(meets).filter(|&(_, &meets)| meets == THROUGH) {
+            (*node, count) = (count, count + 1);
+        }
+        (nodes[reservoir as usize], nodes[meets.len()]) = (count, count + 1);
+        let node = |void: u32| nodes[void as usize];
+        let links = self.conducting(meets).map(|(of, open)| (node(of.one), node(of.other), open));
+        let Some(found) = Eliminated::new(count as usize, links) else { return false };
+        let fall = |of: &Passage| match meets[of.one as usize] == THROUGH {
+            true if self.open[of.exit as usize] > 0.0 => found.fall(node(of.one), node(of.other)),
+            _ => 0.0,
         };
-        self.turn(turned.as_deref(), reservoir);
-        // Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
+        let falls: Vec<f64> = self.passages.iter().map(fall).collect();
+        for (void, _) in meets.iter().enumerate().filter(|&(_, &meets)| meets == THROUGH) {
+            self.pressure[void] = found.pressure[nodes[void] as usize];
+        }
+        self.stand_still(meets, reservoir);
+        (self.missing, self.accuracy) = (ELIMINATED * found.conductance, 0.0);
+        self.noise = self.missing;
+        self.set_fluxes(network, &falls);
+        true
+    }
+
+    /// Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
+    fn stand_still(&mut self, meets: &[Meets], reservoir: u32) {
         for (pressure, &meets) in self.pressure.iter_mut().zip(meets) {
             if meets != THROUGH {
                 *pressure = f64::from(u8::from(meets.reservoir));
             }
         }
         self.pressure[reservoir as usize] = 1.0;
-        self.missing = fit.missing;
-        // What is asked for, but where rounding allows no more.
-        let asked = within.max(ROUNDING);
-        self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
-        Ok(())
     }
 
-    /// Flow times viscosity in from the reservoir.
-    fn through(&self, network: &Network) -> f64 {
-        let Some(reservoir) = network.reservoir() else { return 0.0 };
-        network.exits(reservoir).map(|c| self.flux(reservoir, c)).sum()
+    /// Fluxes by falls of pressure through passages.
+    fn set_fluxes(&mut self, network: &Network, falls: &[f64]) {
+        for (passage, fall) in self.passages.iter().zip(falls) {
+            let exit = passage.exit as usize;
+            self.flux[exit] = self.open[exit] * fall;
+            if let Some(twin) = network.twin(exit) {
+                self.flux[twin] = -self.flux[exit];
+            }
+        }
+        self.through = self.flux[self.inlets.clone()].iter().sum();
     }
 
     /// Mean flux of an inlet over what the residual may stand for.
-    fn part(&self, network: &Network) -> f64 {
-        let Some(reservoir) = network.reservoir() else { return 0.0 };
-        let inlets = network.exits(reservoir);
-        self.through(network) / inlets.len().max(1) as f64 / self.residual_of(inlets)
+    fn part(&self) -> f64 {
+        self.through / self.inlets.len().max(1) as f64 / self.residual_of_inlets()
     }
 
-    /// Whether the flow is known, over the most that there was.
-    fn is_known(&self, network: &Network) -> bool {
-        self.missing <= KNOWN * self.most.max(self.through(network))
-    }
-
-    /// What a thick network keeps, with the equations of now, and what had changed by slab; none where the
-    /// numbers of its equations would be too small.
-    fn refilled(&mut self, meets: &[Meets], reservoir: u32) -> Option<(Thick, Vec<usize>)> {
-        let mut thick = self.thick.take()?;
-        let changed = thick.take_changed();
-        let is_wanted = |at| changed.get(at).is_none_or(|&changed| changed > 0);
-        self.fill(&mut thick.system, is_wanted, meets, reservoir);
-        thick.system.is_in_range().then_some((thick, changed))
-    }
-
-    /// Pressures that solve a system, within so much of the inflow.
-    fn solve_system(
-        &mut self,
-        network: &Network,
-        system: &mut System,
-        within: f64,
-    ) -> Result<Fit, FlowError> {
-        Ok(system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?)
-    }
-
-    /// Water has turned in these slabs and the cuts beside them, or everywhere.
-    fn turn(&mut self, slabs: Option<&[bool]>, reservoir: u32) {
-        let Some(slabs) = slabs else {
-            self.turned = Turned::all(self.pressure.len() - 1);
-            return;
-        };
-        for (slab, _) in slabs.iter().enumerate().filter(|&(_, &has_turned)| has_turned) {
-            self.passages.slabs().around(slab).for_each(|void| self.turned.add(void));
-        }
-        // It leads into the first alone.
-        if slabs.first() == Some(&true) {
-            self.turned.add(reservoir);
-        }
-    }
-
-    /// The equations of the voids that water flows through, with a row for each that is `inside`: an empty
-    /// one where none flows any more.
-    fn system(&self, meets: &[Meets], reservoir: u32) -> System {
-        let inside = |void: u32| self.inside[void as usize];
-        let passages = &self.passages;
-        let mut system = System::of(passages.slabs(), inside, |at| passages.of_slab(at).len());
-        self.fill(&mut system, |_| true, meets, reservoir);
-        system
-    }
-
-    /// Fills pieces of the equations.
-    fn fill(
-        &self,
-        system: &mut System,
-        is_wanted: impl Fn(usize) -> bool + Sync,
-        meets: &[Meets],
-        reservoir: u32,
-    ) {
-        let outside = meets.len() as u32;
-        system.fill(is_wanted, |at, joining| {
-            for passage in
-                self.passages.of_slab(at).iter().filter(|passage| meets[passage.one as usize] == THROUGH)
-            {
-                let open = self.open[passage.exit as usize];
-                if open <= 0.0 {
-                    continue;
-                }
-                if passage.other == reservoir {
-                    joining.hold(passage.one, open, 1.0);
-                } else if passage.other == outside {
-                    joining.hold(passage.one, open, 0.0);
-                } else {
-                    joining.join(passage.one, passage.other, open);
-                }
-            }
-        });
-    }
-
-    /// Flux that the residual may stand for.
-    fn residual_of(&self, inlets: std::ops::Range<usize>) -> f64 {
-        let largest = inlets.clone().map(|c| self.open[c]).fold(0.0, f64::max);
+    /// Flux of an inlet that the residual may stand for.
+    fn residual_of_inlets(&self) -> f64 {
+        let open = &self.open[self.inlets.clone()];
+        let largest = open.iter().copied().fold(0.0, f64::max);
         if largest == 0.0 {
             return 0.0;
         }
         // A power of two changes no digit, and squares of very large and very small numbers are none.
         let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
-        let square = |c: usize| (self.open[c] * unit) * (self.open[c] * unit);
-        self.accuracy * inlets.map(square).sum::<f64>().sqrt() / unit
+        let square = |open: &f64| (open * unit) * (open * unit);
+        self.accuracy * open.iter().map(square).sum::<f64>().sqrt() / unit
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last, where water has turned
-    /// since this was done before; what was blocked then has none. Which voids these are.
-    pub fn direct(&mut self, network: &mut Network) -> Turned {
-        let turned = std::mem::replace(&mut self.turned, Turned::none(network.voids()));
-        let Some(reservoir) = network.reservoir() else { return turned };
-        let rule = network.exit_rule();
-        let inlets = network.exits(reservoir);
-        let through = self.through(network);
-        // Nor is one that the residual may stand for.
-        let least = (NO_FLUX * through / inlets.len().max(1) as f64).max(self.residual_of(inlets));
-        let Network { exit_begin, diameter, undirected, .. } = network;
-        let mut left = &mut undirected.as_mut().expect("it has a reservoir").weight[..];
-        let (mut parts, mut first_left) = (Vec::new(), 0);
-        for voids in turned.groups() {
-            let begin = &exit_begin[voids.start as usize..=voids.end as usize];
-            let [first, last] = [begin[0], begin[begin.len() - 1]];
-            let (weights, after) =
-                left[(first - first_left) as usize..].split_at_mut((last - first) as usize);
-            parts.push((voids.start, begin, weights));
-            (left, first_left) = (after, last);
+    /// Gives each exit of the network its weight by the flow that was solved last; what was blocked then has
+    /// none. A void whose open exits each pass too little to count keeps the one that passes most, so that
+    /// it retains nothing that water carries into it.
+    pub fn direct(&self, network: &mut Network) {
+        if self.reservoir.is_none() {
+            return;
         }
-        each(&mut parts, |_, (first, begin, weights)| {
-            let exits_before = begin[0];
-            for (void, exits) in (*first..).zip(begin.windows(2)) {
-                for exit in exits[0]..exits[1] {
-                    let (c, area) = (exit as usize, f64::from(diameter[exit as usize]));
-                    let is_open = f64::from(u8::from(!self.blocked[c]));
-                    let weight = rule.weight(area * area, self.flux(void, c), least);
-                    weights[(exit - exits_before) as usize] = is_open * weight;
+        let rule = network.exit_rule();
+        let mean = self.through / self.inlets.len().max(1) as f64;
+        let least = (NO_FLUX * mean).max(self.residual_of_inlets());
+        for void in 0..network.voids() as u32 {
+            let exits = network.exits(void);
+            let is_open = |&c: &usize| !self.blocked[c];
+            let most = exits.clone().filter(is_open).map(|c| self.flux[c]).fold(self.noise, f64::max);
+            // The next number below the largest, so that this one counts.
+            let least = if most > least { least } else { most.next_down().max(self.noise) };
+            for c in exits {
+                let area = f64::from(network.diameter[c]);
+                let weight =
+                    if self.blocked[c] { 0.0 } else { rule.weight(area * area, self.flux[c], least) };
+                if let Some(undirected) = &mut network.undirected {
+                    undirected.weight[c] = weight;
                 }
             }
-        });
-        turned
+        }
     }
 }
 
 /// Conductance of an exit while it is open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
-}
-
-/// Whether a constriction conducts, by the conductance of each exit.
-fn conducting(open: &[f64]) -> impl Fn(&Passage) -> bool + Sync + '_ {
-    |passage| open[passage.exit as usize] > 0.0
-}
-
-fn is_thick(network: &Network) -> bool {
-    network.layers() >= THICK
 }
 
 #[cfg(test)]

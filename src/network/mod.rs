@@ -33,12 +33,12 @@ pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;
 pub use first_passage::FirstPassage;
-pub use flow::{Flow, FlowError, Permeability, Turned, permeability_mm2};
+pub use flow::{Flow, FlowError, Permeability, permeability_mm2};
 pub use graph::GraphShape;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
 pub use reach::Reachability;
-pub use undirected::{Link, LinkEnd, LinkedVoids, WIDE};
+pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE};
 
 use twins::Undirected;
 
@@ -99,11 +99,10 @@ impl Network {
     pub fn fingerprint(&self) -> u64 {
         let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _, undirected } = self;
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
-        hash.update(bytemuck::cast_slice(exit_begin));
-        hash.update(bytemuck::cast_slice(target));
-        hash.update(bytemuck::cast_slice(diameter));
-        hash.update(bytemuck::cast_slice(start));
-        hash.update(bytemuck::cast_slice(layer));
+        for column in [exit_begin, target, start, layer] {
+            hash_column(&mut hash, column, |number| number.to_le_bytes());
+        }
+        hash_column(&mut hash, diameter, |number| number.to_le_bytes());
         hash.update(&unit_mm.to_bits().to_le_bytes());
         if let Some(undirected) = undirected {
             undirected.hash(&mut hash);
@@ -194,4 +193,14 @@ impl Network {
         }
         finest
     }
+}
+
+/// Adds a column to a hash: its length, and its numbers as the same bytes on every machine.
+fn hash_column<T: Copy, const N: usize>(
+    hash: &mut xxhash_rust::xxh3::Xxh3,
+    column: &[T],
+    bytes: impl Fn(T) -> [u8; N],
+) {
+    hash.update(&(column.len() as u64).to_le_bytes());
+    column.iter().for_each(|&number| hash.update(&bytes(number)));
 }

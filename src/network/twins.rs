@@ -1,6 +1,7 @@
 //! What a network has besides where its constrictions have no direction of their own: columns by exit.
 
 use super::exit_rule::ExitRule;
+use super::hash_column;
 
 /// The twin of an exit that has none.
 pub(super) const NO_TWIN: u32 = u32::MAX;
@@ -18,6 +19,8 @@ pub(super) struct Undirected {
     pub(super) rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub(super) rho: f64,
+    /// When a walk solves the flow again: see [`Network::with_flow_tolerance`](super::Network).
+    pub(super) flow_tolerance: f64,
     /// Volume by void, in units of the network's reference length cubed; empty where it is not known.
     pub(super) volume: Vec<f64>,
     /// Constrictions: each pair of twins once, and none that nothing can block.
@@ -29,11 +32,12 @@ pub(super) struct Undirected {
 impl Undirected {
     /// Adds what a walk takes from it; the weights follow from the rest.
     pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
-        let Self { twin, conductance, weight: _, rule, rho, volume, passages: _, permeability_mm2: _ } = self;
-        hash.update(bytemuck::cast_slice(twin));
-        hash.update(bytemuck::cast_slice(conductance));
+        let Self { twin, conductance, rule, rho, flow_tolerance, volume, .. } = self;
+        hash_column(hash, twin, |number| number.to_le_bytes());
+        hash_column(hash, conductance, |number| number.to_le_bytes());
         hash.update(rule.name().as_bytes());
         hash.update(&rho.to_bits().to_le_bytes());
-        hash.update(bytemuck::cast_slice(volume));
+        hash.update(&flow_tolerance.to_bits().to_le_bytes());
+        hash_column(hash, volume, |number| number.to_le_bytes());
     }
 }

@@ -10,6 +10,9 @@ use super::exit_rule::ExitRule;
 use super::twins::{NO_TWIN, Undirected};
 use super::{END, Network, NetworkError};
 
+/// The tolerance of the flow in a walk where nobody sets it.
+pub const FLOW_TOLERANCE: f64 = 0.03;
+
 /// Diameter, in units of the network, of a way in that nothing can block.
 pub const WIDE: f32 = 1e30;
 
@@ -125,6 +128,7 @@ impl Network {
                 weight: exits.iter().map(weight).collect(),
                 rule: voids.rule,
                 rho: voids.rho,
+                flow_tolerance: FLOW_TOLERANCE,
                 volume: voids.volume,
                 passages,
                 permeability_mm2: voids.permeability_mm2,
@@ -132,6 +136,23 @@ impl Network {
         };
         network.leads_through()?;
         Ok((network, first))
+    }
+
+    /// This network with another tolerance of the flow in a walk. Water is solved again once the
+    /// constrictions that have closed since carried this part of it, summed over the whole filter: so many
+    /// constrictions on the mean way of a particle are closed at most that the flow does not know of. With 0
+    /// it is solved again as soon as any has closed.
+    #[must_use]
+    pub fn with_flow_tolerance(mut self, tolerance: f64) -> Self {
+        if let Some(undirected) = &mut self.undirected {
+            undirected.flow_tolerance = tolerance;
+        }
+        self
+    }
+
+    /// The tolerance of the flow in a walk: [`Network::with_flow_tolerance`].
+    pub fn flow_tolerance(&self) -> f64 {
+        self.undirected.as_ref().map_or(FLOW_TOLERANCE, |undirected| undirected.flow_tolerance)
     }
 
     /// The lattice of [`Network::cubic_from_diameters`] without its directions: six neighbours a void. Water

@@ -128,7 +128,9 @@ impl RunMetrics {
             retained_95_layer: most,
             increments: state.increment,
             particle_moves: tally.particle_moves - free_entries(network, state),
-            k_over_k0: flow.and_then(|flow| flow.k_over_k0.last()).map(|&(_, k)| k),
+            k_over_k0: flow.and_then(|flow| flow.solutions.last()).map(|solution| solution.k_over_k0),
+            flow_solutions: flow.map(|flow| flow.solutions.len() as u64),
+            flow_closed_most: flow.map(|flow| flow.solutions.iter().map(|of| of.closed).fold(0.0, f64::max)),
             k0_mm2: flow.and_then(|flow| flow.k0_mm2),
             fullness_max: fullness.max,
             overfull_fraction: fullness.overfull_fraction,
@@ -161,11 +163,12 @@ impl Recorded {
             blocked: tally.blocked,
             eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.pan_fraction),
         });
-        let flow = flow.iter().flat_map(|flow| &flow.k_over_k0).map(|&(increment, k_over_k0)| FlowRow {
+        let flow = flow.iter().flat_map(|flow| &flow.solutions).map(|solution| FlowRow {
             replicate: of.replicate,
             run: of.run,
-            increment,
-            k_over_k0,
+            increment: solution.increment,
+            k_over_k0: solution.k_over_k0,
+            closed: solution.closed,
         });
         let mut recorded = Self {
             series: series.collect(),

@@ -221,7 +221,7 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 /// How a run with these constrictions blocked is walked.
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
-    let clogging = (case.arching(n_base), case.scene.leaves_openings());
+    let clogging = (case.arching(), case.scene.leaves_openings());
     RunPlan::with_clogging(engine, network, &case.supply.sampler, blocked, share, clogging)
         .sampled(case.scene.walk.sampling)
 }

@@ -1,6 +1,7 @@
 //! Whether a scene says all that it needs to, and nothing that does not go with the rest.
 
-use super::{NetworkMadeOf, NetworkSource, Scene, SceneError};
+use super::keys::concentrations;
+use super::{NetworkMadeOf, Scene, SceneError};
 use crate::network::ExitRule;
 use crate::schema::GivenSettings;
 use crate::walk::Engine;
@@ -123,7 +124,7 @@ impl Scene {
         }
         if !rule.needs_flow() {
             wrong(
-                &["walk.rho", "walk.conductance_exponent"],
+                &["walk.rho", "walk.flow_tolerance", "walk.conductance_exponent"],
                 "says nothing where no water flows: walk.exit",
             )?;
         }
@@ -142,16 +143,17 @@ impl Scene {
                 return Err(s.refuse("engine", problem));
             }
         }
-        if !self.law().is_some_and(|law| law.of_concentration) {
-            wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")?;
+        match self.law().filter(|law| law.of_concentration) {
+            None => {
+                wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")
+            }
+            Some(law) if self.exits.concentration.is_none() => Err(s.clash(format!(
+                "walk.concentration is missing: \"{}\" depends on the solids fraction of the suspension that \
+                 enters the filter (volume of particles by volume of suspension), {}",
+                law.name,
+                concentrations()
+            ))),
+            Some(_) => Ok(()),
         }
-        if !self.concentration_is_by_void() {
-            wrong(&["walk.arch_size"], "says nothing unless walk.concentration is \"by-void\"")?;
-        } else if !matches!(self.network.source(), NetworkSource::Cubic(_)) {
-            let problem = "a part from 0 to 0.64: \"by-void\" needs the voids of a lattice, which are all of \
-                           one volume";
-            return Err(s.refuse("walk.concentration", problem));
-        }
-        Ok(())
     }
 }

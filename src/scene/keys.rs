@@ -10,7 +10,7 @@ use crate::network::ExitRule;
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::{Allowed, above_zero, any, length, only, section, whole, within, words};
 use crate::text::is_hidden;
-use crate::walk::{ArchSize, BlockedAs, Concentration, DENSEST, Engine, LawName, Sampling};
+use crate::walk::{BlockedAs, DENSEST, Engine, LawName, Sampling};
 
 section! {
     /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
@@ -156,23 +156,20 @@ section! {
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
         /// Part of its conductance that a blocked constriction keeps, with water.
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
+        /// Water is solved again once the constrictions that have closed since carried this part of it, summed
+        /// over the filter: so many on the mean way of a particle. 0: as soon as any has closed. Default: 0.03.
+        pub flow_tolerance: Option<f64> = None, off "0.03", within(0.0..=10.0, "a number from 0 to 10");
         /// On a lattice, conductance is proportional to this power of the diameter. Default: 4.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
         /// Arches: particles that fit through a constriction jam in it together, by a published law of
         /// clogging. Default: "none". No law has been checked with filter tests; the report says its source.
         pub arching: Option<LawName> = None, off "\"zuriguel-2005\"",
             words(&LawName::ALL.map(LawName::name));
-        /// How densely the base arrives, for a law that depends on it: volume of particles by volume of
-        /// voids. Default: what an increment brings into the first layer of voids. "by-void", on a lattice:
-        /// what the walk brings into each void in each increment.
-        pub concentration: Option<Concentration> = None, off "\"by-void\"", only(
-            "a part from 0 to 0.64, or \"by-void\"",
-            |of| !matches!(of, Concentration::Stated(part) if !(0.0..=DENSEST).contains(part)),
-        ).offering(&["by-void"]);
-        /// Which size counts where the concentration is "by-void": the particle's "own", that of the mean
-        /// volume of the particles in its void ("void-mean"), or D85 of them ("void-d85"). Default: "own".
-        pub arch_size: Option<ArchSize> = None, off "\"void-mean\"",
-            words(&ArchSize::ALL.map(ArchSize::name));
+        /// Solids fraction of the suspension that enters the filter: volume of particles by volume of
+        /// suspension, the same at every depth as long as particles go with the water. "marin-2018" needs
+        /// it.
+        pub concentration: Option<f64> = None, off "0.02",
+            only(concentrations(), |part| *part > 0.0 && *part <= DENSEST);
         /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that
         /// blocks it, for finer particles and water. Default: "closed". Openings need every particle walked
         /// one by one, so that fine bases take longer.
@@ -314,6 +311,11 @@ impl ExitKeys {
     pub fn is_unset(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// The concentrations that a scene may state, in words.
+pub(super) fn concentrations() -> String {
+    format!("a number above 0 and up to {DENSEST}")
 }
 
 /// Increments after which it may be kept what each void holds.

@@ -35,7 +35,7 @@ pub use values::{CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, S
 use crate::network::ExitRule;
 use crate::outcome::stopping::StopRule;
 use crate::schema::{GivenSettings, KeyInfo, Names};
-use crate::walk::{BlockedAs, Concentration, Law};
+use crate::walk::{BlockedAs, Law};
 use packing_keys::packing_keys;
 
 /// What errors call the built-in scene.
@@ -214,11 +214,6 @@ impl Scene {
     /// The law by which particles arch, where they do.
     pub fn law(&self) -> Option<&'static Law> {
         self.exits.arching?.law()
-    }
-
-    /// Whether laws of arching go by the concentration that the walk brings into each void.
-    pub fn concentration_is_by_void(&self) -> bool {
-        matches!(self.exits.concentration, Some(Concentration::Walked(_)))
     }
 
     /// How particles choose among the exits of a void.

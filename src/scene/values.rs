@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::network::{Connectivity, ExitRule};
 use crate::packing::{CellOption, LengthUnit};
 use crate::schema::Leaf;
-use crate::walk::{ArchSize, BlockedAs, Concentration, Engine, LawName, Sampling};
+use crate::walk::{BlockedAs, Engine, LawName, Sampling};
 
 /// Where a constriction curve comes from: a file name has a folder or an ending.
 #[derive(Clone, Debug, PartialEq)]
@@ -195,10 +195,6 @@ impl Leaf for NetworkMadeOf {}
 impl Leaf for ExitRule {}
 impl Leaf for LawName {}
 impl Leaf for BlockedAs {}
-impl Leaf for ArchSize {}
-impl Leaf for Concentration {
-    const TOML_TYPE: &'static str = "float or string";
-}
 
 /// Whether a base is walked regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -28,7 +28,7 @@ const COUNTED: [&str; 1] = ["layers"];
 const PERCENTAGES: [&str; 2] = ["d85_at_dc", "coarsest"];
 
 /// Settings that are parts of 1, besides those whose names end in `_fraction`.
-const FRACTIONS: [&str; 4] = ["mass_ratio", "inject_share", "estimate", "rho"];
+const FRACTIONS: [&str; 5] = ["mass_ratio", "inject_share", "estimate", "rho", "concentration"];
 
 /// Bytes as text; a byte order mark is left out.
 ///
@@ -189,6 +189,7 @@ mod tests {
             ("thickness_mm", "3in", "in mm, without the unit: 76.2"),
             ("thickness_mm", "5%", "in mm, not in %"),
             ("base.mass_ratio", "5%", "as a part of 1, without the unit: 0.05"),
+            ("walk.concentration", "2%", "as a part of 1, without the unit: 0.02"),
             ("packing.start_fraction", "35%", "as a part of 1, without the unit: 0.35"),
             ("base.d85_at_dc", "5%", "the number alone, without its unit: 5"),
             ("base.d85_at_dc", "5mm", "a number that has no unit"),

@@ -11,10 +11,15 @@
 //! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
 //! fewer than an arch has.
 //!
-//! Whether a particle jams depends on itself, the constriction and what lies in its void alone, and who stays
-//! on the order of insertion alone. So the cutting of the particles into chunks plays no part, but in which
-//! draw a particle takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run,
-//! increment, `c`), completed to 64 bits where sixteen do not decide.
+//! Whether a particle jams depends on itself and the constriction alone, and who stays on the order of
+//! insertion alone. So the cutting of the particles into chunks plays no part, but in which draw a particle
+//! takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run, increment,
+//! `c`), completed to 64 bits where sixteen do not decide.
+//!
+//! # Concentration
+//! A law may depend on the solids fraction of the suspension that enters the filter: the volume of particles
+//! by the volume of suspension. Particles that go with the water keep it in every void and at every depth, so
+//! that it is one number for the whole walk, which the scene states.
 //!
 //! # Passive particles
 //! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
@@ -23,7 +28,8 @@
 use libm::{exp, lgamma, log, pow};
 use serde::{Deserialize, Serialize};
 
-use super::crowding::{ByVoid, VoidCrowd};
+/// Solids fraction of grains that lie densely: no suspension has a larger one.
+pub const DENSEST: f64 = 0.64;
 
 /// A published law of clogging.
 ///
@@ -38,7 +44,7 @@ pub struct Law {
     pub basis: &'static str,
     /// `R` from which nothing arches.
     pub widest: f64,
-    /// Whether the probability depends on how densely the base arrives; the others hold for dense flow.
+    /// Whether the probability depends on the concentration; the others hold for dense flow.
     pub of_concentration: bool,
     probability: fn(f64, f64) -> f64,
 }
@@ -121,9 +127,8 @@ impl Law {
         LAWS.iter().find(|law| law.name == name)
     }
 
-    /// Probability that a particle jams in a constriction `ratio` times its size, where the base
-    /// arrives with this concentration (volume of particles by volume of voids); 0 from the widest on. A
-    /// ratio below 1, of a size that does not fit, is asked as 1: by void that of another particle may be.
+    /// Probability that a particle jams in a constriction `ratio` times its size, from 1 on, at this
+    /// concentration (volume of particles by volume of suspension); 0 from the widest on.
     ///
     /// ```
     /// use voidwalk::walk::Law;
@@ -134,7 +139,7 @@ impl Law {
     /// assert_eq!(law.probability(4.94, 0.6), 0.0);
     /// ```
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
-        if ratio >= self.widest { 0.0 } else { (self.probability)(ratio.max(1.0), concentration) }
+        if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
     }
 
     /// The size up to which particles can neither block nor arch where this is the finest open constriction.
@@ -174,6 +179,9 @@ const STEPS: usize = 1 << 14;
 /// Bits of a draw that decide.
 const BITS: u32 = 48;
 
+/// The least probability that draws of so many bits can have.
+const RAREST: f64 = 1.0 / (1u64 << BITS) as f64;
+
 /// The power of two of 1, as a class.
 pub(super) const CLASS_OF_ONE: usize = 254;
 
@@ -182,14 +190,14 @@ fn wider(ratio: f64) -> f32 {
     (ratio * (1.0 + 1e-6)) as f32
 }
 
-/// A law as a walk reads it, at one concentration or at that of each void.
+/// A law as a walk reads it, at one concentration.
 #[derive(Clone, Debug)]
 pub struct Arching {
     law: &'static Law,
-    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest. Empty
-    /// where the concentration is that of each void.
+    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
     table: Vec<f64>,
-    by_void: Option<ByVoid>,
+    /// `R` from which the table has nothing.
+    stops_to: f64,
     reach: Reach,
 }
 
@@ -198,44 +206,34 @@ pub struct Arching {
 pub(super) type Reach = [f32; 32];
 
 impl Arching {
-    /// A law at this concentration (volume of particles by volume of voids).
+    /// A law at this concentration (volume of particles by volume of suspension). Jams that come less often
+    /// than once in `2^48` draws are none.
     pub fn new(law: &'static Law, concentration: f64) -> Self {
         let step = (law.widest - 1.0) / STEPS as f64;
         let at = |k: usize| {
             // At the widest itself the law says nothing: its table ends with what it comes to there.
             let ratio = 1.0 + step * k as f64;
-            (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration)
+            let probability = (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration);
+            if probability < RAREST { 0.0 } else { probability }
         };
         let table: Vec<f64> = (0..=STEPS).map(at).collect();
+        // Between two steps the table is above 0 where it is at either of them.
+        let end_of = |jams: &dyn Fn(&f64) -> bool| {
+            1.0 + step * table.iter().rposition(jams).map_or(0, |k| (k + 1).min(STEPS)) as f64
+        };
         let reach = std::array::from_fn(|class| {
             // The least draw of the class: half a power of two above a power of two.
             let least =
                 if class == 0 { 0.0 } else { (1 << (class / 2)) as f64 * (1.0 + 0.5 * (class % 2) as f64) };
-            let jams = |&probability: &f64| probability * 65_536.0 > least.floor();
-            let above = table.iter().rposition(jams).map_or(0, |k| (k + 1).min(STEPS));
-            wider(1.0 + step * above as f64)
+            wider(end_of(&|probability| probability * 65_536.0 > least.floor()))
         });
-        Self { law, table, by_void: None, reach }
+        Self { law, stops_to: end_of(&|&probability| probability > 0.0), table, reach }
     }
 
-    /// A law at the concentration of each void (module `crowding`).
-    pub fn by_void(law: &'static Law, by_void: ByVoid) -> Self {
-        Self { law, table: Vec::new(), by_void: Some(by_void), reach: [wider(law.widest); 32] }
-    }
-
-    /// How the concentration of each void is worked out, where it is.
-    pub fn of_void(&self) -> Option<&ByVoid> {
-        self.by_void.as_ref()
-    }
-
-    /// A constriction may stop a particle, whatever lies beside it, up to this many times as wide as it.
-    pub fn stops_alone(&self) -> f64 {
-        if self.by_void.is_some() { 1.0 } else { self.law.widest }
-    }
-
-    /// The law itself.
-    pub fn law(&self) -> &'static Law {
-        self.law
+    /// `R` from which nothing arches at this concentration: [`Arching::widest`], or less where jams of wider
+    /// constrictions are too rare for any draw.
+    pub fn stops_to(&self) -> f64 {
+        self.stops_to
     }
 
     /// `R` from which nothing arches.
@@ -266,24 +264,15 @@ impl Arching {
     }
 
     /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
-    /// by this word, in a void with these particles; `None` where it passes.
+    /// by this word; `None` where it passes.
     #[inline]
-    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64, crowd: VoidCrowd) -> Option<u32> {
+    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
         if !self.may(width, diameter) {
             return None;
         }
         let draw = (word >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
-        let (ratio, probability) = match &self.by_void {
-            None => {
-                let ratio = f64::from(width) / f64::from(diameter);
-                (ratio, self.by_table(ratio))
-            }
-            Some(by_void) => {
-                let (ratio, concentration) = by_void.asked(width, diameter, crowd);
-                (ratio, self.law.probability(ratio, concentration))
-            }
-        };
-        (draw < probability).then(|| in_arch(ratio))
+        let ratio = f64::from(width) / f64::from(diameter);
+        (draw < self.by_table(ratio)).then(|| in_arch(ratio))
     }
 
     /// The probability by the table: the law's at its steps, and between them by a straight line.
@@ -297,7 +286,6 @@ impl Arching {
 
 #[cfg(test)]
 mod tests {
-    use super::super::crowding::ArchSize;
     use super::*;
 
     #[test]
@@ -343,20 +331,21 @@ mod tests {
         assert_eq!(of(2.8, 0.001), 0.0);
     }
 
-    /// A fine particle beside coarse ones, of which the size that counts does not fit the constriction: asked
-    /// at R = 1, 1 - e^-0.075, and two are an arch. By its own size, R = 2.5, it is rarer by far.
+    /// By hand: four others in a neck of R = 2 come with m^4 / 24, m = 12 times the concentration. At 0.0001
+    /// that is 8.6e-14, some 24 draws of 2^48; at 0.00001 it is 8.6e-18, less than one.
     #[test]
-    fn coarser_than_the_constriction_is_asked_as_one() {
+    fn what_no_draw_can_be_is_no_jam() {
         let law = Law::named("marin-2018").unwrap();
-        // One of 1.4 and one of 0.4, where the first is as 0.05 of the void.
-        let crowd = VoidCrowd { number: 2, cubes: 2.744 + 0.064, d85: 1.4 };
-        let of = |size| Arching::by_void(law, ByVoid { void_cube: 2.744 / 0.05, size });
-        let jams = |size, draw: f64| of(size).jams(1.0, 0.4, (draw * 2f64.powi(64)) as u64, crowd);
-        for size in [ArchSize::VoidD85, ArchSize::VoidMean] {
-            assert!(of(size).of_void().unwrap().asked(1.0, 0.4, crowd).0 < 1.0);
-            assert_eq!((jams(size, 0.0722), jams(size, 0.0723)), (Some(2), None), "{size:?}");
+        assert!((law.probability(2.0, 1e-4) / 8.6e-14 - 1.0).abs() < 0.02);
+        let jams = |concentration| Arching::new(law, concentration).jams(2.0, 1.0, 0);
+        assert_eq!((jams(1e-4), jams(1e-5)), (Some(5), None));
+        let [rare, rarer] = [1e-4, 1e-5].map(|concentration| Arching::new(law, concentration).stops_to());
+        assert!(1.0 < rarer && rarer < 2.0 && 2.0 < rare && rare < 3.0, "{rare} {rarer}");
+        for law in &LAWS {
+            // A law that falls to 0 at its widest is too rare just below it.
+            let dense = Arching::new(law, DENSEST).stops_to();
+            assert!((law.widest - 0.05..=law.widest).contains(&dense), "{} {dense}", law.name);
         }
-        assert_eq!((jams(ArchSize::Own, 0.0012), jams(ArchSize::Own, 0.0014)), (Some(7), None));
     }
 
     /// Numbers that follow from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704,
@@ -383,10 +372,7 @@ mod tests {
     /// No draw jams a particle beyond its reach, and the reach is no wider than half a power of two asks for.
     #[test]
     fn no_draw_jams_beyond_its_reach() {
-        let by_void = Arching::by_void(&LAWS[1], ByVoid { void_cube: 9.0, size: crate::walk::ArchSize::Own });
-        let laws = LAWS.iter().map(|law| Arching::new(law, 0.2)).chain([by_void]);
-        let nine = VoidCrowd { number: 9, cubes: 9.0, d85: 1.0 };
-        for arching in laws {
+        for arching in LAWS.iter().map(|law| Arching::new(law, 0.2)) {
             for draw in 0..=u16::MAX {
                 let class = Arching::class_of(draw);
                 assert!(class < 32 && class >= Arching::class_of(draw.saturating_sub(1)));
@@ -398,7 +384,7 @@ mod tests {
                 for k in 1..=40u8 {
                     let width = reach * (1.0 + f32::from(k) / 40.0 * 3.0);
                     let word = u64::from(draw) << 48;
-                    assert_eq!(arching.jams(width, 1.0, word, nine), None, "{draw} {width}");
+                    assert_eq!(arching.jams(width, 1.0, word), None, "{draw} {width}");
                 }
             }
         }

@@ -1,24 +1,23 @@
-//! Which way constrictions lead, where water decides: when the flow is solved again, and what it came to.
+//! Directions of constrictions, where water decides: when the flow is solved again, and what it came to.
 //!
-//! The flow is solved before the first increment, and at the beginning of an increment when the changes
-//! since the last time are one in a hundred of all constrictions, or when there are any and ten increments
-//! have gone by; and once more at the end. A change is a constriction that was blocked or, where blocked
-//! ones leave openings, narrowed. In between directions stay as they are, and a particle in a void whose
-//! exits have all been blocked since waits where it is. When to solve follows from the history of changes
-//! alone, so a walk that continues from a checkpoint solves again what was solved before and gives
-//! directions each time, in the same order, to the same bits.
+//! The flow is solved before the first increment, and at the beginning of an increment once the constrictions
+//! that have closed since the last time carried more of it than a tolerance: the sum over them of flux over
+//! inflow, which is how many of them a particle meets on its way, on average
+//! ([`Network::with_flow_tolerance`]). Where blocked constrictions leave openings, a constriction counts by the
+//! part of its conductance that it has lost. Where anything has closed it is solved after ten increments at
+//! the latest, so that no particle waits longer before ways that have closed, and once more at the end. In between directions
+//! stay as they are, and a particle in a void whose exits have all been blocked since waits where it is. When
+//! to solve follows from the history of changes alone, so a walk that continues from a checkpoint solves again
+//! what was solved before and gives directions each time, in the same order, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::State;
 use super::openings::{CONDUCTS, Weighed, part_kept};
-use crate::network::{ExitRule, Flow, FlowError, Network, Turned};
+use crate::network::{ExitRule, Flow, FlowError, Network};
 
-/// The flow is solved again when one in so many constrictions has changed since the last time.
-const PART_BLOCKED: u64 = 100;
-
-/// The flow is solved again after so many increments in which anything changed.
+/// Increments after which the flow is solved again where anything has closed since.
 const INCREMENTS: u64 = 10;
 
 /// How the permeability fell in a run.
@@ -26,8 +25,20 @@ const INCREMENTS: u64 = 10;
 pub struct FlowRecord {
     /// Permeability of the filter before anything was blocked (mm2), where the network knows its lengths.
     pub k0_mm2: Option<f64>,
-    /// Increment, and permeability after it over that of the clean filter, each time that it was solved.
-    pub k_over_k0: Vec<(u64, f64)>,
+    /// Each time that the flow was solved.
+    pub solutions: Vec<FlowSolution>,
+}
+
+/// A solution of the flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowSolution {
+    /// Increments that were done.
+    pub increment: u64,
+    /// Permeability over that of the clean filter.
+    pub k_over_k0: f64,
+    /// Part of the inflow that went through constrictions which had closed since the solution before, summed
+    /// over the filter.
+    pub closed: f64,
 }
 
 /// The directions of a walk.
@@ -39,7 +50,9 @@ pub(super) struct Directions {
     /// Last increment before the flow was solved.
     solved_at: u64,
     /// Constrictions blocked or narrowed in this run until then.
-    blocked_then: u64,
+    changes_then: usize,
+    /// Of those since: how many, and the flow that they carried, over the inflow.
+    since: (usize, f64),
     /// By exit, as wide as it was then, where blocked constrictions leave openings.
     widths_then: Vec<f32>,
     /// How particles choose.
@@ -118,14 +131,15 @@ impl Directions {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &clean_filter)?;
-        let record = FlowRecord { k0_mm2: clean.k_mm2, k_over_k0: vec![] };
+        let record = FlowRecord { k0_mm2: clean.k_mm2, solutions: vec![] };
         let clean = clean.conductance;
         let mut directions = Self {
             flow,
             record,
             clean,
             solved_at: 0,
-            blocked_then: 0,
+            changes_then: 0,
+            since: (0, 0.0),
             widths_then: Vec::new(),
             rule: network.exit_rule(),
         };
@@ -139,8 +153,8 @@ impl Directions {
                 past.set(network, so_far, true);
                 so_far += 1;
             }
-            if directions.is_due(network, increment, so_far as u64) {
-                directions.solve(network, past.passable(), increment - 1, so_far as u64)?;
+            if directions.is_due(network, state, increment, so_far) {
+                directions.solve(network, past.passable(), increment - 1, so_far)?;
                 directions.flow.direct(network);
             }
         }
@@ -155,29 +169,56 @@ impl Directions {
         }
     }
 
-    /// Whether the flow is to be solved at the beginning of an increment, after so many blockings of this
-    /// run.
-    fn is_due(&self, network: &Network, increment: u64, blocked: u64) -> bool {
-        let since = blocked - self.blocked_then;
-        since > 0
-            && (since * PART_BLOCKED >= network.passages() as u64 || increment > self.solved_at + INCREMENTS)
+    /// Whether the flow is to be solved at the beginning of an increment, after so many changes of this run.
+    fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
+        self.count(network, state, changes);
+        let is_late = increment > self.solved_at + INCREMENTS;
+        changes > self.changes_then && (is_late || self.since.1 >= network.flow_tolerance())
     }
 
-    /// Solves the flow where the increment that `state` begins is due for it; where water has turned then.
-    pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<Option<Turned>, FlowError> {
-        let blocked = state.changes() as u64;
-        if !self.is_due(network, state.increment, blocked) {
-            return Ok(None);
+    /// Counts what has closed since the flow was solved, up to so many changes of this run.
+    fn count(&mut self, network: &Network, state: &State, changes: usize) {
+        let (counted, mut carried) = self.since;
+        for at in self.changes_then + counted..changes {
+            carried += self.carried(network, state, at);
         }
-        self.solve(network, Passable::of(state), state.increment - 1, blocked)?;
-        Ok(Some(self.flow.direct(network)))
+        self.since = (changes - self.changes_then, carried);
+    }
+
+    /// The part of the inflow that no longer goes through a constriction after a change of the run.
+    fn carried(&self, network: &Network, state: &State, at: usize) -> f64 {
+        match &state.openings {
+            None => self.flow.share(state.history[at].constriction as usize),
+            Some(openings) => {
+                let change = &openings.history[at];
+                let exit = change.constriction as usize;
+                let whole = f64::from(network.diameters()[exit]);
+                let [before, after, then] = [change.before, change.after, self.widths_then[exit]]
+                    .map(|width| part_kept(f64::from(width) / whole, CONDUCTS));
+                let lost = if then > 0.0 { (before - after) / then } else { 0.0 };
+                self.flow.share(exit) * lost
+            }
+        }
+    }
+
+    /// Solves the flow where the increment that `state` begins is due for it, and gives the network its
+    /// directions; whether it did.
+    pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
+        let changes = state.changes();
+        let is_due = self.is_due(network, state, state.increment, changes);
+        if is_due {
+            self.solve(network, Passable::of(state), state.increment - 1, changes)?;
+            self.flow.direct(network);
+        }
+        Ok(is_due)
     }
 
     /// The flow at the end of a run; the network is given its directions.
     pub fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
-        let blocked = state.changes() as u64;
-        if blocked > self.blocked_then {
-            self.solve(network, Passable::of(state), state.increment, blocked)?;
+        let changes = state.changes();
+        if changes > self.changes_then {
+            self.count(network, state, changes);
+            self.solve(network, Passable::of(state), state.increment, changes)?;
         }
         self.flow.direct(network);
         Ok(self.record)
@@ -189,7 +230,7 @@ impl Directions {
         network: &Network,
         passable: Passable,
         increment: u64,
-        in_run: u64,
+        changes: usize,
     ) -> Result<(), FlowError> {
         let found = match passable {
             Passable::Blocked(blocked) => self.flow.solve(network, blocked)?,
@@ -204,8 +245,8 @@ impl Directions {
             }
         };
         let part = if self.clean > 0.0 { (found.conductance / self.clean).min(1.0) } else { 0.0 };
-        self.record.k_over_k0.push((increment, part));
-        (self.solved_at, self.blocked_then) = (increment, in_run);
+        self.record.solutions.push(FlowSolution { increment, k_over_k0: part, closed: self.since.1 });
+        (self.solved_at, self.changes_then, self.since) = (increment, changes, (0, 0.0));
         Ok(())
     }
 }

@@ -5,11 +5,10 @@ mod few;
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
 
-use super::crowding::Crowd;
 use super::openings::Ways;
 use super::reads::Reads;
 use super::{Arching, Isa};
-use crate::network::{Network, Turned};
+use crate::network::Network;
 use few::FewExits;
 
 /// The exits of one void, as draws see them.
@@ -25,6 +24,9 @@ pub(super) struct VoidExits<'a> {
     /// that have been blocked since.
     pub waits: bool,
 }
+
+/// Voids that a thread renews one after another.
+const PART: usize = 1 << 13;
 
 /// Looks at the exits of one void after another, of which `ways` are open.
 pub(super) fn of_each(
@@ -191,8 +193,6 @@ pub(super) struct OpenExits<'a> {
     pub passive_limit: f32,
     /// How particles arch; only with a table of the general form, or that has widths read.
     pub arching: Option<&'a Arching>,
-    /// The particles in each void, where arches depend on them.
-    pub crowd: Option<&'a Crowd>,
 }
 
 impl ExitTable {
@@ -221,17 +221,15 @@ impl ExitTable {
     /// The same for particles that arch or constrictions that leave openings: each particle is held against
     /// the width of the exit that it chose.
     pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
-        let Some([nx, ny, _]) = network.shape() else { return Self::general(network, ways) };
+        let Some([nx, ny, _]) = network.shape() else {
+            return Self::empty_general(network).filled(network, ways);
+        };
         let mut lattice = Lattice::new(network.voids(), nx, nx * ny, 0);
         (lattice.by_widths, lattice.classed) = (true, Vec::new());
         Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
     }
 
-    /// The same in the form that any network has.
-    pub(super) fn general(network: &Network, ways: Ways) -> Self {
-        Self::empty_general(network).filled(network, ways)
-    }
-
+    /// A table in the form that any network has, of which no void is set yet.
     fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
@@ -269,18 +267,17 @@ impl ExitTable {
         }
     }
 
-    /// Renews voids where water has turned, on all threads.
-    pub(super) fn renew(&mut self, network: &Network, ways: Ways, turned: &Turned) {
+    /// Renews all voids, on all threads.
+    pub(super) fn renew(&mut self, network: &Network, ways: Ways) {
         let Form::General(general) = &mut self.form else {
-            let voids = turned.groups().flatten();
+            let voids = 0..network.voids() as u32;
             return of_each(network, ways, voids, |exits| self.set(network, ways, exits));
         };
         let each = |mut part: GeneralPart| {
             let voids = part.first_void..part.first_void + part.few.len() as u32;
             of_each(network, ways, voids, |exits| part.set(network, ways, exits));
         };
-        let parts = general.parts(network).into_par_iter();
-        parts.filter(|part| turned.contains(part.first_void)).for_each(each);
+        general.parts(network).into_par_iter().for_each(each);
     }
 
     pub(super) fn isa(&self) -> Isa {
@@ -318,21 +315,21 @@ impl General {
         GeneralPart { first_void: 0, first_exit: 0, threshold, top, last_open, few, beyond }
     }
 
-    /// Parts of as many voids as water is known to have turned in together.
+    /// Parts that threads renew side by side.
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
         let mut parts = Vec::new();
         let mut left = self.all();
-        while left.few.len() > Turned::GROUP {
-            let exits = network.exits(left.first_void + Turned::GROUP as u32).start - left.first_exit;
+        while left.few.len() > PART {
+            let exits = network.exits(left.first_void + PART as u32).start - left.first_exit;
             let GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond } = left;
             let (threshold, threshold_after) = threshold.split_at_mut(exits);
             let (top, top_after) = top.split_at_mut(exits);
-            let (last_open, last_open_after) = last_open.split_at_mut(Turned::GROUP);
-            let (few, few_after) = few.split_at_mut(Turned::GROUP);
+            let (last_open, last_open_after) = last_open.split_at_mut(PART);
+            let (few, few_after) = few.split_at_mut(PART);
             let (beyond, beyond_after) = beyond.split_at_mut(exits);
             parts.push(GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond });
             left = GeneralPart {
-                first_void: first_void + Turned::GROUP as u32,
+                first_void: first_void + PART as u32,
                 first_exit: first_exit + exits,
                 threshold: threshold_after,
                 top: top_after,

@@ -31,9 +31,9 @@
 //! no width.
 //!
 //! # Arches
-//! A particle that fits may jam (module `arching`) where a law of that is asked for. How densely particles
-//! lie is stated, or counted in each void (module `crowding`). Those that jam in one constriction in one
-//! increment are one arch: step 3 keeps as many as it has (module `arches`), and lets the others pass.
+//! A particle that fits may jam (module `arching`) where a law of that is asked for, at one concentration
+//! for the whole walk. Those that jam in one constriction in one increment are one arch: step 3 keeps as
+//! many as it has (module `arches`), and lets the others pass.
 //!
 //! # Residual openings
 //! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
@@ -59,7 +59,6 @@ mod arching;
 mod bits;
 mod chunks;
 mod counts;
-mod crowding;
 mod directions;
 mod engine;
 mod error;
@@ -82,11 +81,10 @@ mod tally;
 mod threads;
 mod trapped;
 
-pub use arching::{Arching, LAWS, Law, LawName};
+pub use arching::{Arching, DENSEST, LAWS, Law, LawName};
 pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
-pub use crowding::{ArchSize, ByVoid, Concentration, DENSEST, VoidCrowd, WalkedConcentration};
-pub use directions::FlowRecord;
+pub use directions::{FlowRecord, FlowSolution};
 pub use engine::{Engine, Finest, RunPlan, Shortcut};
 pub use error::WalkError;
 pub use exits::ExitTable;
@@ -263,7 +261,6 @@ impl<'a> Walk<'a> {
                     PlainExits::work_out(&network, &state.blocked, with_shares)
                 }
             },
-            (Some(arching), _) if arching.of_void().is_some() => (ExitTable::general(&network, ways), None),
             _ => (ExitTable::by_widths(&network, ways), None),
         };
         let trap = trapped::Search::new(&network, supply.arching());
@@ -349,16 +346,16 @@ impl<'a> Walk<'a> {
             return Err(error);
         }
         let Some(directions) = &mut self.directions else { return Ok(()) };
-        if let Some(turned) = directions.renew(self.network.to_mut(), state)? {
+        if directions.renew(self.network.to_mut(), state)? {
             let Self { network, table, passive, directions, .. } = self;
             let ways = state.ways(weighed(directions.as_ref()));
             let renew_passive = || {
                 let Some(passive) = passive else { return };
-                let voids = turned.groups().flatten();
+                let voids = 0..network.voids() as u32;
                 exits::of_each(network, ways, voids, |exits| passive.set(network, exits));
                 passive.forget_trap();
             };
-            rayon::join(|| table.renew(network, ways, &turned), renew_passive);
+            rayon::join(|| table.renew(network, ways), renew_passive);
             self.trap = trapped::Search::new(&self.network, self.supply.arching());
             self.all_caught = false;
         }

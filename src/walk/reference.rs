@@ -2,16 +2,14 @@
 //!
 //! One particle after another, every weight computed afresh from the network, in the words of the model. It
 //! shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
-//! strata and the streams, and of arches the law: its probability, by table or asked, and the size up to
-//! which particles are passive.
+//! strata and the streams, and of arches the law: its probability by table, and where it ends.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
 use bitvec::vec::BitVec;
-use libm::cbrt;
 
-use super::{ArchSize, CHUNK, Supply};
+use super::{CHUNK, Supply};
 use crate::network::{END, ExitRule, Flow, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
 
@@ -26,20 +24,10 @@ pub struct Particle {
     pub diameter: f32,
 }
 
-/// What a void holds of particles that may arch.
-#[derive(Clone, Copy, Default)]
-struct Beside {
-    number: usize,
-    /// Their diameters cubed, summed.
-    cubes: f64,
-    /// The finest size for which those no coarser hold 85 % of that.
-    d85: f64,
-}
-
 /// A run, particle by particle.
 pub struct Reference<'a> {
     network: Cow<'a, Network>,
-    /// The flow, the last increment before it was solved, and the constrictions blocked by then.
+    /// The flow, the last increment before it was solved, and the changes of constrictions by then.
     flow: Option<(Flow, u64, usize)>,
     supply: &'a Supply,
     seed: u64,
@@ -74,14 +62,11 @@ pub struct Reference<'a> {
     pub history: Vec<(u64, usize)>,
     /// Completed moves.
     pub particle_moves: u64,
-    /// Size up to which particles are too fine for any arch.
-    passive_limit: f32,
 }
 
 impl<'a> Reference<'a> {
     /// Before the first increment.
     pub fn new(network: &'a Network, supply: &'a Supply, blocked: Vec<bool>, seed: u64, run: u64) -> Self {
-        let passive_limit = supply.passive_limit(network.finest_open(|c| blocked[c]));
         Self {
             network: Cow::Borrowed(network),
             flow: network.exit_rule().needs_flow().then(|| (Flow::new(network), 0, 0)),
@@ -103,7 +88,6 @@ impl<'a> Reference<'a> {
             blocked,
             history: vec![],
             particle_moves: 0,
-            passive_limit,
         }
     }
 
@@ -126,7 +110,6 @@ impl<'a> Reference<'a> {
         let stopped_before = self.stopped.len();
         let mut still_moving = vec![];
         let mut begun = HashMap::new();
-        let crowd = self.crowd();
         let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
         for particle in std::mem::take(&mut self.moving) {
             let place = &mut place_in_chunk[particle.rank as usize / CHUNK];
@@ -146,8 +129,7 @@ impl<'a> Reference<'a> {
                 continue;
             }
             let place = (particle.rank / CHUNK as u64, *place - 1);
-            let beside = crowd.get(&particle.void).copied().unwrap_or_default();
-            if self.arches(place, exit, particle.diameter, beside, &mut begun) {
+            if self.arches(place, exit, particle.diameter, &mut begun) {
                 newly_blocked.insert(exit);
                 self.stopped.push((particle, exit));
                 self.arched += 1;
@@ -207,13 +189,25 @@ impl<'a> Reference<'a> {
         if whole == 0.0 { 0.0 } else { (3.0 * (f64::from(width) / whole).powi(power)).min(1.0) }
     }
 
-    /// Solves the flow before the first increment; then where one in a hundred constrictions has been blocked
-    /// since, or any in the last ten increments.
+    /// Solves the flow before the first increment; then where what has closed since carried more of it than
+    /// the tolerance, or anything has closed since ten increments.
     fn direct(&mut self) {
-        let Some((mut flow, solved_at, blocked_then)) = self.flow.take() else { return };
+        let Some((mut flow, solved_at, changes_then)) = self.flow.take() else { return };
         let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
-        let since = changes - blocked_then;
-        let due = 100 * since >= self.network.passages() || self.increment > solved_at + 10;
+        let carried: f64 = match &self.widths {
+            None => self.history[changes_then..].iter().map(|&(_, exit)| flow.share(exit)).sum(),
+            Some(widths) => {
+                let lost = |&exit: &usize| {
+                    let then = self.part(exit, self.widths_then[exit], 4);
+                    let lost = then - self.part(exit, widths[exit], 4);
+                    if then > 0.0 { flow.share(exit) * lost / then } else { 0.0 }
+                };
+                let once = |&exit: &usize| self.network.twin(exit).is_none_or(|twin| exit < twin);
+                (0..widths.len()).filter(once).map(|exit| lost(&exit)).sum()
+            }
+        };
+        let is_late = self.increment > solved_at + 10;
+        let is_due = changes > changes_then && (is_late || carried >= self.network.flow_tolerance());
         let blocked: BitVec = self.blocked.iter().copied().collect();
         let parts: Option<Vec<f64>> = self
             .widths
@@ -224,7 +218,7 @@ impl<'a> Reference<'a> {
             // The clean filter comes first: its pressures are where the next solution begins.
             flow.solve(network, &BitVec::repeat(false, blocked.len())).expect("small networks are solved");
         }
-        self.flow = Some(if self.increment == 1 || (since > 0 && due) {
+        self.flow = Some(if self.increment == 1 || is_due {
             match &parts {
                 None => flow.solve(network, &blocked),
                 Some(parts) => flow.solve_parts(network, parts),
@@ -234,64 +228,25 @@ impl<'a> Reference<'a> {
             self.widths_then = self.widths.clone().unwrap_or_default();
             (flow, self.increment - 1, changes)
         } else {
-            (flow, solved_at, blocked_then)
+            (flow, solved_at, changes_then)
         });
     }
 
-    /// What each void holds of particles that are not too fine for any arch.
-    fn crowd(&self) -> HashMap<u32, Beside> {
-        let mut crowd: HashMap<u32, Vec<f64>> = HashMap::new();
-        for particle in self.moving.iter().filter(|particle| particle.diameter > self.passive_limit) {
-            crowd.entry(particle.void).or_default().push(f64::from(particle.diameter));
-        }
-        let of_void = |(void, mut sizes): (u32, Vec<f64>)| {
-            let cubes = |sizes: &[f64]| sizes.iter().map(|d| d * d * d).sum::<f64>();
-            let (number, in_order) = (sizes.len(), cubes(&sizes));
-            sizes.sort_by(f64::total_cmp);
-            let mut finer = 0.0;
-            let wanted = 0.85 * cubes(&sizes);
-            let no_coarser = sizes.iter().take_while(|d| {
-                let before = finer;
-                finer += cubes(&[**d]);
-                before < wanted
-            });
-            let d85 = no_coarser.last().copied().unwrap_or(0.0);
-            (void, Beside { number, cubes: in_order, d85 })
-        };
-        crowd.into_iter().map(of_void).collect()
-    }
-
     /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
-    /// that the first of an increment began there has room. `crowd`: what its void holds. `begun`: by
-    /// constriction, the room that is left.
+    /// that the first of an increment began there has room. `begun`: by constriction, the room that is left.
     fn arches(
         &self,
         (chunk, place): (u64, u64),
         exit: usize,
         diameter: f32,
-        crowd: Beside,
         begun: &mut HashMap<usize, u32>,
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
-        let mut ratio = f64::from(self.width(exit)) / f64::from(diameter);
+        let ratio = f64::from(self.width(exit)) / f64::from(diameter);
         if ratio >= arching.widest() {
             return false;
         }
-        let probability = match arching.of_void() {
-            None => arching.by_table(ratio),
-            Some(by_void) => {
-                let own = f64::from(diameter);
-                let size = match by_void.size {
-                    ArchSize::Own => own,
-                    ArchSize::VoidMean => cbrt(crowd.cubes / crowd.number as f64),
-                    ArchSize::VoidD85 => crowd.d85,
-                };
-                ratio = f64::from(self.width(exit)) / size;
-                let others = (crowd.cubes - own * own * own).max(0.0) / by_void.void_cube;
-                arching.law().probability(ratio, if crowd.number == 1 { 0.0 } else { others.min(0.64) })
-            }
-        };
-        if ((self.jam_draw(chunk, place) >> 16) as f64) >= probability * 2f64.powi(48) {
+        if ((self.jam_draw(chunk, place) >> 16) as f64) >= arching.by_table(ratio) * 2f64.powi(48) {
             return false;
         }
         let has = (ratio * ratio + 1.0).round().max(2.0) as u32;
@@ -404,8 +359,7 @@ impl<'a> Reference<'a> {
                 return false;
             }
             for exit in open {
-                let arching = self.supply.arching().filter(|arching| arching.of_void().is_none());
-                let stops = arching.map_or(1.0, |arching| arching.widest());
+                let stops = self.supply.arching().map_or(1.0, |arching| arching.stops_to());
                 let width = f64::from(self.width(exit));
                 if stops * f64::from(particle.diameter) > width || self.network.targets()[exit] == END {
                     return false;

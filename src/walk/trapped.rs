@@ -2,8 +2,8 @@
 //!
 //! A moving particle is trapped when, through open constrictions that it fits, it can reach no end, no
 //! open constriction finer than it or so fine that it may arch there (either would stop it), and no void
-//! without open exits. When every
-//! moving particle is trapped nothing can change any more, so the run ends there, not at a limit of steps.
+//! without open exits. When every moving particle is trapped nothing can change any more, so the run ends
+//! there, not at a limit of steps.
 //!
 //! One particle that is not trapped is enough to go on. The way out that was found for it is remembered
 //! while nothing closes, so that a run that waits for one particle costs next to nothing.
@@ -42,7 +42,7 @@ impl Search {
             way_out: vec![false; voids],
             known: None,
             hint: usize::MAX,
-            stops_from: arching.map_or(1.0, Arching::stops_alone),
+            stops_from: arching.map_or(1.0, Arching::stops_to),
         }
     }
 

@@ -115,106 +115,47 @@ fn a_critical_ratio_is_sieving_with_larger_particles() {
     assert!(fine > 0.3 && coarse > 0.3, "{fine} {coarse}");
 }
 
-/// These settings are refused with these words, and nothing is written.
-fn refusal_at(at: &Path, more: &[&str], says: &str) {
-    refused(&call(at, &[&["run", "s.toml", "--out", "r"][..], more].concat()), says);
-    assert!(!at.join("r").exists());
-}
-
 #[test]
 fn what_cannot_be_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     fs::write(at.join("s.toml"), SCENE).unwrap();
-    fs::write(at.join("c.csv"), "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.9\n").unwrap();
-    let refusal = |more: &[&str], says: &str| refusal_at(at, more, says);
+    let refusal = |more: &[&str], says: &str| {
+        refused(&call(at, &[&["run", "s.toml", "--out", "r"][..], more].concat()), says);
+        assert!(!at.join("r").exists());
+    };
     refusal(&["--set", "walk.arching=zuriguel"], "\"zuriguel-2005\"");
     refusal(&["--set", "walk.concentration=0.1"], "walk.concentration");
     refusal(
         &["--set", "walk.arching=zuriguel-2005", "--set", "walk.concentration=0.1"],
         "walk.concentration",
     );
-    let unknown =
-        ["--set", "walk.arching=marin-2018", "--set", "filter.curve=c.csv", "--set", "filter.cu=1.5"];
-    refusal(
-        &[&unknown[..], &["--set", "filter.grains_per_void=0.6"]].concat(),
-        "walk.concentration is needed, as a number",
-    );
-    let known =
-        [&unknown[..], &["--set", "filter.grains_per_void=0.6", "--set", "walk.concentration=0.2"]].concat();
-    let outcome = walked(at, "r", &known);
-    assert_eq!(outcome["arching"]["concentration"], 0.2);
-}
-
-const BY_VOID: [&str; 4] = ["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-void"];
-const SHORT: [&str; 4] = ["--set", "runs=1", "--set", "replicates=1"];
-
-/// What the walk brings into each void: written with the volume of a void, the same for any threads.
-#[test]
-fn by_void_the_walk_brings_its_own_concentration() {
-    let root = tempfile::tempdir().unwrap();
-    let at = root.path();
-    fs::write(at.join("s.toml"), SCENE).unwrap();
-    let of = |name: &str, more: &[&str]| walked(at, name, &[&BY_VOID[..], &SHORT, more].concat());
-    let one = of("one", &["--threads", "1"]);
-    assert_eq!(one["arching"]["by_void"]["size"], "own");
-    assert!(one["arching"]["concentration"].is_null());
-    assert!(one["replicates"][0]["runs"][0]["arches"].as_u64().unwrap() > 0);
-    for threads in ["2", "3", "7"] {
-        assert_eq!(of("more", &["--threads", threads])["summary"], one["summary"], "{threads}");
+    for wrong in ["0", "-0.1", "0.65", "by-void"] {
+        let set = format!("walk.concentration={wrong}");
+        refusal(&["--set", "walk.arching=marin-2018", "--set", &set], "a number above 0 and up to 0.64");
     }
-    let [mean, d85] = ["void-mean", "void-d85"].map(|size| {
-        let walked = of(size, &["--set", &format!("walk.arch_size={size}")]);
-        assert_eq!(walked["arching"]["by_void"]["size"], size);
-        assert_ne!(walked["summary"], one["summary"]);
-        walked["summary"].clone()
-    });
-    assert_ne!(mean, d85);
+    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=2%"], "as a part of 1");
 }
 
-/// A void has the volume of its grains by the void ratio, whatever the base is.
+/// A law that depends on the concentration says what is missing, wherever the law is named, before any work.
 #[test]
-fn a_void_is_as_large_as_the_filter_makes_it() {
-    let root = tempfile::tempdir().unwrap();
-    let at = root.path();
-    let table = "size_mm,percent_finer\n0.20,100\n0.15,70\n0.10,40\n0.06,30\n";
-    fs::write(at.join("b.csv"), table).unwrap();
-    let scene = |filter: &str, base: &str| {
-        let scene = format!("[filter]\nd0_mm = 1\n{filter}\n[base]\n{base}\n");
-        let rest = "[network]\nnx = 6\nny = 6\nnz = 12\n[record]\nsensitivity = []\n";
-        fs::write(at.join("s.toml"), scene + rest).unwrap();
-        walked(at, "v", &[&BY_VOID[..], &SHORT].concat())["arching"]["by_void"]["void_mm"].as_f64().unwrap()
-    };
-    let library = "cu = 1.5\nlibrary = \"loose\"";
-    // With 30 % of the base in the pan, with sizes for all of it, and with another base.
-    let tailed = scene(library, "sieve = \"b.csv\"");
-    assert_eq!(scene(library, "sieve = \"b.csv\"\nd0_mm = 0.05"), tailed);
-    assert_eq!(scene(library, "single_mm = 0.1"), tailed);
-    // By hand: of a linear filter of Cu 1.5 from 1 mm the mean cube is 6 ln 1.5 / (1 - 1.5^-6) = 2.667; a void
-    // has 0.61 grains, and the void ratio is 0.658. (0.61 * 2.667 * 0.658)^(1/3) = 1.0230.
-    let shipped = scene("curve = \"shire2016-cu1.5-loose\"", "single_mm = 0.1");
-    assert!((shipped - 1.0230).abs() < 1e-4, "{shipped}");
-}
-
-#[test]
-fn by_void_is_refused_where_it_says_nothing() {
+fn a_law_without_its_concentration_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     fs::write(at.join("s.toml"), SCENE).unwrap();
-    let refusal = |more: &[&str], says: &str| refusal_at(at, more, says);
-    refusal(&["--set", "walk.arching=zuriguel-2005", "--set", "walk.concentration=by-void"], "says nothing");
-    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=by-voids"], "or \"by-void\"");
-    refusal(
-        &["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.7"],
-        "a part from 0 to 0.64",
-    );
-    refusal(
-        &["--set", "walk.arching=marin-2018", "--set", "walk.arch_size=void-mean"],
-        "says nothing unless walk.concentration is \"by-void\"",
-    );
-    refusal(&[&BY_VOID[..], &["--set", "walk.arch_size=mean"]].concat(), "\"void-mean\"");
-    fs::write(at.join("n.csv"), "from,to,diameter_mm\nstart,0,\n0,end,0.2\n").unwrap();
-    let other = fs::read_to_string(at.join("s.toml")).unwrap();
-    fs::write(at.join("s.toml"), other.replace("nx = 10\nny = 10\nnz = 12\n", "file = \"n.csv\"\n")).unwrap();
-    refusal(&[&BY_VOID[..], &["--set", "base.n_base=100"]].concat(), "the voids of a lattice");
+    fs::write(at.join("l.toml"), format!("{SCENE}[walk]\narching = \"marin-2018\"\n")).unwrap();
+    let says = "walk.concentration is missing: \"marin-2018\" depends on the solids fraction of the \
+                suspension that enters the filter (volume of particles by volume of suspension), a number \
+                above 0 and up to 0.64\n";
+    for command in ["run", "check"] {
+        let law = ["--set", "walk.arching=marin-2018"];
+        refused(&call(at, &[&[command, "s.toml"][..], &law].concat()), &format!("refused: s.toml: {says}"));
+        refused(&call(at, &[command, "l.toml"]), &format!("refused: l.toml: {says}"));
+    }
+    assert_eq!(fs::read_dir(at).unwrap().count(), 2);
+    let outcome = walked(at, "r", &["--set", "walk.arching=marin-2018", "--set", "walk.concentration=0.05"]);
+    assert_eq!(outcome["arching"]["concentration"], 0.05);
+    // A law of dense flow has none.
+    let outcome = walked(at, "r", &["--set", "walk.arching=critical-3"]);
+    assert!(outcome["arching"]["concentration"].is_null());
 }

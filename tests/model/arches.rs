@@ -6,9 +6,10 @@
 use std::sync::Arc;
 
 use bitvec::vec::BitVec;
+use voidwalk::constrictions::{Curve, CurveUnit};
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::walk::{ArchSize, Arching, ByVoid, CHUNK, Law, SizeClasses, State, Supply, Tally, Walk};
+use voidwalk::walk::{Arching, CHUNK, Law, SizeClasses, State, Supply, Tally, Walk};
 
 /// Walks `n` particles of size 1, in so many increments, by a law at a concentration of 0.2.
 fn walk(network: &str, law: &str, n: u64, increments: u64, seed: u64) -> Tally {
@@ -21,12 +22,15 @@ fn arching(law: &str) -> Arc<Arching> {
 }
 
 fn walk_by(network: &str, law: &Arc<Arching>, n: u64, increments: u64, seed: u64) -> Tally {
-    let network = Network::from_csv(network.as_bytes(), "network.csv", 1.0).unwrap();
+    walk_on(&Network::from_csv(network.as_bytes(), "network.csv", 1.0).unwrap(), law, n, increments, seed)
+}
+
+fn walk_on(network: &Network, law: &Arc<Arching>, n: u64, increments: u64, seed: u64) -> Tally {
     let sampler = SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap();
     let supply = Supply::new(sampler, n, increments).arching_by(Some(Arc::clone(law)));
     let open: BitVec = BitVec::repeat(false, network.constrictions());
-    let mut state = State::new(&network, &supply, SizeClasses::logarithmic(0.5, 2.0, 4), open, seed, 1);
-    let mut walk = Walk::new(&network, &supply, &state);
+    let mut state = State::new(network, &supply, SizeClasses::logarithmic(0.5, 2.0, 4), open, seed, 1);
+    let mut walk = Walk::new(network, &supply, &state);
     while !state.finished {
         walk.increment(&mut state).unwrap();
     }
@@ -205,89 +209,51 @@ fn how_many_are_in_arches_does_not_hang_on_the_chunk() {
     }
 }
 
-/// One constriction, in front of which so many particles lie at once in a void of known volume. Each asks the
-/// law for the concentration of the others; of those that jam five stay. Of one size every size that may count
-/// is the same.
+/// A particle that circles where it may arch is not trapped: it blocks a way in the end, and those that
+/// circle with it come to rest in a void or in that arch.
 #[test]
-fn by_void_the_concentration_is_that_of_the_others() {
-    const NETWORK: &str = "from,to,diameter_mm\nstart,0,\n0,end,2\n";
-    let law = Law::named("marin-2018").unwrap();
-    for size in ArchSize::ALL {
-        for (n, void_cube) in [(2u64, 15.0), (6, 40.0), (13, 40.0)] {
-            let by_void = Arc::new(Arching::by_void(law, ByVoid { void_cube, size }));
-            let found: Vec<f64> =
-                (1..=SEEDS).map(|seed| walk_by(NETWORK, &by_void, n, 1, seed).eroded as f64).collect();
-            let p = law.probability(2.0, (n - 1) as f64 / void_cube);
-            let ways = |k: u64| (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
-            let jam = |k: u64| ways(k) * p.powi(k as i32) * (1.0 - p).powi((n - k) as i32);
-            is_near(&found, n as f64 - (0..=n).map(|k| jam(k) * k.min(5) as f64).sum::<f64>());
-            let all = mean(found.iter().map(|&eroded| f64::from(eroded == n as f64)));
-            let wanted = jam(0);
-            let error = (wanted * (1.0 - wanted) / SEEDS as f64).sqrt();
-            assert!((all - wanted).abs() < 5.0 * error, "{n}: {all} and not {wanted}");
-        }
-        // One by one none has another beside it.
-        let by_void = Arc::new(Arching::by_void(law, ByVoid { void_cube: 15.0, size }));
-        assert_eq!(walk_by(NETWORK, &by_void, 120, 120, 3).eroded, 120);
+fn who_circles_where_it_may_arch_is_not_trapped() {
+    let law = arching("marin-2018");
+    for seed in 1..=40 {
+        let tally = walk_by(RING, &law, 1, 1, seed);
+        assert_eq!((tally.retained_in_arches, tally.arches, tally.blocked), (1, 1, 1), "{seed}");
+        let tally = walk_by(RING, &law, 30, 3, seed);
+        assert_eq!((tally.trapped, tally.eroded), (0, 0), "{seed}");
+        assert_eq!(tally.retained_in_arches + tally.retained_in_voids, 30, "{seed}");
     }
 }
 
-/// Of mixed sizes each size that may count gives its own probability. Three particles of 1 to 2 come into one
-/// void at once; in front of its only exit each asks the law as it is written here, so that all pass with the
-/// product of what is left.
+/// In a suspension so thin that no draw can be a jam at R = 2 the same particles are trapped: the run ends.
 #[test]
-fn by_void_each_size_asks_for_its_own_ratio() {
-    let text = "from,to,diameter_mm\nstart,0,\n0,1,100\n1,end,2.4\n";
-    let network = Network::from_csv(text.as_bytes(), "network.csv", 1.0).unwrap();
-    let law = Law::named("marin-2018").unwrap();
-    let void_cube = 60.0;
-    let mut expected = Vec::new();
-    for size in ArchSize::ALL {
-        let by_void = Arc::new(Arching::by_void(law, ByVoid { void_cube, size }));
-        let base = Gradation::linear_from_d0(1.0, 2.0).unwrap();
-        let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), 3, 1).arching_by(Some(by_void));
-        let (mut found, mut wanted, mut variance) = (0.0, 0.0, 0.0);
-        for seed in 1..=4 * SEEDS {
-            let open: BitVec = BitVec::repeat(false, network.constrictions());
-            let mut state =
-                State::new(&network, &supply, SizeClasses::logarithmic(0.5, 4.0, 4), open, seed, 1);
-            let mut walk = Walk::new(&network, &supply, &state);
-            walk.increment(&mut state).unwrap();
-            let sizes: Vec<f64> = state.particles.chunk(0).1.iter().map(|&d| f64::from(d)).collect();
-            assert_eq!(sizes.len(), 3);
-            let cubes: f64 = sizes.iter().map(|d| d.powi(3)).sum();
-            let coarsest = sizes.iter().copied().fold(0.0, f64::max);
-            let passes = |&d: &f64| {
-                // What does not fit is in no arch.
-                if d > 2.4 {
-                    return 1.0;
-                }
-                // Of three the 85 % are reached by the coarsest alone.
-                let of = [d, (cubes / 3.0).cbrt(), coarsest][size as usize];
-                1.0 - law.probability(f64::from(2.4f32) / of, (cubes - d.powi(3)) / void_cube)
-            };
-            let all: f64 = sizes.iter().map(passes).product();
-            while !state.finished {
-                walk.increment(&mut state).unwrap();
-            }
-            found += f64::from(state.tally.retained_in_arches == 0);
-            wanted += all;
-            variance += all * (1.0 - all);
-        }
-        assert!((found - wanted).abs() < 5.0 * variance.sqrt(), "{size:?}: {found} and not {wanted}");
-        expected.push(wanted);
-        // The mean volume taken for another would be seen; D85 and the own size come to nearly the same here.
-        let before = expected.iter().rev().nth(1).copied().unwrap_or(f64::MAX);
-        assert!((before - wanted).abs() > 5.0 * variance.sqrt(), "{expected:?}");
-    }
+fn who_circles_where_no_draw_jams_is_trapped() {
+    let law = Arc::new(Arching::new(Law::named("marin-2018").unwrap(), 1e-5));
+    let tally = walk_by(RING, &law, 30, 3, 3);
+    assert_eq!((tally.trapped, tally.retained_in_arches), (30, 0));
 }
 
-/// Particles that circle, each alone in its void, would never arch: they are trapped.
+/// Two voids that lead to each other, and nowhere else.
+const RING: &str = "from,to,diameter_mm\nstart,0,\n0,1,2\n1,0,2\n1,end,0\n";
+
+/// At a stated concentration what erodes does not depend on how much of the base an increment inserts: 2 % or
+/// 0.2 % of it, on a dozen small lattices each, agree within three standard errors of their means. With a
+/// concentration that grows with the increment nearly all would erode at 0.2 %. Differences below some six
+/// points of 36 % are missed, as of arches that several particles of one increment join (2 % of them here).
 #[test]
-fn who_circles_alone_is_trapped() {
-    let law = Law::named("marin-2018").unwrap();
-    let ring = "from,to,diameter_mm\nstart,0,\n0,1,2\n1,0,2\n1,end,0\n";
-    let by_void = Arc::new(Arching::by_void(law, ByVoid { void_cube: 40.0, size: ArchSize::Own }));
-    let tally = walk_by(ring, &by_void, 1, 1, 3);
-    assert_eq!((tally.trapped, tally.eroded), (1, 0));
+fn what_erodes_does_not_depend_on_the_increments() {
+    const NETWORKS: u64 = 12;
+    const N: u64 = 40_000;
+    let curve = Curve::from_points(&[(0.0, 1.4), (100.0, 4.2)], CurveUnit::Mm).unwrap();
+    let law = Arc::new(Arching::new(Law::named("marin-2018").unwrap(), 0.05));
+    let eroded = |increments: u64| -> Vec<f64> {
+        let one = |seed| {
+            let network = Network::cubic([8, 8, 12], &curve, 1.0, seed).unwrap();
+            walk_on(&network, &law, N, increments, seed).eroded as f64 / N as f64
+        };
+        (1..=NETWORKS).map(one).collect()
+    };
+    let [few, many] = [50, 500].map(eroded);
+    let [by_few, by_many] = [&few, &many].map(|of| mean(of.iter().copied()));
+    let error = ((variance(&few) + variance(&many)) / (NETWORKS - 1) as f64).sqrt();
+    assert!((0.2..0.6).contains(&by_few) && error < 0.05, "{by_few} {error}");
+    assert!((by_few - by_many).abs() < 3.0 * error, "{by_few} and {by_many}, give or take {error}");
 }

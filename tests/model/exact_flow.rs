@@ -154,11 +154,11 @@ fn graph(draw: &mut Draw, orders: f64, conductances: Option<f64>, rho: f64) -> O
     Network::from_columns(&columns).ok()
 }
 
-/// Some 60 graphs in each of seven ranges; what is not known to a millionth of the clean flow is refused, and close
-/// solutions know every flux to a hundred-millionth of what passes. Where conductances span no more than filters'
-/// do, nothing is refused.
+/// Some 290 graphs in each of seven ranges, 2,000 in all, clean and as they close: every flow is known to a millionth
+/// of the clean one, and close solutions know every flux to a hundred-millionth of what passes. None is refused: so
+/// small networks are solved without subtraction where conjugate gradients do not tell.
 #[test]
-fn no_flow_is_wrong_without_a_refusal() {
+fn no_flow_of_a_small_network_is_wrong_or_refused() {
     let mut draw = Draw(34);
     let ranges = [
         (1.0, None),
@@ -166,13 +166,14 @@ fn no_flow_is_wrong_without_a_refusal() {
         (3.0, None),
         (6.0, None),
         (1.0, Some(12.0)),
-        (1.0, Some(24.0)),
+        (1.0, Some(16.0)),
         (1.0, Some(40.0)),
     ];
     for (orders, conductances) in ranges {
-        let (mut known, mut refused) = (0, 0);
-        for _ in 0..60 {
+        let (mut networks, mut known, mut refused) = (0, 0, 0);
+        while networks < 2000 / ranges.len() + 1 {
             let Some((network, exit)) = graph(&mut draw, orders, conductances, 0.0) else { continue };
+            networks += 1;
             let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
             let mut flow = Flow::new(&network);
             let clean = exact(&network, &blocked);
@@ -195,10 +196,11 @@ fn no_flow_is_wrong_without_a_refusal() {
                     Err(FlowError::Unresolved { .. } | FlowError::NotConverged { .. }) => refused += 1,
                 }
                 let mut closely = Flow::new(&network);
-                if now.through > BigInt::ZERO && closely.solve_closely(&network, &blocked).is_ok() {
+                if now.through > BigInt::ZERO {
+                    closely.solve_closely(&network, &blocked).unwrap();
                     for void in 0..network.voids() as u32 {
                         for c in network.exits(void).filter(|&c| !blocked[c]) {
-                            let flux = closely.flux(void, c);
+                            let flux = closely.flux(c);
                             let off = off(flux, &now.flux[c], &now.through, &now);
                             assert!(
                                 off <= within(1.1e-8),
@@ -215,7 +217,7 @@ fn no_flow_is_wrong_without_a_refusal() {
         println!(
             "{orders} orders of diameters, {conductances:?} of conductances: {known} known, {refused} refused"
         );
-        assert!(known > 300 && (refused == 0 || orders > 2.0 || conductances.is_some()), "{known} {refused}");
+        assert!(known > 1400 && refused == 0, "{known} {refused}");
     }
 }
 

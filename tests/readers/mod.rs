@@ -288,8 +288,8 @@ fn flow(network: Network, conductances: f64) {
     let (mut inflow, mut outflow) = (0.0, 0.0);
     for void in 0..network.voids() as u32 {
         for exit in network.exits(void) {
-            inflow += if void == reservoir { flow.flux(void, exit) } else { 0.0 };
-            outflow += if network.targets()[exit] == END { flow.flux(void, exit) } else { 0.0 };
+            inflow += if void == reservoir { flow.flux(exit) } else { 0.0 };
+            outflow += if network.targets()[exit] == END { flow.flux(exit) } else { 0.0 };
         }
     }
     // Where conductances lie so far apart that rounding leaves more than that, no water is said to flow.

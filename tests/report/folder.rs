@@ -81,6 +81,8 @@ pub fn outcome(replicates: u64) -> Outcome {
             increments: 404 + replicate,
             particle_moves: 1_904_220_114,
             k_over_k0: None,
+            flow_solutions: None,
+            flow_closed_most: None,
             k0_mm2: None,
             fullness_max: None,
             overfull_fraction: None,

@@ -311,7 +311,7 @@ impl Network {
             let flux = |&exit: &u32| match exit {
                 NO_EXIT => 0.0,
                 exit => {
-                    let flux = flow.flux(upstream[exit as usize], exit as usize);
+                    let flux = flow.flux(exit as usize);
                     // Seen from inside, a way in leads out.
                     if Some(inner.targets()[exit as usize]) == inner.reservoir() { -flux } else { flux }
                 }

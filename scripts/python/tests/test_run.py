@@ -34,7 +34,7 @@ SCENES: Dict[str, List[str]] = {
     "water through a lattice": ["walk.exit=flux"],
     "what each void came to": ["record.voids=[1, 5]"],
     "arches": ["walk.arching=zuriguel-2005", "base.d85_at_dc=2"],
-    "arches by void": ["walk.arching=marin-2018", "walk.concentration=by-void", "walk.arch_size=void-d85"],
+    "arches in a suspension": ["walk.arching=marin-2018", "walk.concentration=0.05"],
 }  # fmt: skip
 
 #: Numbers and words that no two calls share.

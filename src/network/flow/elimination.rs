@@ -12,18 +12,14 @@
 //! and taken away exactly. The others follow by number of neighbours, and among equals in turns that are
 //! scattered over the network, so that few of them meet; within a turn by row, so that memory is read in
 //! order.
-//!
-//! Rows may have others beyond them, which are eliminated elsewhere: what joins two of these instead is
-//! handed on. So parts of a system that meet in such rows alone are eliminated side by side.
 
 use std::ops::Range;
 
-use super::rest::{Beyond, Link, Meeting, Rest};
+use super::rest::{Link, Meeting, Rest};
 
-/// An approximate factor of a system of conductances, or of some of its rows: the preconditioner of its
-/// conjugate gradients.
+/// An approximate factor of a system of conductances: the preconditioner of its conjugate gradients.
 pub(super) struct Factor {
-    /// Row of the system by place in the order of elimination. Rows beyond have the places after these.
+    /// Row of the system by place in the order of elimination.
     row: Vec<u32>,
     /// What places make up of one another, in the order of elimination.
     parts: Vec<Parts>,
@@ -57,14 +53,13 @@ const COUNTED: usize = 16;
 
 impl Factor {
     /// Of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows are joined by
-    /// `links` with one another and with so many rows beyond; and what is left of these.
-    pub(super) fn new(ground: &[f64], beyond: usize, links: &[Link]) -> (Self, Beyond) {
-        let rows = ground.len();
-        let order = order(rows, beyond, links);
-        let mut rest = Rest::new(&order, beyond, ground, links);
-        let mut factor = Self::of_none(order, rows + links.len());
-        factor.eliminate(&mut rest, 0..rows as u32, rows + beyond);
-        (factor, rest.into_beyond())
+    /// `links`.
+    pub(super) fn new(ground: &[f64], links: &[Link]) -> Self {
+        let order = order(ground.len(), links);
+        let mut rest = Rest::new(&order, ground, links);
+        let mut factor = Self::of_none(order, ground.len() + links.len());
+        factor.eliminate(&mut rest, 0..ground.len() as u32);
+        factor
     }
 
     /// Before anything is eliminated; with room for so many groups of parts.
@@ -73,9 +68,9 @@ impl Factor {
         Self { row, parts, pivot, choices: 0 }
     }
 
-    /// Takes these of so many places, one after another, from what is left of the system.
-    fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>, all: usize) {
-        let mut meeting = Meeting::of(all);
+    /// Takes these places, one after another, from what is left of the system.
+    fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
+        let mut meeting = Meeting::of(self.row.len());
         for place in places {
             let ground = rest.take(place, &mut meeting);
             let found = &mut meeting.found[..];
@@ -137,27 +132,13 @@ impl Factor {
         }
     }
 
-    /// Solves the factor, once down and once up; `scratch` has the length of both.
-    #[cfg(test)]
-    fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
-        self.down(residual, scratch);
-        self.up(scratch, out);
-    }
-
-    /// Solves the factor downwards. `scratch` has a number for each row and each row beyond; those beyond
-    /// come to what theirs are to be raised by.
-    pub(super) fn down(&self, residual: &[f64], scratch: &mut [f64]) {
+    /// Solves the factor, once down and once up; `scratch` has a number for each row.
+    pub(super) fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
-        scratch[self.row.len()..].fill(0.0);
         for Parts { of, by, part } in &self.parts {
             let value = scratch[*of as usize];
             by.iter().zip(part).for_each(|(&by, &part)| scratch[by as usize] += f64::from(part) * value);
         }
-    }
-
-    /// Solves it upwards, from where [`Factor::down`] left `scratch`, but that rows beyond have their
-    /// solution.
-    pub(super) fn up(&self, scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.pivot).for_each(|(value, pivot)| *value *= pivot);
         for Parts { of, by, part } in self.parts.iter().rev() {
             let [a, b, c, d] = std::array::from_fn(|i| f64::from(part[i]) * scratch[by[i] as usize]);
@@ -194,10 +175,10 @@ fn passed(sums: &[f64], share: f64) -> usize {
     }
 }
 
-/// Rows in the order of elimination, but for those beyond.
-fn order(rows: usize, beyond: usize, links: &[Link]) -> Vec<u32> {
+/// Rows in the order of elimination.
+fn order(rows: usize, links: &[Link]) -> Vec<u32> {
     // Of each row how many links are left, and their other rows by exclusive or: where one is left, its row.
-    let mut left = vec![(0u32, 0u32); rows + beyond];
+    let mut left = vec![(0u32, 0u32); rows];
     for &Link { one, other, .. } in links {
         for (row, met) in [(one, other), (other, one)] {
             let (count, rows) = &mut left[row as usize];
@@ -218,7 +199,7 @@ fn order(rows: usize, beyond: usize, links: &[Link]) -> Vec<u32> {
             let (count, rows) = &mut left[next as usize];
             *count -= 1;
             *rows ^= end;
-            if *count == 1 && (next as usize) < is_done.len() {
+            if *count == 1 {
                 ends.push(next);
             }
         }
@@ -242,7 +223,7 @@ mod tests {
         let links = [(0, 1, 2.0), (0, 2, 0.5), (0, 3, 1.0), (1, 4, 3.0), (2, 5, 0.25), (3, 6, 8.0)];
         let ground = [0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0];
         let links = links.map(|(one, other, conductance)| Link { one, other, conductance });
-        let (factor, _) = Factor::new(&ground, 0, &links);
+        let factor = Factor::new(&ground, &links);
         let right: Vec<f64> = (1..8).map(f64::from).collect();
         let mut x = vec![0.0; 7];
         factor.solve(&right, &mut [0.0; 7], &mut x);
@@ -286,7 +267,7 @@ mod tests {
                 }
             }
         }
-        let (factor, _) = Factor::new(&ground, 0, &links);
+        let factor = Factor::new(&ground, &links);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut residual: Vec<f64> = (0..ground.len()).map(|i| if i < N * N { 1.0 } else { 0.0 }).collect();
         let (first, mut scratch) = (dot(&residual, &residual).sqrt(), vec![0.0; ground.len()]);
@@ -329,8 +310,8 @@ mod tests {
         let order: Vec<u32> =
             (0..STARS).map(|s| 5 * s).chain((0..5 * STARS).filter(|i| i % 5 > 0)).map(|i| i as u32).collect();
         let mut factor = Factor::of_none(order, 0);
-        let mut rest = Rest::new(&factor.row, 0, &vec![0.0; 5 * STARS], &links);
-        factor.eliminate(&mut rest, 0..STARS as u32, 5 * STARS);
+        let mut rest = Rest::new(&factor.row, &vec![0.0; 5 * STARS], &links);
+        factor.eliminate(&mut rest, 0..STARS as u32);
         let mut sum = [[0.0; 4]; 4];
         let arm = |place: u32| (factor.row[place as usize] % 5 - 1) as usize;
         let mut meeting = Meeting::of(5 * STARS);
@@ -397,8 +378,8 @@ mod tests {
                 .collect();
             let order: Vec<u32> = (0..=many).collect();
             let mut factor = Factor::of_none(order, 0);
-            let mut rest = Rest::new(&factor.row, 0, &vec![1.0; many as usize + 1], &links);
-            factor.eliminate(&mut rest, 0..1, many as usize + 1);
+            let mut rest = Rest::new(&factor.row, &vec![1.0; many as usize + 1], &links);
+            factor.eliminate(&mut rest, 0..1);
             let all: f64 = links.iter().map(|link| link.conductance).sum();
             assert!((factor.pivot[0] * (1.0 + all) - 1.0).abs() < 1e-14);
             // A tree, of what the star conducted to each, and what leads on through the star's ground.

@@ -1,6 +1,6 @@
 //! Why no flow through a network is known.
 
-use super::rounds::NotConverged;
+use super::system::NotConverged;
 
 /// Why no flow is known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

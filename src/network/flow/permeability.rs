@@ -1,7 +1,8 @@
 //! Permeability of a packing's voids in an endless medium.
 
 use super::error::FlowError;
-use super::system::{CONVERGED, System};
+use super::system::System;
+use super::thresholds::CONVERGED;
 use super::together::Together;
 use crate::constrictions::VoidGraph;
 
@@ -20,7 +21,7 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
     let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();
     let inside = |void: u32| root[void as usize] != void;
-    let mut system = System::in_one(voids, inside, |system| {
+    let system = System::new(voids, inside, |system| {
         for c in links() {
             let (a, b, g) = (graph.from[c], graph.to[c], graph.conductance_mm3[c]);
             let flow = g * f64::from(graph.shift[c][axis]);

@@ -61,30 +61,19 @@ struct Handful {
     before: u32,
 }
 
-/// Rows beyond those that are eliminated, counted from the first of them.
-#[derive(Debug, Default)]
-pub(super) struct Beyond {
-    /// Conductances between them.
-    pub links: Vec<Link>,
-    /// Conductance of each to pressures that are known.
-    pub ground: Vec<f64>,
-}
-
 /// What is left of the system while rows are eliminated, by place: a link stands with the one of its two
-/// places that is eliminated first. Places beyond those of the order are not.
+/// places that is eliminated first.
 pub(super) struct Rest {
     head: Vec<Head>,
-    /// What this adds to the places beyond.
-    beyond: Beyond,
     handfuls: Vec<Handful>,
     /// The first handful of those that are free again.
     free: u32,
 }
 
 impl Rest {
-    /// Places follow one another in this order of rows, and so many rows lie beyond these.
-    pub(super) fn new(order: &[u32], beyond: usize, ground: &[f64], links: &[Link]) -> Self {
-        let mut place_of: Vec<u32> = (0..(order.len() + beyond) as u32).collect();
+    /// Places follow one another in this order of rows.
+    pub(super) fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
+        let mut place_of: Vec<u32> = vec![0; order.len()];
         order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
         let head = |&row: &u32| Head {
             conductance: [0.0; HANDFUL],
@@ -93,12 +82,7 @@ impl Rest {
             count: 0,
             before: NONE,
         };
-        let mut rest = Self {
-            head: order.iter().map(head).collect(),
-            beyond: Beyond { links: Vec::new(), ground: vec![0.0; beyond] },
-            handfuls: Vec::new(),
-            free: NONE,
-        };
+        let mut rest = Self { head: order.iter().map(head).collect(), handfuls: Vec::new(), free: NONE };
         for &Link { one, other, conductance } in links {
             rest.join(place_of[one as usize], place_of[other as usize], conductance);
         }
@@ -109,11 +93,7 @@ impl Rest {
     #[inline]
     pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
         let (from, to) = (one.min(other), one.max(other));
-        let places = self.head.len() as u32;
-        let Some(head) = self.head.get_mut(from as usize) else {
-            self.beyond.links.push(Link { one: from - places, other: to - places, conductance });
-            return;
-        };
+        let head = &mut self.head[from as usize];
         if head.count as usize == HANDFUL {
             let full = Handful { conductance: head.conductance, to: head.to, before: head.before };
             head.count = 0;
@@ -148,15 +128,7 @@ impl Rest {
 
     /// Adds to what a place conducts to known pressures.
     pub(super) fn hold(&mut self, place: u32, conductance: f64) {
-        match self.head.get_mut(place as usize) {
-            Some(head) => head.ground += conductance,
-            None => self.beyond.ground[place as usize - self.head.len()] += conductance,
-        }
-    }
-
-    /// What all this came to beyond its places.
-    pub(super) fn into_beyond(self) -> Beyond {
-        self.beyond
+        self.head[place as usize].ground += conductance;
     }
 }
 
@@ -170,7 +142,7 @@ mod tests {
         let links: Vec<Link> =
             (1..200).map(|other| Link { one: 0, other, conductance: f64::from(other) }).collect();
         let order: Vec<u32> = (0..200).collect();
-        let mut rest = Rest::new(&order, 0, &[0.0; 200], &links);
+        let mut rest = Rest::new(&order, &[0.0; 200], &links);
         let room = rest.handfuls.len();
         for _ in 0..20 {
             let mut meeting = Meeting::of(200);
@@ -187,7 +159,7 @@ mod tests {
     fn links_between_two_places_are_one() {
         let joined = [(0, 1, 1.0), (2, 0, 2.0), (0, 1, 4.0), (1, 2, 8.0), (1, 0, 16.0), (2, 0, 32.0)];
         let links = joined.map(|(one, other, conductance)| Link { one, other, conductance });
-        let mut rest = Rest::new(&[0, 1, 2], 0, &[0.5, 0.0, 0.0], &links);
+        let mut rest = Rest::new(&[0, 1, 2], &[0.5, 0.0, 0.0], &links);
         let mut meeting = Meeting::of(3);
         rest.hold(0, 0.25);
         assert_eq!(rest.take(0, &mut meeting), 0.75);
@@ -196,22 +168,5 @@ mod tests {
         assert_eq!(meeting.found, [(1, 21.0), (2, 34.0)]);
         rest.take(1, &mut meeting);
         assert_eq!(meeting.found, [(2, 8.0)]);
-    }
-
-    /// Two places with two rows beyond: what is given to these is told apart from what is left of places.
-    #[test]
-    fn rows_beyond_keep_what_they_are_given() {
-        let link = |one, other, conductance| Link { one, other, conductance };
-        let links = [link(0, 1, 1.0), link(0, 2, 2.0), link(3, 1, 4.0), link(3, 2, 8.0)];
-        let mut rest = Rest::new(&[1, 0], 2, &[0.5, 0.25], &links);
-        rest.hold(3, 16.0);
-        rest.join(3, 2, 32.0);
-        let mut meeting = Meeting::of(4);
-        assert_eq!((rest.take(0, &mut meeting), meeting.found.clone()), (0.25, vec![(1, 1.0), (3, 4.0)]));
-        assert_eq!((rest.take(1, &mut meeting), meeting.found.clone()), (0.5, vec![(2, 2.0)]));
-        let Beyond { links, ground } = rest.into_beyond();
-        assert_eq!(ground, [0.0, 16.0]);
-        let links: Vec<_> = links.iter().map(|l| (l.one, l.other, l.conductance)).collect();
-        assert_eq!(links, [(0, 1, 8.0), (0, 1, 32.0)]);
     }
 }

@@ -1,29 +1,12 @@
 //! The equations of pressures in a network of conductances, and their solution by conjugate gradients.
 //!
-//! Each slab of the network has a piece of them, and all cuts together have one: threads work on slabs side
-//! by side.
+//! Sums run in a fixed order, so that a solution is the same to the bit with any instructions.
+
+use std::ops::Range;
 
 use super::elimination::Factor;
-use super::joining::{Joining, NONE};
-use super::piece::{Columns, Piece, dot};
-use super::rounds::{Equations, NotConverged};
-use super::slabs::{Slabs, each};
-use super::stretch::Stretches;
-
-/// The residual is below this part of what flows in.
-pub(super) const CONVERGED: f64 = 1e-10;
-
-/// Asks for no less than rounding lets them come: a part of what flows in that a residual hardly gets below.
-pub(super) const CLOSEST: f64 = f64::EPSILON / 4.0;
-
-/// The residual that is taken, as part of what flows in, where rounding lets it come no closer.
-const BEST_OF_ROUNDING: f64 = 1e-6;
-
-/// What sums of each row may lose in rounding, as part of the flow through its known pressures.
-pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
-/// Where nothing conducts more than this, squares of what conducts less may be 0.
-const OUT_OF_RANGE: f64 = 1e-9;
+use super::rest::Link;
+use super::thresholds::{BEST_OF_ROUNDING, ROUNDING};
 
 /// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
 const ROUNDS: usize = 100;
@@ -31,6 +14,21 @@ const ROUNDS: usize = 100;
 /// The most rounds with a factor of another system: so many, or so many times those that its own system took,
 /// whichever is more.
 const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
+
+/// Sums that are made side by side: fixed, so that instructions change nothing.
+const SIDE_BY_SIDE: usize = 8;
+
+/// No row.
+const NONE: u32 = u32::MAX;
+
+/// Conductances so far apart that numbers do not tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NotConverged {
+    /// Rounds.
+    pub rounds: usize,
+    /// Residual over inflow.
+    pub residual: f64,
+}
 
 /// How well pressures fit their equations.
 #[derive(Clone, Copy, Debug)]
@@ -41,21 +39,11 @@ pub(super) struct Fit {
     /// through a cut, differs by more from that of the exact pressures: a unit of flow that is fed into a
     /// void passes no constriction more than once.
     pub missing: f64,
-    /// Rounds that it took.
-    pub rounds: usize,
-}
-
-impl Fit {
-    /// In the unit of conductance that a system had before it was multiplied by `unit`.
-    fn over(self, unit: f64) -> Self {
-        Self { missing: self.missing / unit, ..self }
-    }
 }
 
 /// A factor that serves one system after another of the same rows.
 pub(super) struct Kept {
-    /// By piece.
-    factors: Vec<Factor>,
+    factor: Factor,
     /// Rounds that the system took that it is of.
     pub rounds: usize,
     /// Exits that have closed since.
@@ -64,124 +52,89 @@ pub(super) struct Kept {
 
 /// The equations of the voids inside: a row for each.
 pub(super) struct System {
-    /// Void by row: slab after slab, and then cuts.
+    /// Void by row.
     void: Vec<u32>,
     /// Row by void, or [`NONE`].
     row_of: Vec<u32>,
-    /// By slab; and at last that of the cuts.
-    pieces: Vec<Piece>,
-    /// The power of two that conductances are multiplied by, once it is known.
-    unit: Option<f64>,
-    /// By piece: the most that a row conducts.
-    largest: Vec<f64>,
+    /// Conductances between rows.
+    links: Vec<Link>,
+    /// By row: conductance to pressures that are known.
+    ground: Vec<f64>,
+    /// By row: flow in from where pressure is known.
+    inflow: Vec<f64>,
+}
+
+/// The numbers of conjugate gradients, by row.
+struct Columns {
+    pressure: Vec<f64>,
+    /// What is missing of the right side.
+    residual: Vec<f64>,
+    /// Where the next step goes.
+    direction: Vec<f64>,
+    /// The matrix times one of them.
+    product: Vec<f64>,
+    /// The residual, solved by the factor.
+    solved: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
 impl System {
-    /// The voids `inside`, joined with nothing yet; with room for so many links in each piece.
-    pub(super) fn of(slabs: &Slabs, inside: impl Fn(u32) -> bool, links: impl Fn(usize) -> usize) -> Self {
-        let mut void = Vec::with_capacity(slabs.order().len());
-        let mut row_of = vec![NONE; slabs.order().len()];
-        let begin: Vec<usize> = std::iter::once(0)
-            .chain(slabs.begin().windows(2).map(|part| {
-                void.extend(slabs.order()[part[0]..part[1]].iter().copied().filter(|&v| inside(v)));
-                void.len()
-            }))
-            .collect();
-        void.iter().zip(0u32..).for_each(|(&v, row)| row_of[v as usize] = row);
-        let number = slabs.number();
-        let (cuts, rows) = (begin[number], void.len());
-        // A slab lies between the cut before it and the one after it.
-        let met = |slab: usize| {
-            let cuts = slabs.cuts_of(slab);
-            begin[cuts.start]..begin[cuts.end]
-        };
-        let slab = |slab: usize| {
-            let met = met(slab);
-            Piece::new(begin[slab]..begin[slab + 1], met.start - cuts..met.end - cuts, links(slab))
-        };
-        let mut pieces: Vec<Piece> = (0..number).map(slab).collect();
-        pieces.push(Piece::new(cuts..rows, 0..0, links(number)));
-        let largest = vec![0.0; pieces.len()];
-        Self { void, row_of, pieces, unit: None, largest }
-    }
-
-    /// The voids `inside` of so many in one piece, in which `fill` joins them.
-    pub(super) fn in_one(
-        voids: usize,
-        inside: impl Fn(u32) -> bool,
-        fill: impl Fn(&mut Joining) + Sync,
-    ) -> Self {
-        let mut system = Self::of(&Slabs::one(voids), inside, |_| 0);
-        system.fill(|at| at == 0, |_, joining| fill(joining));
+    /// The equations of the voids `inside` of so many, which `fill` joins.
+    pub(super) fn new(voids: usize, inside: impl Fn(u32) -> bool, fill: impl FnOnce(&mut Self)) -> Self {
+        let void: Vec<u32> = (0..voids as u32).filter(|&void| inside(void)).collect();
+        let mut row_of = vec![NONE; voids];
+        void.iter().zip(0..).for_each(|(&void, row)| row_of[void as usize] = row);
+        let zeros = vec![0.0; void.len()];
+        let mut system = Self { void, row_of, links: Vec::new(), ground: zeros.clone(), inflow: zeros };
+        fill(&mut system);
         system
     }
 
-    /// Joins voids in pieces, each by itself: that of a slab in which one of two stands, else that of the
-    /// cuts, which is the last. What was joined in these before is forgotten, and other pieces stay.
-    pub(super) fn fill(
-        &mut self,
-        is_wanted: impl Fn(usize) -> bool + Sync,
-        fill: impl Fn(usize, &mut Joining) + Sync,
-    ) {
-        let cuts = self.cuts();
-        let Self { row_of, pieces, unit, largest, .. } = self;
-        let mut pieces: Vec<_> = pieces.iter_mut().zip(largest).collect();
-        each(&mut pieces, |at, (piece, largest)| {
-            if is_wanted(at) {
-                piece.clear();
-                fill(at, &mut Joining { row_of, cuts, piece });
-                unit.iter().for_each(|&unit| piece.scale(unit));
-                **largest = piece.largest();
-            }
-        });
+    fn row(&self, void: u32) -> Option<u32> {
+        Some(self.row_of[void as usize]).filter(|&row| row != NONE)
     }
 
-    /// Whether the power of two still suits what conducts now.
-    pub(super) fn is_in_range(&self) -> bool {
-        self.unit.is_none() || self.largest.iter().any(|&largest| largest > OUT_OF_RANGE)
+    /// Joins two voids. One that is not inside has pressure 0, and between two of these nothing is asked; nor
+    /// does a void lead to itself.
+    pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
+        match [one, other].map(|void| self.row(void)) {
+            [None, None] => {}
+            [Some(row), None] | [None, Some(row)] => self.ground[row as usize] += conductance,
+            [Some(one), Some(other)] if one == other => {}
+            [Some(one), Some(other)] => self.links.push(Link { one, other, conductance }),
+        }
     }
 
-    /// The first row of cuts.
-    fn cuts(&self) -> usize {
-        self.pieces.last().map_or(0, |cuts| cuts.rows.start)
+    /// Joins a void that is inside with a known pressure.
+    pub(super) fn hold(&mut self, void: u32, conductance: f64, pressure: f64) {
+        let row = self.row(void).expect("it is inside") as usize;
+        self.ground[row] += conductance;
+        self.inflow[row] += conductance * pressure;
+    }
+
+    /// Lets so much flow into a void, if it is inside.
+    pub(super) fn feed(&mut self, void: u32, inflow: f64) {
+        if let Some(row) = self.row(void) {
+            self.inflow[row as usize] += inflow;
+        }
     }
 
     /// Multiplies both sides by a power of two, which changes no digit of a solution, so that squares of very
     /// large and very small conductances are numbers still. Gives that power.
     fn normalise(&mut self) -> f64 {
-        if let Some(unit) = self.unit {
-            return unit;
+        let mut diagonal = self.ground.clone();
+        for link in &self.links {
+            diagonal[link.one as usize] += link.conductance;
+            diagonal[link.other as usize] += link.conductance;
         }
-        let largest = self.largest.iter().copied().fold(0.0, f64::max);
+        let largest = diagonal.into_iter().fold(0.0, f64::max);
         if !(largest > 0.0 && largest.is_finite()) {
             return 1.0;
         }
         let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
-        each(&mut self.pieces, |_, piece| piece.scale(unit));
-        self.largest.iter_mut().for_each(|largest| *largest *= unit);
-        *self.unit.insert(unit)
-    }
-
-    /// The size of what flows in.
-    fn inflow(&self) -> f64 {
-        self.pieces.iter().map(|piece| dot(&piece.inflow, &piece.inflow)).sum::<f64>().sqrt()
-    }
-
-    /// Brings pressures close to the solution, where stretches around the slabs in which so many
-    /// constrictions changed will do; which slabs these are.
-    pub(super) fn improve(
-        &self,
-        pressure: &mut [f64],
-        within: f64,
-        stretches: &mut Stretches,
-        changed: &[usize],
-    ) -> Option<Vec<bool>> {
-        let mut columns = self.columns(pressure);
-        let solved = stretches.improve(&self.equations(), &mut columns, within * self.inflow(), changed);
-        if solved.is_some() {
-            self.put(&columns, pressure);
-        }
-        solved
+        let sides = self.ground.iter_mut().chain(&mut self.inflow);
+        sides.chain(self.links.iter_mut().map(|link| &mut link.conductance)).for_each(|g| *g *= unit);
+        unit
     }
 
     /// Conjugate gradients from the pressures that there are, and again from where they end while what they
@@ -189,123 +142,156 @@ impl System {
     /// rounding lets it come no closer. What is kept is a factor of nearly this system; where there is none,
     /// or it takes too many rounds, one of this system is made and left there.
     pub(super) fn solve(
-        &mut self,
+        mut self,
         pressure: &mut [f64],
         layers: usize,
         within: f64,
         kept: &mut Option<Kept>,
     ) -> Result<Fit, NotConverged> {
         let unit = self.normalise();
-        let scale = self.inflow();
+        let in_unit = |fit: Fit| Fit { missing: fit.missing / unit, ..fit };
+        let scale = dot(&self.inflow, &self.inflow).sqrt();
         if self.void.is_empty() || scale == 0.0 {
             let mut columns = self.columns(pressure);
-            self.equations().find_residual(&mut columns);
-            return Ok(self.fit(&columns, 0.0, 0).over(unit));
+            self.find_residual(&mut columns);
+            return Ok(in_unit(self.fit(&columns, 0.0)));
         }
         if !scale.is_finite() {
             return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
         }
-        if let Some(Kept { factors, rounds, closed }) = kept.take() {
+        if let Some(Kept { factor, rounds, closed }) = kept.take() {
             let [least, times] = ROUNDS_OF_ANOTHER;
-            let mut others = Some(factors);
             let most = least.max(times * rounds);
-            if let Ok(fit) = self.solve_within(pressure, scale, within, &mut others, most) {
-                *kept = others.map(|factors| Kept { factors, rounds, closed });
-                return Ok(fit.over(unit));
+            let mut factor = Some(factor);
+            if let Ok((fit, _)) = self.solve_within(pressure, scale, within, &mut factor, most) {
+                *kept = factor.map(|factor| Kept { factor, rounds, closed });
+                return Ok(in_unit(fit));
             }
         }
-        let mut factors = None;
+        let mut factor = None;
         let most = ROUNDS * (layers + 100);
-        let fit = self.solve_within(pressure, scale, within, &mut factors, most)?;
-        *kept = factors.map(|factors| Kept { factors, rounds: fit.rounds, closed: 0 });
-        Ok(fit.over(unit))
+        let (fit, rounds) = self.solve_within(pressure, scale, within, &mut factor, most)?;
+        *kept = factor.map(|factor| Kept { factor, rounds, closed: 0 });
+        Ok(in_unit(fit))
     }
 
     /// Columns that begin with these pressures, by void.
-    fn columns(&self, pressure: &[f64]) -> Vec<Columns> {
-        let mut all = self.equations().columns();
-        each(&mut all, |at, own| {
-            let voids = &self.void[self.pieces[at].rows.clone()];
-            own.x.iter_mut().zip(voids).for_each(|(x, &v)| *x = pressure[v as usize]);
-        });
-        all
-    }
-
-    /// Puts the pressures of columns to their voids.
-    fn put(&self, columns: &[Columns], pressure: &mut [f64]) {
-        for (piece, own) in self.pieces.iter().zip(columns) {
-            let voids = &self.void[piece.rows.clone()];
-            voids.iter().zip(&own.x).for_each(|(&v, &p)| pressure[v as usize] = p);
+    fn columns(&self, pressure: &[f64]) -> Columns {
+        let zeros = || vec![0.0; self.void.len()];
+        Columns {
+            pressure: self.void.iter().map(|&void| pressure[void as usize]).collect(),
+            residual: zeros(),
+            direction: zeros(),
+            product: zeros(),
+            solved: zeros(),
+            scratch: zeros(),
         }
     }
 
     /// How well the pressures of these columns fit, whose residual is so large over the inflow.
-    fn fit(&self, columns: &[Columns], part: f64, rounds: usize) -> Fit {
-        let sum = |flows: &mut dyn Iterator<Item = f64>| flows.map(f64::abs).sum::<f64>();
-        let (mut missing, mut known) = (0.0, 0.0);
-        for (piece, own) in self.pieces.iter().zip(columns) {
-            missing += sum(&mut own.residual.iter().copied());
-            known += sum(&mut piece.ground.iter().zip(&own.x).map(|(ground, x)| ground * x))
-                + sum(&mut piece.inflow.iter().copied());
-        }
-        Fit { residual: part, missing: missing + ROUNDING * known, rounds }
+    fn fit(&self, columns: &Columns, residual: f64) -> Fit {
+        let off: f64 = columns.residual.iter().copied().map(f64::abs).sum();
+        let held = self.ground.iter().zip(&columns.pressure).map(|(ground, p)| (ground * p).abs());
+        let known = held.sum::<f64>() + self.inflow.iter().copied().map(f64::abs).sum::<f64>();
+        Fit { residual, missing: off + ROUNDING * known }
     }
 
-    /// The same in at most so many rounds; pressures stay where these do not suffice.
+    /// The fit, and the rounds that it took: at most so many. Pressures stay where these do not suffice.
     fn solve_within(
         &self,
         pressure: &mut [f64],
         scale: f64,
         within: f64,
-        factors: &mut Option<Vec<Factor>>,
+        factor: &mut Option<Factor>,
         most: usize,
-    ) -> Result<Fit, NotConverged> {
-        let equations = self.equations();
+    ) -> Result<(Fit, usize), NotConverged> {
         let mut columns = self.columns(pressure);
         let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
-            let size = equations.find_residual(&mut columns);
+            let size = self.find_residual(&mut columns);
             let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * within * scale;
             // Closer than rounding lets them come they do not get.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
-                self.put(&columns, pressure);
-                return Ok(self.fit(&columns, size / scale, rounds));
+                self.void.iter().zip(&columns.pressure).for_each(|(&v, &p)| pressure[v as usize] = p);
+                return Ok((self.fit(&columns, size / scale), rounds));
             }
             if size > 0.5 * before {
                 return Err(NotConverged { rounds, residual: size / scale });
             }
             before = size;
-            let factors = factors.get_or_insert_with(|| self.factors());
-            let factors: Vec<&Factor> = factors.iter().collect();
-            rounds = equations.descend(&factors, &mut columns, [size, scale, within], rounds..most)?;
+            let factor = factor.get_or_insert_with(|| Factor::new(&self.ground, &self.links));
+            rounds = self.descend(factor, &mut columns, [size, scale, within], rounds..most)?;
         }
     }
 
-    /// The equations of all slabs.
-    pub(super) fn equations(&self) -> Equations<'_> {
-        let (cuts, slabs) = self.pieces.split_last().expect("cuts have a piece, if an empty one");
-        Equations { slabs: slabs.iter().map(|piece| (piece, piece.met.clone())).collect(), cuts }
+    /// The matrix times a column. Link by link: loops over those of each row would end where no processor
+    /// expects it.
+    fn times(&self, x: &[f64], out: &mut [f64]) {
+        out.iter_mut().zip(self.ground.iter().zip(x)).for_each(|(out, (ground, x))| *out = ground * x);
+        for &Link { one, other, conductance } in &self.links {
+            let flow = conductance * (x[one as usize] - x[other as usize]);
+            out[one as usize] += flow;
+            out[other as usize] -= flow;
+        }
     }
 
-    /// A factor of each piece: of slabs side by side, and of the cuts with what is left of slabs between
-    /// them.
-    fn factors(&self) -> Vec<Factor> {
-        let equations = self.equations();
-        let mut of_slabs: Vec<_> = equations.slabs.iter().map(|_| None).collect();
-        each(&mut of_slabs, |at, made| {
-            let Piece { met, links, ground, .. } = equations.slabs[at].0;
-            *made = Some(Factor::new(ground, met.len(), links));
-        });
-        let (mut factors, left): (Vec<_>, Vec<_>) = of_slabs.into_iter().flatten().unzip();
-        factors.push(equations.factor_of_cuts(&left));
-        factors
+    /// What is missing of the right side, and its size.
+    fn find_residual(&self, columns: &mut Columns) -> f64 {
+        let Columns { pressure, residual, product, .. } = columns;
+        self.times(pressure, product);
+        let sides = self.inflow.iter().zip(&*product);
+        residual.iter_mut().zip(sides).for_each(|(residual, (b, a))| *residual = b - a);
+        dot(residual, residual).sqrt()
     }
+
+    /// Conjugate gradients until the residual that they carry along, which begins so large, is small; the
+    /// rounds that there were.
+    fn descend(
+        &self,
+        factor: &Factor,
+        columns: &mut Columns,
+        [mut size, scale, within]: [f64; 3],
+        allowed: Range<usize>,
+    ) -> Result<usize, NotConverged> {
+        let Columns { pressure, residual, direction, product, solved, scratch } = columns;
+        direction.fill(0.0);
+        let mut before = 0.0;
+        for round in allowed.start.. {
+            if size <= within * scale {
+                return Ok(round);
+            }
+            if round >= allowed.end || !size.is_finite() {
+                return Err(NotConverged { rounds: round, residual: size / scale });
+            }
+            factor.solve(residual, scratch, solved);
+            let now = dot(residual, solved);
+            let keep = if round == allowed.start { 0.0 } else { now / before };
+            before = now;
+            direction.iter_mut().zip(&*solved).for_each(|(d, s)| *d = s + keep * *d);
+            self.times(direction, product);
+            let step = now / dot(direction, product);
+            pressure.iter_mut().zip(&*direction).for_each(|(x, d)| *x += step * d);
+            residual.iter_mut().zip(&*product).for_each(|(r, p)| *r -= step * p);
+            size = dot(residual, residual).sqrt();
+        }
+        unreachable!("rounds are counted up to the most")
+    }
+}
+
+/// Sum of products.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (a, b) in a.chunks(SIDE_BY_SIDE).zip(b.chunks(SIDE_BY_SIDE)) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    sums.iter().sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::flow::thresholds::CONVERGED;
 
     /// A column of voids that each meet themselves, too: the same bits, where the factor knew of loops it
     /// would take hundreds of rounds.
@@ -313,7 +299,7 @@ mod tests {
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
         let of = |loops: bool| {
-            let mut system = System::in_one(
+            let system = System::new(
                 VOIDS as usize,
                 |_| true,
                 |system| {
@@ -340,7 +326,7 @@ mod tests {
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
         let of = |wide: u32, kept: &mut Option<Kept>| {
-            let mut system = System::in_one(
+            let system = System::new(
                 (SIDE * SIDE) as usize,
                 |_| true,
                 |system| {
@@ -384,7 +370,7 @@ mod tests {
     #[test]
     fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
         const VOIDS: u32 = 300;
-        let mut system = System::in_one(
+        let system = System::new(
             VOIDS as usize + 1,
             |_| true,
             |system| {

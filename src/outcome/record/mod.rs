@@ -148,22 +148,9 @@ pub struct ArchingRecord {
     pub basis: String,
     /// Sizes of a constriction by that of a particle between which arches form.
     pub range_of_ratio: [f64; 2],
-    /// Volume of particles by volume of voids with which the base arrives; `None` where the law is of dense
-    /// flow, or where each void has its own.
+    /// Solids fraction of the suspension that enters the filter, volume of particles by volume of suspension;
+    /// `None` where the law does not depend on it.
     pub concentration: Option<f64>,
-    /// How the concentration of each void is worked out, where it is.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub by_void: Option<ArchingByVoidRecord>,
-}
-
-/// How the concentration of each void is worked out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ArchingByVoidRecord {
-    /// Diameter of a sphere with the volume of a void, mm.
-    pub void_mm: f64,
-    /// Which size counts: "own", "void-mean" or "void-d85".
-    pub size: String,
 }
 
 /// One new network, walked once or twice.
@@ -233,6 +220,13 @@ pub struct Run {
     /// Permeability when the run ends over that of the clean filter, where water flows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k_over_k0: Option<f64>,
+    /// Times that the flow was solved, where water flows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_solutions: Option<u64>,
+    /// The most of the inflow that went through constrictions which had closed since the flow was solved,
+    /// summed over the filter: so many on the mean way of a particle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_closed_most: Option<f64>,
     /// Permeability of the clean filter (mm2), where the network knows its lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k0_mm2: Option<f64>,

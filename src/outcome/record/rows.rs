@@ -13,6 +13,9 @@ rows! {
         pub increment: u64,
         /// Permeability over that of the clean filter.
         pub k_over_k0: f64,
+        /// Part of the inflow that went through constrictions which had closed since the flow was solved
+        /// before, summed over the filter: so many on the mean way of a particle.
+        pub closed: f64,
     }
 
     /// One row of `series.csv`: the counts after an increment.
@@ -116,7 +119,7 @@ mod tests {
     #[test]
     fn a_table_of_a_run_has_the_same_columns_wherever_it_is_written() {
         let (replicate, run, increment) = (1, 2, 3);
-        has_its_columns(FlowRow { replicate, run, increment, k_over_k0: 0.5 });
+        has_its_columns(FlowRow { replicate, run, increment, k_over_k0: 0.5, closed: 0.01 });
         has_its_columns(SeriesRow {
             replicate,
             run,

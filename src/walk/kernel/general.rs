@@ -4,7 +4,6 @@ use crate::network::{END, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
 use crate::walk::Arching;
 use crate::walk::arches::Jam;
-use crate::walk::crowding::{Crowd, VoidCrowd};
 use crate::walk::exits::{General, NONE, WAIT};
 use crate::walk::merge::Events;
 
@@ -33,8 +32,6 @@ pub(super) fn step(
 /// How the particles of a chunk jam, and the stream of that.
 pub(super) struct Jams<'a> {
     arching: &'a Arching,
-    /// The particles in each void, where the law depends on them.
-    crowd: Option<&'a Crowd>,
     lanes: Lanes,
     extension: Extension,
     block: [u64; LANES],
@@ -42,21 +39,20 @@ pub(super) struct Jams<'a> {
 
 impl<'a> Jams<'a> {
     /// Before the first particle.
-    pub fn new(arching: &'a Arching, crowd: Option<&'a Crowd>, lanes: Lanes) -> Self {
-        Self { arching, crowd, extension: lanes.extension(), lanes, block: [0; LANES] }
+    pub fn new(arching: &'a Arching, lanes: Lanes) -> Self {
+        Self { arching, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
 
-    /// The jam of the particle at place `j`, in void `from`, in this exit, which it fits; so many before it
-    /// still move. `None` where it passes.
+    /// The jam of the particle at place `j` in this exit, which it fits; so many before it still move. `None`
+    /// where it passes.
     #[inline]
-    fn of(&self, j: usize, from: u32, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
+    fn of(&self, j: usize, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
         let draw = draw16(&self.block, j % DRAWS_PER_BLOCK);
         if d * self.arching.reach()[Arching::class_of(draw)] <= width {
             return None;
         }
-        let crowd = self.crowd.map_or_else(VoidCrowd::default, |crowd| crowd.of_void(from));
         let word = self.extension.complete(draw, j as u64);
-        let particles = self.arching.jams(width, d, word, crowd)?;
+        let particles = self.arching.jams(width, d, word)?;
         Some(Jam { rank: rank as u32, exit, diameter: d, particles })
     }
 }
@@ -122,7 +118,7 @@ fn step_all(
                 events.stopped.push((exit, d));
                 continue;
             }
-            let jam = jams.as_ref().and_then(|jams| jams.of(j, from, (exit, width), d, kept));
+            let jam = jams.as_ref().and_then(|jams| jams.of(j, (exit, width), d, kept));
             if let Some(jam) = jam {
                 events.jams.push(jam);
                 continue;

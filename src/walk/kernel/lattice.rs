@@ -20,7 +20,6 @@ use std::ops::Range;
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::arches::Jam;
 use crate::walk::arching::{Arching, Reach};
-use crate::walk::crowding::VoidCrowd;
 use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
 use crate::walk::merge::Events;
 use crate::walk::reads::{Plain, Reads};
@@ -327,7 +326,7 @@ impl<'a> LatticeChunk<'a> {
         let Some((arching, lanes)) = &self.jams else { return false };
         let word = lanes.extension().complete(draw, index as u64);
         let width = self.exits.widths[exit as usize];
-        let particles = arching.jams(width, diameter, word, VoidCrowd::default());
+        let particles = arching.jams(width, diameter, word);
         let jam = particles.map(|particles| Jam { rank: rank as u32, exit, diameter, particles });
         self.events.jams.extend(jam);
         jam.is_some()

@@ -15,13 +15,12 @@ mod tests;
 
 use super::Isa;
 use super::chunks::{self, ChunkColumns};
-use super::crowding::Crowd;
 use super::exits::{Form, OpenExits};
 use super::insert::Insertion;
 use super::merge::Events;
 use super::openings::{Ways, Weighed};
 use super::reads::{Classed, Jamming, Plain, Reads, Widths};
-use super::{Arching, ExitTable, State, Supply};
+use super::{ExitTable, State, Supply};
 use crate::network::Network;
 use crate::stream::{Key, Lanes, Purpose};
 use general::Jams;
@@ -48,13 +47,6 @@ pub(super) fn step(
     let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
     let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
     let (size, receiving) = (supply.single_size(), insertion.first_chunk());
-    // Where arches depend on who is in a void, all are in before any moves.
-    let crowd = supply.arching().and_then(Arching::of_void).map(|by_void| {
-        let particles = &mut state.particles;
-        chunks::for_each(particles, size, events, receiving, effort, |mut of| insertion.append(&mut of));
-        let chunks = (0..particles.live.len()).map(|chunk| particles.chunk(chunk));
-        Crowd::of(chunks, state.passive_limit, network.voids(), by_void.size)
-    });
     let exits = OpenExits {
         network,
         table,
@@ -66,13 +58,10 @@ pub(super) fn step(
         widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
         passive_limit: state.passive_limit,
         arching: supply.arching(),
-        crowd: crowd.as_ref(),
     };
     let classes = &state.classes;
     chunks::for_each(&mut state.particles, size, events, receiving, effort, |mut columns| {
-        if crowd.is_none() {
-            insertion.append(&mut columns);
-        }
+        insertion.append(&mut columns);
         let ChunkColumns { chunk, void, diameter, live, events } = columns;
         let moving = *live as usize;
         if moving == 0 {
@@ -119,7 +108,7 @@ fn step_chunk(
             }
         }
         Form::General(table) => {
-            let jams = exits.arching.map(|arching| Jams::new(arching, exits.crowd, jam_lanes(key)));
+            let jams = exits.arching.map(|arching| Jams::new(arching, jam_lanes(key)));
             general::step(exits.network, table, jams, key, void, diameter, events)
         }
     }

@@ -7,7 +7,7 @@ use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
 use crate::walk::arches::Jam;
-use crate::walk::{Isa, LAWS, SizeClasses, VoidCrowd, exits};
+use crate::walk::{Arching, Isa, LAWS, SizeClasses, exits};
 
 /// A lattice, and what is blocked in it.
 #[derive(Clone, Debug)]
@@ -62,7 +62,6 @@ fn after(scene: &Scene, key: Key, (isa, reading): Kernel, void: &[u32], diameter
         widths: network.diameters(),
         passive_limit: arching.as_ref().map_or(state.passive_limit, |_| 0.0),
         arching: arching.as_ref(),
-        crowd: None,
     };
     let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
     let mut events = Events::default();
@@ -197,7 +196,7 @@ fn by_definition(scene: &Scene, key: Key, reading: Reading, void: &[u32], diamet
         let constriction = network.exits(from).start + exit;
         let width = network.diameters()[constriction];
         let jams = arching.as_ref().filter(|_| d <= width);
-        if let Some(particles) = jams.and_then(|law| law.jams(width, d, jam_draw, VoidCrowd::default())) {
+        if let Some(particles) = jams.and_then(|law| law.jams(width, d, jam_draw)) {
             let (rank, exit) = (after.void.len() as u32, constriction as u32);
             after.jams.push(Jam { rank, exit, diameter: d, particles });
             continue;
