@@ -119,7 +119,7 @@ fn a_walk_through_a_thick_network_goes_on() {
         }
     });
     assert!(whole.increment == LAST && whole.tally.blocked > 500, "{:?}", whole.tally);
-    assert!(found.0.len() == 1 && found.1.k_over_k0.len() > 8, "{:?}", found.1);
+    assert!(found.0.len() == 1 && found.1.solutions.len() > 8, "{:?}", found.1);
     let saved = newest(&root.path().join("broken off"), "x", &Identity::default()).unwrap().0.unwrap();
     let mut state = fresh(&network, &supply, &open, 3, 1);
     state.restore(&network, &supply, &saved).unwrap();

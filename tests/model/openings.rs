@@ -199,14 +199,14 @@ fn water_passes_a_blocked_constriction_by_its_openings() {
         State::new(&network, &supply, SizeClasses::logarithmic(1.0, 2.0, 2), Clogged::none(&network), 3, 1);
     let mut walk = Walk::new(&network, &supply, &state);
     walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-    let k = walk.end(&state).unwrap().1.unwrap().k_over_k0;
+    let k = walk.end(&state).unwrap().1.unwrap().solutions;
     // The inlet stops them all.
     let kept = 3.0 * residual_opening(1.0, f64::from(1.7f32)).powi(4);
     let resistance = |of: f64| of + 1.0 / conductance[1] + 1.0 / conductance[2];
     let wanted = resistance(1.0) / resistance(1.0 / kept);
-    let last = k.last().unwrap().1;
+    let last = k.last().unwrap().k_over_k0;
     assert!((last / wanted - 1.0).abs() < 1e-6, "{last} and not {wanted}");
-    assert!(k[0].1 == 1.0 && (0.1..0.9).contains(&last));
+    assert!(k[0].k_over_k0 == 1.0 && (0.1..0.9).contains(&last));
     assert_eq!((state.tally.retained_in_constrictions, state.tally.blocked), (20, 1));
 }
 
@@ -229,7 +229,7 @@ fn a_filter_that_holds_is_not_sealed() {
         );
         let mut walk = Walk::new(&network, &supply, &state);
         walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-        walk.end(&state).unwrap().1.unwrap().k_over_k0.last().unwrap().1
+        walk.end(&state).unwrap().1.unwrap().solutions.last().unwrap().k_over_k0
     });
     assert_eq!(closed, 0.0);
     assert!((1e-3..0.9).contains(&open), "{open}");

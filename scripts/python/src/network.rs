@@ -307,7 +307,6 @@ impl Network {
             let (inner, Some(flow)) = self.with_directions()? else {
                 return Err(refused("no water flows where particles choose by area"));
             };
-            let upstream = inner.upstream();
             let flux = |&exit: &u32| match exit {
                 NO_EXIT => 0.0,
                 exit => {
