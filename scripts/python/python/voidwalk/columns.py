@@ -137,12 +137,16 @@ class Flow(TypedDict):
         Increments that were done.
     k_over_k0
         Permeability over that of the clean filter.
+    closed_flow_fraction
+        Part of the inflow that went through constrictions which had closed since the flow was solved before,
+        summed over the filter: so many on the mean way of a particle.
     """
 
     replicate: Counts
     run: Counts
     increment: Counts
     k_over_k0: Floats
+    closed_flow_fraction: Floats
 
 
 class RetainedByVoid(TypedDict):
