@@ -7,7 +7,6 @@ use super::exit::{JudgedAnswer, accept};
 use super::print::{as_it_is, counted, json, plain, shown, to_stdout};
 use super::progress::followed;
 use super::start::START;
-use crate::outcome::quantity::SizeUnit;
 #[cfg(feature = "xlsx")]
 use crate::report::write_verdict_workbook;
 #[cfg(feature = "xlsx")]
@@ -106,7 +105,7 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
+    for (name, said) in first_lines(outcome, run.unit) {
         line(format!("{name}: {}", plain(&said)));
     }
     line(left_out_line(&outcome.model_leaves_out));

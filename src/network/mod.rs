@@ -40,7 +40,7 @@ pub use percolation::percolation_threshold;
 pub use reach::Reachability;
 pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE};
 
-use twins::Undirected;
+use twins::{Undirected, hash_column};
 
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;
@@ -193,14 +193,4 @@ impl Network {
         }
         finest
     }
-}
-
-/// Adds a column to a hash: its length, and its numbers as the same bytes on every machine.
-fn hash_column<T: Copy, const N: usize>(
-    hash: &mut xxhash_rust::xxh3::Xxh3,
-    column: &[T],
-    bytes: impl Fn(T) -> [u8; N],
-) {
-    hash.update(&(column.len() as u64).to_le_bytes());
-    column.iter().for_each(|&number| hash.update(&bytes(number)));
 }

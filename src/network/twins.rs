@@ -1,7 +1,6 @@
 //! What a network has besides where its constrictions have no direction of their own: columns by exit.
 
 use super::exit_rule::ExitRule;
-use super::hash_column;
 
 /// The twin of an exit that has none.
 pub(super) const NO_TWIN: u32 = u32::MAX;
@@ -40,4 +39,14 @@ impl Undirected {
         hash.update(&flow_tolerance.to_bits().to_le_bytes());
         hash_column(hash, volume, |number| number.to_le_bytes());
     }
+}
+
+/// Adds a column to a hash: its length, and its numbers as the same bytes on every machine.
+pub(super) fn hash_column<T: Copy, const N: usize>(
+    hash: &mut xxhash_rust::xxh3::Xxh3,
+    column: &[T],
+    bytes: impl Fn(T) -> [u8; N],
+) {
+    hash.update(&(column.len() as u64).to_le_bytes());
+    column.iter().for_each(|&number| hash.update(&bytes(number)));
 }

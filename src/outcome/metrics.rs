@@ -168,7 +168,7 @@ impl Recorded {
             run: of.run,
             increment: solution.increment,
             k_over_k0: solution.k_over_k0,
-            closed: solution.closed,
+            closed_flow_fraction: solution.closed,
         });
         let mut recorded = Self {
             series: series.collect(),

@@ -107,7 +107,7 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
-/// The page as text. `verdict` and `gradations` stand on its first sheet, `figures` below it.
+/// The page as text. `gradations` stands on its first sheet, `verdict` and `figures` below it.
 fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Drawn]) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);

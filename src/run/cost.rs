@@ -96,8 +96,8 @@ const GRAIN_BYTES: u64 = 20_000;
 /// Bytes of the program itself and of a page that is being written.
 const PROGRAM_BYTES: u64 = 100_000_000;
 
-/// Increments after which the flow is solved again.
-const SOLVED_EVERY: f64 = 10.0;
+/// Increments after which the flow is solved again, as long as constrictions close.
+const SOLVED_EVERY: f64 = 1.5;
 
 /// Solving the flow takes so long for a constriction (s): 0.185 s for 288,000 of them.
 const SOLVE_S: f64 = 6.5e-7;

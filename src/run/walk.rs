@@ -56,6 +56,8 @@ pub struct FinishedRun {
     pub folder: PathBuf,
     /// What came of it, as `outcome.json` says.
     pub outcome: Outcome,
+    /// The unit of sizes that its scene asks for (`about.units`).
+    pub unit: SizeUnit,
 }
 
 /// Walks a scene and writes its folder; what a stopped run of this very scene has saved there is continued.
@@ -187,7 +189,7 @@ fn walk_here(
     let at = options.out.as_deref().unwrap_or(Path::new("."));
     let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    let unit = SizeUnit::of(case.is_scale_free(), false);
+    let unit = SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches());
     (callbacks.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
@@ -201,7 +203,7 @@ fn walk_here(
         callbacks.results(FolderKind::Run, folder.path())?;
         checkpoints::discard(folder.path())?;
         unfinished::end(&folder)?;
-        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome });
+        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, unit });
     }
     let told = || begun?.checkpoint_every?.parse().ok();
     let every = options.checkpoint_interval.or_else(told).unwrap_or_default();
@@ -222,7 +224,7 @@ fn walk_here(
     })?;
     checkpoints.clear()?;
     unfinished::end(&folder)?;
-    Ok(FinishedRun { folder: folder.path().to_owned(), outcome })
+    Ok(FinishedRun { folder: folder.path().to_owned(), outcome, unit })
 }
 
 /// Claims the folder of a run of a scene of these files, which must not go with what it replaces.

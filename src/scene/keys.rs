@@ -156,8 +156,9 @@ section! {
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
         /// Part of its conductance that a blocked constriction keeps, with water.
         pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
-        /// Water is solved again once the constrictions that have closed since carried this part of it, summed
-        /// over the filter: so many on the mean way of a particle. 0: as soon as any has closed. Default: 0.03.
+        /// Water is solved again once the constrictions that have closed since carried this part of it,
+        /// summed over the filter: so many on the mean way of a particle. 0: as soon as any has closed.
+        /// Default: 0.03.
         pub flow_tolerance: Option<f64> = None, off "0.03", within(0.0..=10.0, "a number from 0 to 10");
         /// On a lattice, conductance is proportional to this power of the diameter. Default: 4.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");

@@ -18,8 +18,7 @@ pub struct TableOptions {
     /// A first look: fewer replicates.
     pub quick: bool,
     /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
-    /// regrades
-    /// it, where `changes` do not say `base.regrade`.
+    /// regrades it, where `changes` do not say `base.regrade`.
     pub as_sampled: bool,
     /// Base and filter are taken as they are given, though their sizes look exchanged.
     pub as_given: bool,

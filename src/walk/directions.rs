@@ -3,12 +3,13 @@
 //! The flow is solved before the first increment, and at the beginning of an increment once the constrictions
 //! that have closed since the last time carried more of it than a tolerance: the sum over them of flux over
 //! inflow, which is how many of them a particle meets on its way, on average
-//! ([`Network::with_flow_tolerance`]). Where blocked constrictions leave openings, a constriction counts by the
-//! part of its conductance that it has lost. Where anything has closed it is solved after ten increments at
-//! the latest, so that no particle waits longer before ways that have closed, and once more at the end. In between directions
-//! stay as they are, and a particle in a void whose exits have all been blocked since waits where it is. When
-//! to solve follows from the history of changes alone, so a walk that continues from a checkpoint solves again
-//! what was solved before and gives directions each time, in the same order, to the same bits.
+//! ([`Network::with_flow_tolerance`]). Where blocked constrictions leave openings, a constriction counts by
+//! the part of its conductance that it has lost. Where anything has closed it is solved after ten increments
+//! at the latest, so that no particle waits longer before ways that have closed, and once more at the end. In
+//! between directions stay as they are, and a particle in a void whose exits have all been blocked since
+//! waits where it is. When to solve follows from the history of changes alone, so a walk that continues from
+//! a checkpoint solves again what was solved before and gives directions each time, in the same order, to the
+//! same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;

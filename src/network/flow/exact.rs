@@ -2,12 +2,12 @@
 //!
 //! A void is eliminated by joining its neighbours with one another: two of them by `g_j g_k / sum of g`. All
 //! numbers are positive and are multiplied, divided and added only, so each is known to a few roundings,
-//! however far conductances lie apart (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107). Pressures
-//! alone would not do: where a constriction conducts very well, those on its sides differ in digits that they
-//! do not have. So falls of pressure are found instead, from the last void to the first: the fall from a void
-//! to a neighbour is the mean of the falls from its neighbours to that one, weighted by what conducts there. A
-//! fall times a conductance is a part of the whole flow, and so no flux is wrong by more than some roundings of
-//! the whole.
+//! however far conductances lie apart (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107).
+//! Pressures alone would not do: where a constriction conducts very well, those on its sides differ in digits
+//! that they do not have. So falls of pressure are found instead, from the last void to the first: the fall
+//! from a void to a neighbour is the mean of the falls from its neighbours to that one, weighted by what
+//! conducts there. A fall times a conductance is a part of the whole flow, and so no flux is wrong by more
+//! than some roundings of the whole.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -14,15 +14,16 @@ pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub(super) const BEST_OF_ROUNDING: f64 = 1e-6;
 
 /// The mean flux of an inlet over what the residual may stand for, below which pressures are looked for more
-/// closely, and by elimination at last. Protects from fluxes of a filter that clogs which are mostly residual.
+/// closely, and by elimination at last. Protects from fluxes of a filter that clogs which are mostly
+/// residual.
 pub(super) const CLEAR: f64 = 1e4;
 
-/// The same where neither is possible: below it the flow is refused. Protects from a filter that seems to hold
-/// because no flux tells where particles go.
+/// The same where neither is possible: below it the flow is refused. Protects from a filter that seems to
+/// hold because no flux tells where particles go.
 pub(super) const RESOLVED: f64 = 30.0;
 
-/// Flow that fluxes may be wrong by, over the most that the network was found to conduct; beyond it the flow is
-/// refused.
+/// Flow that fluxes may be wrong by, over the most that the network was found to conduct; beyond it the flow
+/// is refused.
 pub(super) const KNOWN: f64 = 5e-7;
 
 /// The same over what passes now, for a reader of every flux.

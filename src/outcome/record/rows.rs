@@ -15,7 +15,7 @@ rows! {
         pub k_over_k0: f64,
         /// Part of the inflow that went through constrictions which had closed since the flow was solved
         /// before, summed over the filter: so many on the mean way of a particle.
-        pub closed: f64,
+        pub closed_flow_fraction: f64,
     }
 
     /// One row of `series.csv`: the counts after an increment.
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn a_table_of_a_run_has_the_same_columns_wherever_it_is_written() {
         let (replicate, run, increment) = (1, 2, 3);
-        has_its_columns(FlowRow { replicate, run, increment, k_over_k0: 0.5, closed: 0.01 });
+        has_its_columns(FlowRow { replicate, run, increment, k_over_k0: 0.5, closed_flow_fraction: 0.01 });
         has_its_columns(SeriesRow {
             replicate,
             run,
