@@ -90,6 +90,8 @@ pub struct Flow {
     noise: f64,
     /// The most that the network was found to conduct.
     most: f64,
+    /// Voids that were too many to eliminate; far fewer are tried again.
+    too_many: usize,
     /// What serves solution after solution.
     kept: Option<Kept>,
     /// By void: whether water flowed through it when the factor that is kept was first wanted.
@@ -135,6 +137,7 @@ impl Flow {
             missing: 0.0,
             noise: 0.0,
             most: 0.0,
+            too_many: usize::MAX,
             kept: None,
             inside: BitVec::new(),
         }
@@ -351,10 +354,16 @@ impl Flow {
         for (node, _) in nodes.iter_mut().zip(meets).filter(|&(_, &meets)| meets == THROUGH) {
             (*node, count) = (count, count + 1);
         }
+        if 2 * count as usize > self.too_many {
+            return false;
+        }
         (nodes[reservoir as usize], nodes[meets.len()]) = (count, count + 1);
         let node = |void: u32| nodes[void as usize];
         let links = self.conducting(meets).map(|(of, open)| (node(of.one), node(of.other), open));
-        let Some(found) = Eliminated::new(count as usize, links) else { return false };
+        let Some(found) = Eliminated::new(count as usize, links) else {
+            self.too_many = count as usize;
+            return false;
+        };
         let fall = |of: &Passage| match meets[of.one as usize] == THROUGH {
             true if self.open[of.exit as usize] > 0.0 => found.fall(node(of.one), node(of.other)),
             _ => 0.0,

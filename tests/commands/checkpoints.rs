@@ -45,7 +45,8 @@ fn shown(state: &State) -> String {
 #[test]
 fn a_walk_with_flow_goes_on_while_particles_wait() {
     let root = tempfile::tempdir().unwrap();
-    let network = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
+    // The flow is solved every ten increments: so many wait.
+    let network = network(4).undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap().with_flow_tolerance(1e9);
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     for (engine, cu, n) in
         [(Engine::Particles, 1.2, 3_000), (Engine::Counts, 2.0, 150_000), (Engine::Expected, 2.0, 150_000)]
@@ -74,58 +75,6 @@ fn a_walk_with_flow_goes_on_while_particles_wait() {
             assert_eq!(shown(&state), shown(&whole), "{engine:?}, from increment {increment}");
         }
     }
-}
-
-/// Through a thick network a pulse of particles goes, and the flow is solved near it: what was solved before is
-/// solved again in the same stretches, to the same bits.
-#[test]
-fn a_walk_through_a_thick_network_goes_on() {
-    const BROKEN_OFF: u64 = 190;
-    const LAST: u64 = 260;
-    let curve = voidwalk::constrictions::find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
-    let lattice = Network::cubic([12, 12, 420], &curve.in_mm(1.0).unwrap(), 1.0, 4).unwrap();
-    let network = lattice.undirected_lattice(ExitRule::Flux, 0.0, 4.0).unwrap();
-    let open: BitVec = BitVec::repeat(false, network.constrictions());
-    let sampler = SizeSampler::new(&Gradation::linear_from_dx(85.0, 0.25, 1.5).unwrap(), 1.0).unwrap();
-    let supply =
-        RunPlan::new(Engine::Expected, &network, &sampler, &open, 4000).supply(sampler, 40_000, 10, 3, 1);
-    let root = tempfile::tempdir().unwrap();
-    let keep = |name: &str, state: &State| {
-        let label = Label { generation: state.increment, ..Label::default() };
-        let folder = root.path().join(name);
-        fs::create_dir(&folder).unwrap();
-        save(&folder, "x", &label, &SavedState::new(state).sections()).unwrap();
-        folder
-    };
-    // What is kept of the last increment, the flow, and how exits weigh then.
-    let to_the_last = |name: &str, state: &mut State, see: &mut (dyn FnMut(&State) + Send)| {
-        let mut walk = Walk::new(&network, &supply, state);
-        let stopped = walk.run(state, &mut |state| {
-            see(state);
-            if state.increment == LAST { WalkControl::Stop } else { WalkControl::Continue }
-        });
-        assert!(stopped.is_err(), "the pulse is on its way still");
-        let (network, flow) = walk.end(state).unwrap();
-        let weights: Vec<u64> =
-            (0..network.constrictions()).map(|c| network.exit_weight(c).to_bits()).collect();
-        let folder = keep(name, state);
-        let files = fs::read_dir(folder).unwrap().map(|file| fs::read(file.unwrap().path()).unwrap());
-        (files.collect::<Vec<_>>(), flow.unwrap(), weights)
-    };
-    let mut whole = fresh(&network, &supply, &open, 3, 1);
-    let found = to_the_last("whole", &mut whole, &mut |state| {
-        if state.increment == BROKEN_OFF {
-            keep("broken off", state);
-        }
-    });
-    assert!(whole.increment == LAST && whole.tally.blocked > 500, "{:?}", whole.tally);
-    assert!(found.0.len() == 1 && found.1.solutions.len() > 8, "{:?}", found.1);
-    let saved = newest(&root.path().join("broken off"), "x", &Identity::default()).unwrap().0.unwrap();
-    let mut state = fresh(&network, &supply, &open, 3, 1);
-    state.restore(&network, &supply, &saved).unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let again = pool.install(|| to_the_last("resumed", &mut state, &mut |_| {}));
-    assert!(again == found, "state, flow or weights of exits differ");
 }
 
 #[test]

@@ -89,10 +89,14 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
             assert!((0.0..=1.0).contains(&k), "{k}");
             assert!(run["fullness_max"].as_f64().unwrap() >= 0.0);
             assert_eq!(run["trapped"], 0);
+            assert!(run["flow_solutions"].as_u64().unwrap() > 1 && run["flow_closed_most"].is_number());
         }
     }
     let flow = fs::read_to_string(root.path().join("one/flow.csv")).unwrap();
-    assert!(flow.starts_with("replicate,run,increment,k_over_k0\n1,1,0,1.0\n"), "{flow}");
+    assert!(
+        flow.starts_with("replicate,run,increment,k_over_k0,closed_flow_fraction\n1,1,0,1.0,0.0\n"),
+        "{flow}"
+    );
     // Again on other threads, and from what the folder keeps.
     done(&call(root.path(), &["run", "scene.toml", "--out", "three", "--threads", "3"]));
     done(&call(root.path(), &["run", "one/scene.toml", "--out", "again", "--threads", "2"]));
