@@ -7,7 +7,7 @@ use super::args::RulesArgs;
 use super::print::{plain, shown, to_copy, to_stdout};
 use crate::cases::refuse_twice;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::table::{Columns, Shown};
+use crate::outcome::table::{ColumnKind, Columns, Shown};
 use crate::run::{RunError, write_new};
 use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
@@ -62,7 +62,7 @@ fn paths(rows: &[BatchRow], filter: &Path) -> Vec<PathBuf> {
 /// The rows in aligned columns.
 pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     let columns: Vec<_> = columns.of_page().collect();
-    let mut lines = vec![columns.iter().map(|column| column.heading.clone()).collect::<Vec<_>>()];
+    let mut lines = vec![columns.iter().map(|column| column.heading.text.clone()).collect::<Vec<_>>()];
     let cell = |shown: Shown| [&[shown.text], &shown.below[..]].concat().join("; ");
     let cells = |row: &T| columns.iter().map(|column| plain(&cell((column.cell)(row)))).collect();
     lines.extend(rows.iter().map(cells));
@@ -70,9 +70,9 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     let mut text = String::new();
     for line in &lines {
-        let cell = |(at, cell): (usize, &String)| match columns[at].is_number {
-            true => format!("{cell:>0$}", widths[at]),
-            false => format!("{cell:<0$}", widths[at]),
+        let cell = |(at, cell): (usize, &String)| match columns[at].kind {
+            ColumnKind::Number => format!("{cell:>0$}", widths[at]),
+            _ => format!("{cell:<0$}", widths[at]),
         };
         let line: Vec<String> = line.iter().enumerate().map(cell).collect();
         // Writing to a string cannot fail.

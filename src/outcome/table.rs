@@ -1,13 +1,14 @@
 //! A table, described once, for its file and for a page: a column has a name in the file, a heading on the
-//! page if it stands there, and one way in which its cell is taken from a row.
+//! page if it stands there, and one way in which its cell is taken from a row. A table that is no file is
+//! described alike.
 //!
 //! Rows whose fields are the columns of a file are written by [`csv_of()`]. Of others each column is
 //! described: [`Columns`].
 //!
 //! ```
 //! use voidwalk::outcome::table::Columns;
-//! let of = Columns::default().column("case", |row: &(&str, f64)| row.0.to_owned()).headed("Case");
-//! let of = of.digits("ratio", 2, |row| Some(row.1)).headed("D15F/D85B");
+//! let of = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
+//! let of = of.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
 //! assert_eq!(of.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
 //! let shown: Vec<String> = of.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
 //! assert_eq!(shown, ["b", "3.00"]);
@@ -73,12 +74,12 @@ pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 /// What a column says of a row.
 type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
 
-/// A column: of a file, and of a page where it has a heading.
+/// A column: of a file, and of a page where that shows it.
 struct Column<'a, T> {
     /// In a file; a value with its interval is three columns there, and one cell of a page.
     names: Vec<String>,
     cells: OfRow<'a, T, Vec<String>>,
-    page: PageColumn<'a, T>,
+    page: Option<PageColumn<'a, T>>,
     /// Where on the page: before the columns of a greater number, after those of a smaller one.
     place: i8,
 }
@@ -87,12 +88,23 @@ struct Column<'a, T> {
 pub struct PageColumn<'a, T> {
     /// Its first name in a file.
     pub name: String,
-    /// What it is, and its unit; empty where no page shows it.
-    pub heading: String,
-    /// Whether its cells are numbers, which stand at the right.
-    pub is_number: bool,
+    /// What it is, and its unit.
+    pub heading: Shown,
+    /// What stands in its cells.
+    pub kind: ColumnKind,
     /// Its cell of a row.
     pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
+}
+
+/// What stands in the cells of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// The names of the rows.
+    Name,
+    /// Texts.
+    Text,
+    /// Numbers, which stand at the right.
+    Number,
 }
 
 impl<T> Default for Columns<'_, T> {
@@ -102,69 +114,84 @@ impl<T> Default for Columns<'_, T> {
 }
 
 impl<'a, T> Columns<'a, T> {
-    /// With a column of texts and whole numbers.
-    pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + Clone + 'a) -> Self {
-        let shown = cell.clone();
-        let page = (C::IS_NUMBER, move |row: &T| shown(row).shown());
-        self.with(vec![name.into()], move |row| vec![cell(row).text()], page)
+    /// With a column of a file, which a page shows where [`Self::page_number()`] or [`Self::page_text()`]
+    /// follows.
+    pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.with(vec![name.into()], move |row| vec![cell(row).text()])
     }
 
-    /// With a column of numbers with so many decimals.
-    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + Clone + 'a) -> Self {
-        let shown = value.clone();
-        let text = move |row: &T| vec![fixed(value(row), decimals)];
-        self.with(vec![name.into()], text, (true, move |row: &T| shown(row).shown()))
+    /// With such a column, of numbers with so many decimals.
+    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+        self.column(name, move |row| fixed(value(row), decimals))
     }
 
-    /// With a column of fractions, in percent.
-    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + Clone + 'a) -> Self {
-        let shown = value.clone();
-        let text = move |row: &T| vec![in_percent(value(row))];
-        self.with(vec![name.into()], text, (true, move |row: &T| shown(row).map(percent).shown()))
+    /// With such a column, of fractions in percent.
+    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+        self.column(name, move |row| in_percent(value(row)))
     }
 
-    /// With the columns of a fraction in percent and the ends of its interval; on a page this is one column.
-    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + Clone + 'a) -> Self {
-        let shown = of.clone();
-        let text = move |row: &T| {
-            let statistic = of(row);
-            let ends = statistic.map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
+    /// With such columns, of a fraction in percent and the ends of its interval; on a page they are one.
+    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
+        self.with(names.map(String::from).to_vec(), move |row| {
+            let ends = of(row).map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
             ends.map(in_percent).to_vec()
-        };
-        self.with(names.map(String::from).to_vec(), text, (true, move |row: &T| shown(row).shown()))
+        })
     }
 
-    fn with(
-        mut self,
-        names: Vec<String>,
-        cells: impl Fn(&T) -> Vec<String> + 'a,
-        (is_number, cell): (bool, impl Fn(&T) -> Shown + 'a),
+    fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<String> + 'a) -> Self {
+        self.0.push(Column { names, cells: Box::new(cells), page: None, place: 0 });
+        self
+    }
+
+    /// With a column of the names of the rows, which a page shows under this heading.
+    pub fn name<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
     ) -> Self {
-        let page =
-            PageColumn { name: names[0].clone(), heading: String::new(), is_number, cell: Box::new(cell) };
-        self.0.push(Column { names, cells: Box::new(cells), page, place: 0 });
-        self
+        self.column(name, cell.clone()).shown(ColumnKind::Name, heading, cell)
     }
 
-    /// A page shows the last column, too, under this heading.
-    pub fn headed(mut self, heading: impl Into<String>) -> Self {
-        self.last().page.heading = heading.into();
-        self
+    /// With a column of texts, which a page shows under this heading.
+    pub fn text<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
+    ) -> Self {
+        self.column(name, cell.clone()).page_text(heading, cell)
+    }
+
+    /// With a column of numbers, which a page shows under this heading.
+    pub fn number<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
+    ) -> Self {
+        self.column(name, cell.clone()).page_number(heading, cell)
     }
 
     /// A page shows this number in the place of the last column.
-    pub fn number<C: TableCell>(self, heading: &str, cell: impl Fn(&T) -> C + 'a) -> Self {
-        self.shown(heading, true, move |row| cell(row).shown())
+    pub fn page_number<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(ColumnKind::Number, heading, cell)
     }
 
     /// A page shows this text in the place of the last column.
-    pub fn words<C: TableCell>(self, heading: &str, cell: impl Fn(&T) -> C + 'a) -> Self {
-        self.shown(heading, false, move |row| cell(row).shown())
+    pub fn page_text<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(ColumnKind::Text, heading, cell)
     }
 
-    fn shown(mut self, heading: &str, is_number: bool, cell: impl Fn(&T) -> Shown + 'a) -> Self {
-        let page = &mut self.last().page;
-        (page.heading, page.is_number, page.cell) = (heading.into(), is_number, Box::new(cell));
+    fn shown<C: TableCell>(
+        mut self,
+        kind: ColumnKind,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + 'a,
+    ) -> Self {
+        let (heading, cell) = (heading.shown(), Box::new(move |row: &T| cell(row).shown()));
+        let last = self.last();
+        last.page = Some(PageColumn { name: last.names[0].clone(), heading, kind, cell });
         self
     }
 
@@ -188,7 +215,7 @@ impl<'a, T> Columns<'a, T> {
         let is_there = |name: &&&str| self.0.iter().any(|column| column.names[0] == **name);
         assert_eq!(names.iter().find(|name| !is_there(name)), None, "columns that a page shows");
         let others = self.0.iter_mut().filter(|column| !names.contains(&column.names[0].as_str()));
-        others.for_each(|column| column.page.heading.clear());
+        others.for_each(|column| column.page = None);
         self
     }
 
@@ -197,15 +224,13 @@ impl<'a, T> Columns<'a, T> {
     where
         T: 'a,
     {
-        let column = |column: Column<'a, T>| {
-            let (cells, PageColumn { name, heading, is_number, cell }) = (column.cells, column.page);
+        let shown = |PageColumn { name, heading, kind, cell }: PageColumn<'a, T>| {
             let cell: OfRow<'a, W, Shown> = Box::new(move |row| cell(part(row)));
-            Column {
-                names: column.names,
-                cells: Box::new(move |row: &W| cells(part(row))),
-                page: PageColumn { name, heading, is_number, cell },
-                place: column.place,
-            }
+            PageColumn { name, heading, kind, cell }
+        };
+        let column = |Column { names, cells, page, place }: Column<'a, T>| {
+            let cells: OfRow<'a, W, Vec<String>> = Box::new(move |row| cells(part(row)));
+            Column { names, cells, page: page.map(shown), place }
         };
         Columns(self.0.into_iter().map(column).collect())
     }
@@ -215,10 +240,9 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// The columns that a page shows, in its order.
-    pub fn of_page(self) -> impl Iterator<Item = PageColumn<'a, T>> {
-        let mut shown: Vec<_> = self.0.into_iter().filter(|column| !column.page.heading.is_empty()).collect();
-        shown.sort_by_key(|column| column.place);
-        shown.into_iter().map(|column| column.page)
+    pub fn of_page(mut self) -> impl Iterator<Item = PageColumn<'a, T>> {
+        self.0.sort_by_key(|column| column.place);
+        self.0.into_iter().filter_map(|column| column.page)
     }
 
     /// The rows as CSV; no cell of it is a formula.
@@ -244,15 +268,28 @@ fn in_percent(fraction: Option<f64>) -> String {
     fixed(fraction.map(|fraction| 100.0 * fraction), 4)
 }
 
-/// A cell of a page.
+/// A cell or a heading of a page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
     /// What stands in it.
     pub text: String,
     /// Smaller lines below that.
     pub below: Vec<String>,
-    /// Whether it stands in the colour of a doubt.
-    pub is_doubt: bool,
+    /// How the first of that stands out.
+    pub emphasis: Option<Emphasis>,
+}
+
+/// How the text of a cell stands out from others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Emphasis {
+    /// In the colour of a doubt.
+    Doubt,
+    /// With a tick as what is kept, or with a cross as what is not.
+    Kept(bool),
+    /// In the colour of a run, by its number.
+    Run(u64),
+    /// With no word of it broken.
+    Whole,
 }
 
 impl Shown {
@@ -262,17 +299,14 @@ impl Shown {
         self
     }
 
-    /// In the colour of a doubt, where it is one.
-    pub fn doubt(self, is_doubt: bool) -> Self {
-        Self { is_doubt, ..self }
+    /// With a text that stands out, where there is a way.
+    pub fn emphasised(self, emphasis: impl Into<Option<Emphasis>>) -> Self {
+        Self { emphasis: emphasis.into(), ..self }
     }
 }
 
 /// What stands in a cell: nothing in a file and a dash on a page where there is no value.
 pub trait TableCell {
-    /// Whether it stands at the right of a page's column.
-    const IS_NUMBER: bool;
-
     /// In a file.
     fn text(self) -> String;
 
@@ -281,8 +315,6 @@ pub trait TableCell {
 }
 
 impl<C: TableCell> TableCell for Option<C> {
-    const IS_NUMBER: bool = C::IS_NUMBER;
-
     fn text(self) -> String {
         self.map_or(String::new(), C::text)
     }
@@ -293,8 +325,6 @@ impl<C: TableCell> TableCell for Option<C> {
 }
 
 impl TableCell for Verdict {
-    const IS_NUMBER: bool = false;
-
     fn text(self) -> String {
         self.words().to_owned()
     }
@@ -306,8 +336,6 @@ impl TableCell for Verdict {
 
 /// A fraction in percent, on a page with its interval below it.
 impl TableCell for Statistic {
-    const IS_NUMBER: bool = true;
-
     fn text(self) -> String {
         in_percent(Some(self.mean))
     }
@@ -318,8 +346,6 @@ impl TableCell for Statistic {
 }
 
 impl TableCell for Quantity {
-    const IS_NUMBER: bool = true;
-
     fn text(self) -> String {
         self.number()
     }
@@ -330,8 +356,6 @@ impl TableCell for Quantity {
 }
 
 impl TableCell for Shown {
-    const IS_NUMBER: bool = false;
-
     fn text(self) -> String {
         self.text
     }
@@ -342,10 +366,8 @@ impl TableCell for Shown {
 }
 
 macro_rules! cells {
-    ($($kind:ty: $is_number:literal, $shown:expr;)*) => {
+    ($($kind:ty: $shown:expr;)*) => {
         $(impl TableCell for $kind {
-            const IS_NUMBER: bool = $is_number;
-
             fn text(self) -> String {
                 self.to_string()
             }
@@ -358,12 +380,12 @@ macro_rules! cells {
 }
 
 cells! {
-    String: false, |text| text;
-    &str: false, str::to_owned;
-    bool: false, |is: bool| if is { "✓" } else { "✗" }.to_owned();
-    u64: true, whole;
-    usize: true, |count| whole(count as u64);
-    f64: true, significant;
+    String: |text| text;
+    &str: str::to_owned;
+    bool: |is: bool| if is { "✓" } else { "✗" }.to_owned();
+    u64: whole;
+    usize: |count| whole(count as u64);
+    f64: significant;
 }
 
 /// A cell that no spreadsheet takes for a formula.
@@ -409,7 +431,7 @@ mod tests {
     #[test]
     fn a_value_with_its_interval_is_three_columns_of_a_file_and_one_cell_of_a_page() {
         let of = Columns::default().statistic(["mass", "low", "high"], |row: &Option<Statistic>| *row);
-        let of = of.headed("Eroded");
+        let of = of.page_number("Eroded", |row| *row);
         let rows = [Some(Statistic { mean: 0.25, sd: None, low: Some(0.2), high: Some(0.3) }), None];
         assert_eq!(of.csv(&rows), b"mass,low,high\n25.0000,20.0000,30.0000\n,,\n");
         let cell = of.of_page().next().unwrap().cell;
@@ -420,11 +442,12 @@ mod tests {
 
     #[test]
     fn columns_of_a_part_stand_beside_those_of_the_whole() {
-        let part = Columns::default().column("a", |row: &u64| *row).headed("A").column("b", |row| 2 * row);
-        let whole = part.headed("B").of_part(|row: &(u64, bool)| &row.0);
-        let whole = whole.and(Columns::default().column("c", |row: &(u64, bool)| row.1).headed("C"));
+        let part = Columns::default().number("a", "A", |row: &u64| *row).number("b", "B", |row| 2 * row);
+        let whole = part.of_part(|row: &(u64, bool)| &row.0);
+        let whole = whole.and(Columns::default().text("c", "C", |row: &(u64, bool)| row.1));
         assert_eq!(whole.csv(&[(3, true)]), b"a,b,c\n3,6,true\n");
-        let shown: Vec<String> = whole.only(&["b", "c"]).of_page().map(|column| column.heading).collect();
+        let shown: Vec<String> =
+            whole.only(&["b", "c"]).of_page().map(|column| column.heading.text).collect();
         assert_eq!(shown, ["B", "C"]);
     }
 }

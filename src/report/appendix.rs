@@ -8,6 +8,7 @@ use super::shell::{clean, fact};
 use super::table::Table;
 use crate::outcome::record::{InputFile, Outcome};
 use crate::outcome::soil_sizes::us_sieve;
+use crate::outcome::table::Columns;
 
 /// Rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
@@ -65,19 +66,18 @@ fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
-    let mut table = Table::of(shown);
-    let with_sieves = unit == SizeUnit::MmAndInches;
-    if with_sieves {
-        table = table.name("US sieve", |row| us_sieve(row[0]).unwrap_or_default());
+    let mut columns = Columns::default();
+    if unit == SizeUnit::MmAndInches {
+        columns = columns.name("us_sieve", "US sieve", |row: &[f64; 2]| us_sieve(row[0]).unwrap_or_default());
     }
-    let heading = SizeUnit::of(unit == SizeUnit::D0f, false).name();
-    let table = table
-        .number(format!("Size ({heading})"), |row| significant(row[0]).in_digits(4))
-        .number("Percent finer", |row| significant((row[1] * 100.0).round() / 100.0).in_digits(4));
+    let heading = format!("Size ({})", SizeUnit::of(unit == SizeUnit::D0f, false).name());
+    let percent_finer = |row: &[f64; 2]| significant((row[1] * 100.0).round() / 100.0).in_digits(4);
+    let columns = columns.number("size", heading, |row| significant(row[0]).in_digits(4));
+    let columns = columns.number("percent_finer", "Percent finer", percent_finer);
     html! {
         div {
             h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(&soil_name(name))) } } }
-            (table)
+            (Table::of(shown, columns))
             @if finest > 0.0 {
                 p.small {
                     (percent(finest / 100.0)) " are finer than the finest size; how fine is not known."

@@ -193,10 +193,10 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
         Some(walk) => cases::class(walk.verdict, folder, &walk.folder),
         None => html! {},
     };
-    let table = Table::of(batch.rows.iter().take(LISTED))
+    let columns = walked_columns(SizeUnit::of(false, batch.inches));
+    let table = Table::of(batch.rows.iter().take(LISTED), columns)
         .class("cases")
-        .columns(walked_columns(SizeUnit::of(false, batch.inches)), |row| row)
-        .named_by("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
+        .showing("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);
     html! {

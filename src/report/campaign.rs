@@ -16,6 +16,7 @@ use super::written::Written;
 use super::{campaign_cases, cases};
 use crate::outcome::ledger::{Campaign, LedgerLine, leaves_out as of_ledger};
 use crate::outcome::record::{Statistic, Verdict};
+use crate::outcome::table::Columns;
 use crate::outcome::verdict::THRESHOLD;
 
 /// Cases drawn one by one; all are in the table.
@@ -135,12 +136,12 @@ fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
     let title = if about.title.is_empty() { about.plan.as_str() } else { about.title.as_str() };
     let count = |class| ledger.iter().filter(|line| line.verdict == class).count() as u64;
     let classes = Verdict::ALL.map(|class| (class, count(class)));
+    let columns = Columns::default().name("class", "Class", |(class, _): &(Verdict, u64)| *class);
+    let columns = columns.number("cases", "cases", |(_, count)| *count);
     let first = html! { div.first {
         section {
             p.lead { (whole(ledger.len() as u64)) " of " (whole(about.cases)) " cases are done." }
-            (Table::of(classes.iter().filter(|(_, count)| *count > 0))
-                .name("Class", |(class, _)| class.words())
-                .number("cases", |(_, count)| whole(*count)))
+            (Table::of(classes.iter().filter(|(_, count)| *count > 0), columns))
             (campaign_cases::undecided(ledger))
         }
         (leaves_out(&of_ledger(ledger), &html! {}))

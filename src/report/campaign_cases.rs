@@ -55,10 +55,9 @@ pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
 }
 
 fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
-    Table::of(ledger.iter().take(LISTED))
+    Table::of(ledger.iter().take(LISTED), columns(&about.factors))
         .class("cases")
-        .columns(columns(&about.factors), |line| line)
-        .named_by("verdict", |line| class(line, folder))
+        .showing("verdict", |line| class(line, folder))
         .render()
 }
 

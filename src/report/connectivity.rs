@@ -8,6 +8,7 @@ use super::walks::Walks;
 use crate::outcome::by_connectivity::of_replicates;
 use crate::outcome::quantity::{percent, significant, whole};
 use crate::outcome::record::ByConnectivity;
+use crate::outcome::table::Columns;
 
 /// Nothing where all voids have the same connectivity.
 pub(super) fn by_connectivity(walks: &Walks) -> Markup {
@@ -34,12 +35,12 @@ fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
     let sum = |of: fn(&ByConnectivity) -> u64| rows.iter().map(of).sum::<u64>();
     let retained = sum(|r| r.retained_in_constrictions + r.retained_in_voids);
     let blocked = |blocked: u64, all: u64| percent(blocked as f64 / all.max(1) as f64);
-    let table = Table::of(rows)
-        .number("Connectivity", |row| row.connectivity)
-        .number("Share of voids", |row| percent(row.voids_fraction))
-        .number("Retained per void", |row| significant(row.retained_per_void))
-        .number("Share of retained", |row| percent(row.retained_fraction))
-        .number("Exits blocked", |row| blocked(row.blocked, row.constrictions));
+    let columns = Columns::default()
+        .number("connectivity", "Connectivity", |row: &ByConnectivity| row.connectivity.to_string())
+        .number("voids", "Share of voids", |row| percent(row.voids_fraction))
+        .number("retained_per_void", "Retained per void", |row| row.retained_per_void)
+        .number("retained", "Share of retained", |row| percent(row.retained_fraction))
+        .number("blocked", "Exits blocked", |row| blocked(row.blocked, row.constrictions));
     let all = html! { tr {
         th { "All (" (whole(sum(|r| r.voids))) " voids)" }
         td.n { (percent(1.0)) }
@@ -49,6 +50,6 @@ fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
     } };
     html! {
         h3 { span class={ "run-" (run) } { (run_name(run)) } }
-        (table.more(all))
+        (Table::of(rows, columns).more(all))
     }
 }

@@ -96,11 +96,10 @@ fn notes(all: &DesignedSamples) -> Markup {
 }
 
 fn table(all: &DesignedSamples) -> Markup {
-    let sample = |row: &DesignedSample| html! { bdi { (name(&row.sample)) } };
-    let table = Table::of(all.rows.iter().take(LISTED))
+    let columns = columns(SizeUnit::of(false, all.inches));
+    let table = Table::of(all.rows.iter().take(LISTED), columns)
         .class("cases")
-        .columns(columns(SizeUnit::of(false, all.inches)), |row| row)
-        .named_by("sample", sample);
+        .showing("sample", |row| html! { bdi { (name(&row.sample)) } });
     html! {
         (table.render())
         @if all.rows.len() > LISTED { p.small { "The rest is in designs.csv." } }

@@ -14,6 +14,7 @@ use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
+use crate::outcome::table::Columns;
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::left_out::left_out_line;
@@ -217,18 +218,24 @@ fn quantity_in_brief(rule: &AppliedRule) -> &str {
 }
 
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
-    let table = Table::of(rules)
-        .name("Rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
+    let columns = Columns::default()
+        .name("rule", "Rule", |rule: &&AppliedRule| purpose(rule))
+        .text("quantity", "Quantity", |rule| quantity_in_brief(rule).to_owned())
+        .text("value", "Here", |rule| value_and_limit(rule, unit)[0].clone())
+        .text("limit", "Limit", |rule| value_and_limit(rule, unit)[1].clone())
+        .text("authority", "Whose", |rule| rule.authorities().first().map(|name| name.to_string()))
+        .text("result", "Result", |rule| result(rule));
+    let table = Table::of(rules, columns)
+        .showing("rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
             true => html! { b { (purpose(rule)) } },
             false => html! { (purpose(rule)) },
         })
-        .text("Quantity", |rule| clean(quantity_in_brief(rule)))
-        .text("Here", |rule| match &value_and_limit(rule, unit)[0] {
+        .showing("value", |rule| match &value_and_limit(rule, unit)[0] {
             Some(value) if rule.value_bound.is_none() => html! { span.q { (clean(value)) } },
             Some(value) => html! { (value_begins(rule)) " " span.q { (clean(value)) } },
             None => html! { "–" },
         })
-        .text("Limit", |rule| {
+        .showing("limit", |rule| {
             let [_, limit] = value_and_limit(rule, unit);
             // The name of the row says beyond which boundary.
             let begins = match rule.role {
@@ -242,8 +249,6 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
                 Some(limit) => html! { span.q { (begins) " " (limit) } (limit_ends(rule)) },
                 None => html! { "–" },
             }
-        })
-        .text("Whose", |rule| clean(rule.authorities().first().unwrap_or(&"–")))
-        .text("Result", |rule| result(rule));
+        });
     html! { (table) }
 }

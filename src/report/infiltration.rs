@@ -3,10 +3,10 @@
 use maud::{Markup, Render, html};
 
 use super::run_figures::run_name;
-use super::shell::clean;
 use super::table::Table;
-use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
-use crate::outcome::record::{Infiltration, Outcome, Run};
+use crate::outcome::quantity::{SizeUnit, length, percent, whole};
+use crate::outcome::record::{Infiltration, InfiltrationSize, Outcome, Run};
+use crate::outcome::table::{Columns, TableCell};
 
 /// Eq. (1) for single particles, what the walk found, and where the two part.
 pub(super) fn infiltration(outcome: &Outcome) -> Markup {
@@ -33,17 +33,16 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
 }
 
 fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
-    let layers = |layers: Option<f64>| {
-        layers.map_or_else(|| "no end".to_owned(), |layers| significant(layers).to_string())
-    };
-    Table::of(&found.sizes)
-        .name("Particle", |row| clean(&row.name))
-        .number("Size", |row| length(row.diameter_mm, SizeUnit::of(scale_free, false)))
-        .number("Chance to move one layer on", |row| format!("{:.4}", row.downstream))
-        .number("Layers, 95 %", |row| layers(row.layers_95))
-        .number("Layers, 99 %", |row| layers(row.layers_99))
-        .number(format!("Passes all {}", whole(found.layers)), |row| percent(row.through))
-        .render()
+    let unit = SizeUnit::of(scale_free, false);
+    let layers = |layers: Option<f64>| layers.map_or("no end".shown(), TableCell::shown);
+    let columns = Columns::default()
+        .name("particle", "Particle", |row: &InfiltrationSize| row.name.clone())
+        .number("diameter_mm", "Size", |row| length(row.diameter_mm, unit))
+        .number("downstream", "Chance to move one layer on", |row| format!("{:.4}", row.downstream))
+        .number("layers_95", "Layers, 95 %", |row| layers(row.layers_95))
+        .number("layers_99", "Layers, 99 %", |row| layers(row.layers_99))
+        .number("through", format!("Passes all {}", whole(found.layers)), |row| percent(row.through));
+    Table::of(&found.sizes, columns).render()
 }
 
 fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {

@@ -15,6 +15,7 @@ use super::table::Table;
 use super::written::Written;
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
 use crate::outcome::paper;
+use crate::outcome::table::Columns;
 
 /// Grains of a slice are drawn in this many shades, by size.
 const SHADES: usize = 6;
@@ -197,11 +198,11 @@ fn states(record: &PackingRecord) -> Markup {
         ("Unbalanced force over mean contact force", |s| format!("{:.1e}", s.unbalanced)),
         ("Largest overlap over smaller diameter", |s| format!("{:.1e}", s.largest_overlap)),
     ];
-    Table::of(&rows)
-        .name("At rest with friction", |row: &Row| row.0)
-        .number(significant(record.friction), |row| (row.1)(&record.before))
-        .number(significant(record.final_friction), |row| (row.1)(&record.after))
-        .render()
+    let columns = Columns::default()
+        .name("measure", "At rest with friction", |row: &Row| row.0)
+        .number("before", significant(record.friction), |row| (row.1)(&record.before))
+        .number("after", significant(record.final_friction), |row| (row.1)(&record.after));
+    Table::of(&rows, columns).render()
 }
 
 /// The paper's values, where its Table 2 has this filter.
@@ -214,10 +215,10 @@ fn beside_the_paper(packed: &Packed) -> Markup {
         rows.push(("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio));
     }
     rows.push(("Cu of the constrictions", packed.summary.cu_csd, paper.cu_csd));
-    Table::of(&rows)
-        .name("", |row| row.0)
-        .number("this packing", |row| format!("{:.3}", row.1))
-        .number("paper", |row| format!("{:.3}", row.2))
-        .number("difference", |row| format!("{:+.3}", row.1 - row.2))
-        .render()
+    let columns = Columns::default()
+        .name("measure", "", |row: &(&'static str, f64, f64)| row.0)
+        .number("packing", "this packing", |row| format!("{:.3}", row.1))
+        .number("paper", "paper", |row| format!("{:.3}", row.2))
+        .number("difference", "difference", |row| format!("{:+.3}", row.1 - row.2));
+    Table::of(&rows, columns).render()
 }

@@ -14,6 +14,7 @@ use super::written::Written;
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, SizeThreshold, Z};
 use crate::outcome::quantity::{duration, significant, whole};
 use crate::outcome::record::Statistic;
+use crate::outcome::table::Columns;
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
 /// there.
@@ -43,14 +44,15 @@ pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
 
 fn sizes(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
+    let ends = |of: &Statistic| format!("{} to {}", digits(of.low), digits(of.high));
     let rows: Vec<(String, &Statistic, Option<f64>)> = study.lattices().collect();
-    Table::of(&rows)
-        .number("L", |row| row.0.replace('x', " × "))
-        .number("Mean threshold", |row| digits(Some(row.1.mean)))
-        .number("95 % interval of the mean", |row| format!("{} to {}", digits(row.1.low), digits(row.1.high)))
-        .number("Standard deviation", |row| digits(row.1.sd))
-        .number("its standard error", |row| digits(row.2))
-        .render()
+    let columns = Columns::default()
+        .number("size", "L", |row: &(String, &Statistic, _)| row.0.replace('x', " × "))
+        .number("mean", "Mean threshold", |row| digits(Some(row.1.mean)))
+        .number("interval", "95 % interval of the mean", |row| ends(row.1))
+        .number("sd", "Standard deviation", |row| digits(row.1.sd))
+        .number("sd_error", "its standard error", |row| digits(row.2));
+    Table::of(&rows, columns).render()
 }
 
 fn fits(study: &PercolationStudy) -> Markup {

@@ -1,61 +1,45 @@
 //! The tables of results of a report page.
 
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 
-use super::quantity::{Quantity, SizeUnit, Span, length, percent, percent_interval, significant, whole};
+use super::quantity::{Quantity, SizeUnit, length, percent, significant, whole};
 use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Statistic, Verdict};
+use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Verdict};
+use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use crate::words::capital;
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
 
 /// "First run", in the colour of the run.
-pub(super) fn run_heading(run: u64) -> Markup {
-    html! { span class={ "run-" (run) } { (capital(run_name(run))) } }
-}
-
-/// A mean with its interval below it.
-fn with_interval(mean: Quantity, interval: Option<Span>) -> Markup {
-    html! {
-        (mean)
-        @if let Some(interval) = interval { br; span.small { (interval) } }
-    }
-}
-
-/// A fraction in percent, with its interval below it.
-pub(super) fn fraction(statistic: &Statistic) -> Markup {
-    with_interval(percent(statistic.mean), percent_interval(statistic))
+pub(super) fn run_heading(run: u64) -> Shown {
+    capital(run_name(run)).shown().emphasised(Emphasis::Run(run))
 }
 
 /// Means over the replicates.
 pub(super) fn results(walks: &Walks) -> Markup {
-    type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Markup);
-    let scale_free = walks.scale_free;
-    let nothing = || html! { "nothing eroded" };
+    type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Shown);
+    let unit = SizeUnit::of(walks.scale_free, false);
+    let eroded = |mm: Option<f64>| mm.map_or("nothing eroded".shown(), |mm| length(mm, unit).shown());
     let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
         Some(of) => {
             let ends = of.low.zip(of.high);
-            let ends = ends.map(|(low, high)| significant(low).to(significant(high)));
-            with_interval(significant(of.mean), ends)
+            let ends = ends.map(|(low, high)| significant(low).to(significant(high)).to_string());
+            of.mean.shown().below(ends)
         }
-        None => nothing(),
+        None => eroded(None),
     };
-    let largest = |run: &RunSummary| match (&run.largest_eroded_over_d15f, walks.d15f_mm) {
-        (Some(of), Some(d15f_mm)) => html! { (length(of.mean * d15f_mm, SizeUnit::of(scale_free, false))) },
-        _ => nothing(),
+    let largest = |run: &RunSummary| {
+        let ratio = run.largest_eroded_over_d15f.as_ref();
+        eroded(ratio.zip(walks.d15f_mm).map(|(of, d15f_mm)| of.mean * d15f_mm))
     };
     let largest_of_all = |run: &RunSummary| {
         let of_run = |replicate: &Replicate| replicate.runs.get(run.run as usize - 1)?.largest_eroded_mm;
-        let largest = walks.replicates.iter().filter_map(of_run).reduce(f64::max);
-        largest.map_or_else(nothing, |mm| html! { (length(mm, SizeUnit::of(scale_free, false))) })
+        eroded(walks.replicates.iter().filter_map(of_run).reduce(f64::max))
     };
-    let sd = |run: &RunSummary| {
-        let sd = run.eroded_mass_fraction.sd;
-        html! { (sd.map_or_else(|| "none".to_owned(), |sd| percent(sd).to_string())) }
-    };
+    let sd = |run: &RunSummary| run.eroded_mass_fraction.sd.map_or("none".shown(), |sd| percent(sd).shown());
     let of_largest: &[Row] = match walks.d15f_mm {
         Some(_) => {
             &[("Largest particle eroded, over D15F", &largest_ratio), ("Largest particle eroded", &largest)]
@@ -63,58 +47,60 @@ pub(super) fn results(walks: &Walks) -> Markup {
         None => &[("Largest particle eroded in any replicate", &largest_of_all)],
     };
     let of_eroded: [Row; 3] = [
-        ("Base eroded, by mass", &|run| fraction(&run.eroded_mass_fraction)),
+        ("Base eroded, by mass", &|run| run.eroded_mass_fraction.shown()),
         ("Its scatter from replicate to replicate (SD)", &sd),
-        ("Base eroded, by number", &|run| fraction(&run.eroded_number_fraction)),
+        ("Base eroded, by number", &|run| run.eroded_number_fraction.shown()),
     ];
     let of_network: [Row; 3] = [
-        ("Constrictions blocked at the end", &|run| fraction(&run.blocked_fraction)),
-        ("Blocked in the first three layers", &|run| fraction(&run.blocked_first_three_layers_fraction)),
-        ("Constrictions on an open path (backbone)", &|run| fraction(&run.backbone_fraction)),
+        ("Constrictions blocked at the end", &|run| run.blocked_fraction.shown()),
+        ("Blocked in the first three layers", &|run| run.blocked_first_three_layers_fraction.shown()),
+        ("Constrictions on an open path (backbone)", &|run| run.backbone_fraction.shown()),
     ];
     let rows = of_eroded.iter().chain(of_largest).chain(&of_network);
-    let mut table = Table::of(rows).name("Mean, and 95 % interval", |row| row.0);
+    let mut columns = Columns::default().name("mean", "Mean, and 95 % interval", |row: &Row| row.0);
     for run in walks.summary {
-        table = table.number(run_heading(run.run), move |row| (row.1)(run));
+        let name = format!("run_{}", run.run);
+        columns = columns.number(name, run_heading(run.run), move |row| (row.1)(run));
     }
     html! {
         h2 { "Results" }
-        (table)
+        (Table::of(rows, columns))
     }
 }
 
 /// Each replicate, collapsed.
 pub(super) fn replicates(walks: &Walks) -> Markup {
     let unit = SizeUnit::of(walks.scale_free, false).short();
-    let of_known =
-        |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| significant(value).to_string());
     let listed = walks.replicates.len().min(LISTED);
     let rows: Vec<(usize, &Replicate, &Run)> = (1..)
         .zip(walks.replicates.iter().take(LISTED))
         .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)))
         .collect();
-    let table = Table::of(&rows)
-        .class("replicates")
-        .name("Replicate", |(number, replicate, _)| {
-            html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
+    let columns = Columns::default()
+        .name("replicate", "Replicate", |row: &(usize, &Replicate, &Run)| row.0)
+        .text("verdict", "Verdict", |(_, replicate, _)| class(replicate.verdict))
+        .text("run", "Run", |(.., run)| run.run.to_string().shown().emphasised(Emphasis::Run(run.run)))
+        .number("eroded_mass", "Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
+        .number("eroded_number", "number", |(.., run)| percent(run.eroded_number_fraction))
+        .number("largest_eroded", format!("largest ({unit})"), |(.., run)| run.largest_eroded_mm)
+        .number("largest_over_d15f", "/ D15F", |(.., run)| run.largest_eroded_over_d15f)
+        .number("blocked", "Blocked", |(.., run)| percent(run.blocked_fraction))
+        .number("blocked_first_three", "3 layers", |(.., run)| {
+            percent(run.blocked_first_three_layers_fraction)
         })
-        .text("Verdict", |(_, replicate, _)| class(replicate.verdict))
-        .text("Run", |(.., run)| html! { span class={ "run-" (run.run) } { (run.run) } })
-        .number("Eroded, mass", |(.., run)| percent(run.eroded_mass_fraction))
-        .number("number", |(.., run)| percent(run.eroded_number_fraction))
-        .number(format!("largest ({unit})"), |(.., run)| of_known(run.largest_eroded_mm))
-        .number("/ D15F", |(.., run)| of_known(run.largest_eroded_over_d15f))
-        .number("Blocked", |(.., run)| percent(run.blocked_fraction))
-        .number("3 layers", |(.., run)| percent(run.blocked_first_three_layers_fraction))
-        .number("On an open path", |(.., run)| percent(run.backbone_fraction))
-        .number("Inserted", |(.., run)| particles(run.inserted))
-        .number("Eroded", |(.., run)| particles(run.eroded))
-        .number("In constrictions", |(.., run)| particles(run.retained_in_constrictions))
-        .number("In voids", |(.., run)| particles(run.retained_in_voids))
-        .number("Trapped", |(.., run)| particles(run.trapped))
-        .number("Per void", |(.., run)| significant(run.retained_per_void))
-        .number("Increments", |(.., run)| particles(run.increments))
-        .number("Moves", |(.., run)| particles(run.particle_moves));
+        .number("backbone", "On an open path", |(.., run)| percent(run.backbone_fraction))
+        .number("inserted", "Inserted", |(.., run)| particles(run.inserted))
+        .number("eroded", "Eroded", |(.., run)| particles(run.eroded))
+        .number("in_constrictions", "In constrictions", |(.., run)| particles(run.retained_in_constrictions))
+        .number("in_voids", "In voids", |(.., run)| particles(run.retained_in_voids))
+        .number("trapped", "Trapped", |(.., run)| particles(run.trapped))
+        .number("retained_per_void", "Per void", |(.., run)| run.retained_per_void)
+        .number("increments", "Increments", |(.., run)| particles(run.increments))
+        .number("moves", "Moves", |(.., run)| particles(run.particle_moves));
+    let table =
+        Table::of(&rows, columns).class("replicates").showing("replicate", |(number, replicate, _)| {
+            html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
+        });
     html! {
         details {
             summary {
@@ -139,17 +125,6 @@ fn particles(number: u64) -> Quantity {
     if number < 10_000_000_000 { whole(number) } else { significant(number as f64) }
 }
 
-/// With a column a run of what eroded in each row.
-pub(super) fn eroded<'a, T>(
-    table: Table<'a, T>,
-    runs: impl IntoIterator<Item: Render>,
-    walked: fn(&T) -> &Classed,
-) -> Table<'a, T> {
-    let of =
-        |index: usize| move |row: &T| walked(row).runs.get(index).map_or_else(|| html! { "–" }, fraction);
-    runs.into_iter().enumerate().fold(table, |table, (index, run)| table.number(run, of(index)))
-}
-
 /// A row of [`varied`]: the case with another amount of base or another thickness.
 struct Varied<'a> {
     changed: &'static str,
@@ -171,26 +146,29 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
         Varied { changed: "Thickness", factor, layers, n_base, walked }
     });
     let rows: Vec<Varied> = amounts.chain(thicknesses).collect();
-    let table = Table::of(&rows)
-        .name("Changed", |row| row.changed)
-        .number("Times", |row| format!("×{}", significant(row.factor).in_digits(4)))
-        .number("Layers of voids", |row| whole(row.layers))
-        .number("Base particles, N_base", |row| whole(row.n_base))
-        .number("Replicates", |row| row.walked.replicates);
-    let runs = outcome.summary.iter().map(|run| capital(run_name(run.run)));
-    let table = eroded(table, runs, |row| row.walked);
+    let mut columns = Columns::default()
+        .name("changed", "Changed", |row: &Varied| row.changed)
+        .number("factor", "Times", |row| format!("×{}", significant(row.factor).in_digits(4)))
+        .number("layers", "Layers of voids", |row| row.layers)
+        .number("n_base", "Base particles, N_base", |row| row.n_base)
+        .number("replicates", "Replicates", |row| row.walked.replicates.to_string());
+    for (at, run) in outcome.summary.iter().enumerate() {
+        let eroded = move |row: &Varied| row.walked.runs.get(at).copied();
+        columns = columns.number(format!("eroded_{}", run.run), capital(run_name(run.run)), eroded);
+    }
+    let columns = columns.text("class", "Class", |row| class(row.walked.verdict));
     html! {
         @if outcome.studies_to_come {
             p.small { "Amount of base and thickness: not walked yet; voidwalk resume goes on with them." }
         }
         @if !rows.is_empty() { details {
             summary { "Amount of base and thickness (×1 has the class of this page)" }
-            (table.text("Class", |row| class(row.walked.verdict)))
+            (Table::of(&rows, columns))
         } }
     }
 }
 
 /// A class, of which no word is broken.
-fn class(verdict: Verdict) -> Markup {
-    html! { span.whole { (verdict.words()) } }
+fn class(verdict: Verdict) -> Shown {
+    verdict.shown().emphasised(Emphasis::Whole)
 }

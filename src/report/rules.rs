@@ -6,6 +6,7 @@ use super::quantity::{SizeUnit, length};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use crate::verdict::listed::listed;
 use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::left_out::NOT_COVERED;
@@ -87,27 +88,38 @@ fn no_limit(rule: &AppliedRule) -> &'static str {
 }
 
 /// What a rule found: a tick where it is kept alone.
-pub(super) fn result(rule: &AppliedRule) -> Markup {
-    match result_of(rule) {
-        of @ RuleResult::Met => html! { span.keeps { "✓ " (words::result(of)) } },
-        of @ RuleResult::NotMet => html! { span.breaks { "✗ " (words::result(of)) } },
-        of => html! { (words::result(of)) },
-    }
-}
-
-/// Everybody who states a rule.
-pub(super) fn authorities(rule: &AppliedRule) -> Markup {
-    match rule.authorities() {
-        none if none.is_empty() => html! { "–" },
-        named => html! { (clean(&named.join(", "))) },
-    }
+pub(super) fn result(rule: &AppliedRule) -> Shown {
+    let result = result_of(rule);
+    let is_decided = matches!(result, RuleResult::Met | RuleResult::NotMet);
+    words::result(result).shown().emphasised(is_decided.then_some(Emphasis::Kept(result == RuleResult::Met)))
 }
 
 /// Rules as a table, with what stands for the source behind the name of each.
 fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
-    let table = Table::of(rules)
+    let value = |rule: &AppliedRule| {
+        let [value, _] = value_and_limit(rule, unit);
+        value.map_or_else(|| "–".to_owned(), |value| format!("{} {value}", value_begins(rule)))
+    };
+    let columns = Columns::default()
+        .name("rule", "Rule, what it is for, source", |rule: &&AppliedRule| rule.name.clone())
+        .text("authority", "Authority", |rule| {
+            Some(rule.authorities().join(", ")).filter(|names| !names.is_empty())
+        })
+        .number("value", "Here", |rule| value(rule))
+        .number("limit", "Limit", |rule| {
+            let [begins, ends] = [limit_begins(rule), limit_ends(rule)];
+            let [_, limit] = value_and_limit(rule, unit);
+            let limit = limit.map(|limit| format!("{begins} {limit}{ends}"));
+            limit.unwrap_or_else(|| no_limit(rule).to_owned())
+        })
+        .text("result", "", |rule| match (rule.role, rule.met) {
+            (RuleRole::Walk, Some(true)) => "within".shown(),
+            (RuleRole::Walk, Some(false)) => "beyond".shown(),
+            _ => result(rule),
+        });
+    let table = Table::of(rules, columns)
         .class("rules")
-        .name("Rule, what it is for, source", |rule| {
+        .showing("rule", |rule| {
             html! {
                 (clean(&rule.name)) (source(rule))
                 @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
@@ -122,24 +134,7 @@ fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRu
                 }
             }
         })
-        .text("Authority", |rule| authorities(rule))
-        .number("Here", |rule| {
-            let [value, _] = value_and_limit(rule, unit);
-            let value =
-                value.map_or_else(|| "–".to_owned(), |value| format!("{} {value}", value_begins(rule)));
-            html! { (clean(rule.quantity.name())) " " br; (clean(&value)) }
-        })
-        .number("Limit", |rule| {
-            let [begins, ends] = [limit_begins(rule), limit_ends(rule)];
-            let [_, limit] = value_and_limit(rule, unit);
-            let limit = limit.map(|limit| format!("{begins} {limit}{ends}"));
-            html! { (clean(&limit.unwrap_or_else(|| no_limit(rule).to_owned()))) }
-        })
-        .text("", |rule| match (rule.role, rule.met) {
-            (RuleRole::Walk, Some(true)) => html! { "within" },
-            (RuleRole::Walk, Some(false)) => html! { "beyond" },
-            _ => result(rule),
-        });
+        .showing("value", |rule| html! { (clean(rule.quantity.name())) " " br; (clean(&value(rule))) });
     html! { (table) }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 
 use super::appendix::input_files;
 use super::cover::program;
@@ -16,12 +16,11 @@ use super::shell::{clean, unbroken};
 use super::shown::known;
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::specification::ProductMargin;
+use crate::outcome::design::specification::{SieveLimit, StepValue};
 use crate::outcome::design::{Specification, SpecificationStep};
 use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
-use crate::words::products::{
-    FITS, not_kept, product as product_result, products as products_line, to_be_checked,
-};
+use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
+use crate::words::products::{columns, product as product_result, products as products_line, to_be_checked};
 use crate::words::row_note;
 use crate::words::specification::{
     DESIGN_AGAIN, band, beside_limits, if_dispersive, limit, no_band, raised, step_name, step_notes,
@@ -121,41 +120,43 @@ fn to_specify(of: &Specification) -> Markup {
     let Some(band) = &of.band else { return html! {} };
     let unit = SizeUnit::of(false, of.inches);
     let sides = [("Fine side", true), ("Coarse side", false)];
-    let table = Table::of(&sides).class("band").name(unit.name(), |side| side.0);
-    let table = band.sizes.iter().fold(table, |table, of| {
-        table.number(format!("D{}F", of.percent), move |side: &(_, bool)| match side.1 {
+    let columns = Columns::default().name("side", unit.name(), |side: &(&'static str, bool)| side.0);
+    let columns = band.sizes.iter().fold(columns, |columns, of| {
+        let [name, heading] = [format!("d{}f_mm", of.percent), format!("D{}F", of.percent)];
+        columns.number(name, heading, move |side| match side.1 {
             true => length(of.min_mm, unit).role(NumberRole::Least).in_cell(),
             false => length(of.max_mm, unit).role(NumberRole::Greatest).in_cell(),
         })
     });
     html! {
         @if let Some(raised) = raised(of, unit) { p { (clean(&raised)) "." } }
-        (table)
+        (Table::of(&sides, columns).class("band"))
     }
 }
 
 fn steps(of: &Specification) -> Markup {
     let unit = SizeUnit::of(false, of.inches);
+    let number = |value: &StepValue| known(step_value(value, unit), |words| words);
+    let columns = Columns::default()
+        .name("step", "What is done, formula, source", |step: &SpecificationStep| {
+            let source = (!step.source.is_empty()).then(|| format!("Source: {}", step.source));
+            let texts = [step.formula.clone(), step_notes(step, unit)].into_iter();
+            let below = texts.filter(|text| !text.is_empty()).chain(source);
+            below.fold(format!("{}. {}", step.step, step_name(step.does)).shown(), Shown::below)
+        })
+        .text("values", "Numbers", |step| {
+            let values = step.values.iter().map(|value| format!("{} = {}", value.name, number(value)));
+            values.collect::<Vec<_>>().join("; ")
+        });
     html! {
         p.small {
             "The order of the steps is ours, as procedures commonly have it, and not that of the NRCS \
              handbook (National Engineering Handbook, Part 633, Chapter 26). Each step names the text that \
              its numbers come from, or says that they are this program’s own."
         }
-        (Table::of(&of.steps).class("study steps")
-            .name("What is done, formula, source", |step: &SpecificationStep| html! {
-                (step.step) ". " (step_name(step.does))
-                @for text in [&step.formula, &step_notes(step, unit)] {
-                    @if !text.is_empty() { br; span.small { (clean(text)) } }
-                }
-                @if !step.source.is_empty() { br; span.small { "Source: " (clean(&step.source)) } }
-            })
-            .text("Numbers", |step| html! {
-                @for value in &step.values {
-                    (clean(&value.name)) " = " b { (known(step_value(value, unit), |words| words)) } br;
-                }
-            })
-            .render())
+        (Table::of(&of.steps, columns).class("study steps").showing("values", |step| html! {
+            @for value in &step.values { (clean(&value.name)) " = " b { (number(value)) } br; }
+        }))
     }
 }
 
@@ -164,16 +165,18 @@ fn limits(of: &Specification) -> Markup {
         let unit = SizeUnit::of(false, of.inches);
         return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, unit))) } } };
     }
+    let columns = Columns::default()
+        .name("sieve", "Sieve", |limit: &SieveLimit| limit.sieve.clone())
+        .number("opening_mm", "Opening (mm)", |limit| limit.opening_mm)
+        .number("min_percent_finer", "Least finer (%)", |limit| {
+            significant(limit.min_percent_finer).in_digits(4)
+        })
+        .number("max_percent_finer", "Greatest finer (%)", |limit| {
+            let most = limit.max_percent_finer;
+            most.map_or(Shown::default(), |most| significant(most).in_digits(4).shown())
+        });
     html! {
-        (Table::of(&of.limits)
-            .name("Sieve", |limit| clean(&limit.sieve))
-            .number("Opening (mm)", |limit| significant(limit.opening_mm))
-            .number("Least finer (%)", |limit| significant(limit.min_percent_finer).in_digits(4))
-            .number("Greatest finer (%)", |limit| {
-                let most = limit.max_percent_finer;
-                most.map_or(String::new(), |most| significant(most).in_digits(4).to_string())
-            })
-            .render())
+        (Table::of(&of.limits, columns))
         @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
         @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
@@ -189,26 +192,13 @@ fn limits(of: &Specification) -> Markup {
 
 /// Margins of standard products, and whether they fit.
 fn products(of: &Specification) -> Markup {
-    let margin = |value: Option<f64>| known(value, significant);
-    let unit = SizeUnit::of(false, of.inches);
-    let table = Table::of(&of.products)
-        .class("study")
-        .name("Product", |of: &ProductMargin| clean(&of.product))
-        .number("D15, fine to coarse side (mm)", |of| {
-            length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
-        })
-        .number("Drains: finest D15 / minimum D15F", |of| margin(of.drains_by))
-        .number("Retains: maximum D15F / coarsest D15", |of| margin(of.holds_by))
-        .text("What else its sides do not keep", |of| clean(&not_kept(&of.not_kept)))
-        .text("", |product| match (&*product_result(of, product), product.fits()) {
-            (FITS, _) => html! { span.keeps { "✓ " (FITS) } },
-            (said, Some(false)) => html! { span.breaks { "✗ " (said) } },
-            (said, _) => html! { (said) },
-        });
+    let columns = columns(SizeUnit::of(false, of.inches)).text("result", "", |product| {
+        product_result(of, product).shown().emphasised(product.fits().map(Emphasis::Kept))
+    });
     let to_check = to_be_checked(&of.products);
     html! {
         @if !of.products.is_empty() {
-            (table.render())
+            (Table::of(&of.products, columns).class("study"))
             p.small {
                 "A margin of 1 and more is kept. Each product is tested with its own two sides; its \
                  supplier’s gradation decides."

@@ -2,25 +2,31 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
 use super::quantity::{SizeUnit, percent, percent_interval};
-use super::results::{fraction, run_heading};
+use super::results::run_heading;
 use super::run_figures;
 use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
 use crate::outcome::record::{ModelLimit, Note, RunSummary, Verdict};
+use crate::outcome::table::Columns;
 use crate::words::left_out::left_out_in_brief;
 use crate::words::meaning;
 use crate::words::sentence;
 
 /// Eroded mass by run, with its interval.
-pub(super) fn eroded_table<'a>(walks: &Walks<'a>) -> Table<'a, RunSummary> {
-    Table::of(walks.summary)
-        .name("Base eroded, by mass", |run| run_heading(run.run))
-        .number("mean", |run| percent(run.eroded_mass_fraction.mean))
-        .number("95 % interval", |run| {
+pub(super) fn eroded_table(walks: &Walks) -> Markup {
+    Table::of(walks.summary, eroded_columns()).render()
+}
+
+/// The columns of that table.
+fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
+    Columns::default()
+        .name("run", "Base eroded, by mass", |run: &RunSummary| run_heading(run.run))
+        .number("mean", "mean", |run| percent(run.eroded_mass_fraction.mean))
+        .number("interval", "95 % interval", |run| {
             percent_interval(&run.eroded_mass_fraction)
                 .map_or_else(|| "none".to_owned(), |span| span.to_string())
         })
@@ -81,7 +87,7 @@ pub(super) struct Said<'a> {
 pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let drawn = run_figures::verdict(walks);
     let picture = BASE64_STANDARD.encode(drawn.figure.file());
-    let table = eroded_table(walks).number("constrictions blocked", |run| fraction(&run.blocked_fraction));
+    let columns = eroded_columns().number("blocked", "constrictions blocked", |run| run.blocked_fraction);
     html! {
         div {
             @for (name, words) in said.lines { p { b { (name) } ": " (clean(words)) "." } }
@@ -89,7 +95,7 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
             ul { @for note in said.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
-            (table)
+            (Table::of(walks.summary, columns))
             (replicates_in_words(walks, said.replicate))
             p { (clean(&left_out_in_brief(said.leaves_out))) }
         }

@@ -10,7 +10,7 @@ use super::sheets::Sheets;
 use crate::cases::BatchWalks;
 use crate::cases::numbered;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::table::{Columns, Shown};
+use crate::outcome::table::{ColumnKind, Columns, Shown};
 use crate::verdict::{BatchFilter, BatchRow, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, of_filter, walked_columns, walks};
 use crate::words::left_out::left_out_in_brief;
@@ -106,8 +106,8 @@ pub fn table<T>(columns: Columns<T>, rows: &[T]) -> Value {
     let cells = |row: &T| columns.iter().map(|column| cell((column.cell)(row))).collect();
     let rows: Vec<Vec<String>> = rows.iter().map(cells).collect();
     json!({
-        "headings": columns.iter().map(|column| &column.heading).collect::<Vec<_>>(),
-        "numbers": columns.iter().map(|column| column.is_number).collect::<Vec<_>>(),
+        "headings": columns.iter().map(|column| &column.heading.text).collect::<Vec<_>>(),
+        "numbers": columns.iter().map(|column| column.kind == ColumnKind::Number).collect::<Vec<_>>(),
         "rows": rows,
     })
 }

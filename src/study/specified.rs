@@ -7,6 +7,7 @@ use crate::cases::inputs::input_files;
 use crate::cases::kept;
 use crate::gradation::{Gradation, curves_in_file};
 use crate::outcome::design::{SieveSeries, Specification};
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::SheetCover;
 use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
@@ -110,5 +111,5 @@ fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), St
     let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
     folder.write("specification.csv", &csv_of(&specification.limits))?;
     folder.write("specification_steps.csv", &csv_of(&steps))?;
-    folder.write("specification_products.csv", &columns().csv(&specification.products))
+    folder.write("specification_products.csv", &columns(SizeUnit::Mm).csv(&specification.products))
 }

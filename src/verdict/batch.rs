@@ -341,7 +341,7 @@ mod tests {
                 let columns = columns(unit);
                 let columns: Vec<_> = columns.of_page().collect();
                 let cell = |heading: &str| {
-                    let column = columns.iter().find(|column| column.heading == heading).unwrap();
+                    let column = columns.iter().find(|column| column.heading.text == heading).unwrap();
                     (column.cell)(&row).text
                 };
                 [cell("D15F, mm"), cell("Limit, mm")]

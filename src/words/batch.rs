@@ -28,35 +28,27 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
         limit.map(|limit| limit + at_most)
     };
     Columns::default()
-        .column("sample", |row: &BatchRow| row.sample.clone())
-        .headed("Sample")
-        .column("filter", |row: &BatchRow| row.filter.clone())
-        .headed("Filter")
-        .column("group", |row: &BatchRow| row.group.clone())
-        .headed("Group")
-        .column("category", |row: &BatchRow| row.category.map(u64::from))
-        .headed("Category")
+        .name("sample", "Sample", |row: &BatchRow| row.sample.clone())
+        .text("filter", "Filter", |row| row.filter.clone())
+        .text("group", "Group", |row| row.group.clone())
+        .number("category", "Category", |row| row.category.map(u64::from))
         .digits("fines_percent", 1, |row| row.fines_percent)
-        .headed("Fines, %")
+        .page_number("Fines, %", |row| row.fines_percent)
         .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
         .digits("d85b_mm", 4, |row| row.d85b_mm)
-        .number("D85B, mm", move |row| size(row.d85b_mm))
+        .page_number("D85B, mm", move |row| size(row.d85b_mm))
         .digits("d15f_mm", 4, |row| row.d15f_mm)
-        .number("D15F, mm", move |row: &BatchRow| {
+        .page_number("D15F, mm", move |row| {
             let [d15f, _] = d15f_and_limit_in_cells(row, unit);
             d15f
         })
         .digits("limit_mm", 4, |row| row.limit_mm)
-        .number("Limit, mm", limit)
-        .column("limit_at_most", |row: &BatchRow| row.limit_at_most.to_string())
-        .column("rule", |row: &BatchRow| row.rule.clone())
-        .headed("Whose limit")
-        .column("result", |row: &BatchRow| result(row).to_owned())
-        .headed("Result")
-        .column("tests", |row: &BatchRow| tested_in_brief(row.tests, row.is_beyond_tests).to_owned())
-        .headed("Tests (Foster and Fell)")
-        .column("note", move |row: &BatchRow| besides(row, unit))
-        .headed("Note")
+        .page_number("Limit, mm", limit)
+        .column("limit_at_most", |row| row.limit_at_most)
+        .text("rule", "Whose limit", |row| row.rule.clone())
+        .text("result", "Result", result)
+        .text("tests", "Tests (Foster and Fell)", |row| tested_in_brief(row.tests, row.is_beyond_tests))
+        .text("note", "Note", move |row| besides(row, unit))
         .place(9)
 }
 
@@ -80,12 +72,9 @@ const SHOWN: [&str; 11] = [
 pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
     let walk = |row: &WalkedRow| row.walk.clone();
     let of_walk = Columns::default()
-        .column("governs", |row: &WalkedRow| row.governs)
-        .headed("Governs")
-        .column("walked", |row: &WalkedRow| depth(row))
-        .words("Walked", |row: &WalkedRow| depth(row).shown().below(why_not(row)))
-        .column("class", move |row| walk(row).map(|walk| walk.verdict))
-        .headed("Class by walk")
+        .number("governs", "Governs", |row: &WalkedRow| row.governs)
+        .text("walked", "Walked", |row| depth(row).shown().below(why_not(row)))
+        .text("class", "Class by walk", move |row| walk(row).map(|walk| walk.verdict))
         .column("replicates", move |row| walk(row).map(|walk| walk.replicates))
         .digits("d15f_over_d85b", 4, move |row| walk(row).map(|walk| walk.ratios.d15f_over_d85b))
         .eroded(|row, run| {
@@ -93,7 +82,7 @@ pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
             let range = walk.and_then(|walk| walk.curve_range.get(run).copied());
             (walk.and_then(|walk| walk.runs.get(run).copied()), range)
         })
-        .column("not_walked", |row: &WalkedRow| row.not_walked.clone())
+        .column("not_walked", |row| row.not_walked.clone())
         .column("folder", move |row| walk(row).map(|walk| walk.folder));
     columns(unit).of_part(|row: &WalkedRow| &row.rules).and(of_walk).only(&SHOWN)
 }

@@ -4,7 +4,7 @@ use super::base_size::{base_size, grading};
 use crate::outcome::BaseSize;
 use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use crate::outcome::record::{Ratios, Statistic};
-use crate::outcome::table::{Columns, TableCell};
+use crate::outcome::table::{Columns, Emphasis, TableCell};
 
 /// Mass eroded in a run, and its range where the constriction curve is a range.
 type Eroded = (Option<Statistic>, Option<[f64; 2]>);
@@ -15,8 +15,8 @@ type Thickness = (Option<f64>, bool, Option<u64>);
 impl<'a, T: 'a> Columns<'a, T> {
     /// How many rules of practice are not kept.
     pub(super) fn broken_rules(self, name: &str, heading: &str, of: fn(&T) -> Option<usize>) -> Self {
-        let shown = move |row: &T| of(row).shown().doubt(of(row).is_some_and(|count| count > 0));
-        self.column(name, of).number(heading, shown)
+        let doubt = move |row: &T| of(row).filter(|count| *count > 0).map(|_| Emphasis::Doubt);
+        self.column(name, of).page_number(heading, move |row| of(row).shown().emphasised(doubt(row)))
     }
 
     /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
@@ -28,10 +28,12 @@ impl<'a, T: 'a> Columns<'a, T> {
     ) -> Self {
         let d85b = move |row: &T| significant(of(row).0.d15f_over_d85b).shown();
         self.digits("d15f_over_d85b", decimals, move |row| Some(of(row).0.d15f_over_d85b))
-            .number("D15F/ D85B", move |row| d85b(row).below(of(row).1.map(|base| base_size(&base, unit))))
+            .page_number("D15F/ D85B", move |row| {
+                d85b(row).below(of(row).1.map(|base| base_size(&base, unit)))
+            })
             .place(1)
             .digits("d15f_over_d95b", decimals, move |row| Some(of(row).0.d15f_over_d95b))
-            .headed("D15F/ D95B")
+            .page_number("D15F/ D95B", move |row| of(row).0.d15f_over_d95b)
             .place(1)
             .column("d85b_of", move |row| of(row).1.map(|base| grading(&base)))
     }
@@ -45,15 +47,15 @@ impl<'a, T: 'a> Columns<'a, T> {
             statistic.shown().below(range.map(curve))
         };
         self.statistic(["first_eroded_mass_percent", "first_low", "first_high"], move |row| of(row, 0).0)
-            .number("Eroded, first run", move |row| cell(row, 0))
+            .page_number("Eroded, first run", move |row| cell(row, 0))
             .statistic(["second_eroded_mass_percent", "second_low", "second_high"], move |row| of(row, 1).0)
-            .number("second run", move |row| cell(row, 1))
+            .page_number("second run", move |row| cell(row, 1))
     }
 
     /// The thickness of the filter: in a file in mm alone, on a page with its unit and, where given, layers.
     pub(super) fn thickness(self, decimals: usize, unit: SizeUnit, of: fn(&T) -> Thickness) -> Self {
         let in_mm = move |row: &T| of(row).0.filter(|_| !of(row).1);
-        self.digits("thickness_mm", decimals, in_mm).number("Thickness", move |row| {
+        self.digits("thickness_mm", decimals, in_mm).page_number("Thickness", move |row| {
             let (thickness, scale_free, layers) = of(row);
             let layers = layers.map(|layers| format!("{} layers", whole(layers)));
             let unit = if scale_free { SizeUnit::D0f } else { unit };

@@ -3,9 +3,9 @@
 use crate::gradation::FINES_MM;
 use crate::outcome::design::products::{LEAST_CU, NotKept, is_to_be_checked};
 use crate::outcome::design::specification::{ProductMargin, Specification};
-use crate::outcome::quantity::significant;
+use crate::outcome::quantity::{SizeUnit, length, significant};
 use crate::outcome::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
-use crate::outcome::table::Columns;
+use crate::outcome::table::{Columns, TableCell};
 
 /// Said of a product both whose sides keep every requirement.
 pub const FITS: &str = "fits";
@@ -46,15 +46,22 @@ pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
-/// The columns of `specification_products.csv`.
-pub fn columns<'a>() -> Columns<'a, ProductMargin> {
+/// The columns of `specification_products.csv`, and under their headings what a page shows, sizes in this
+/// unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
+    let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
-        .column("product", |of: &ProductMargin| of.product.clone())
+        .name("product", "Product", |of: &ProductMargin| of.product.clone())
         .column("d15_fine_mm", |of| of.d15_fine_mm)
+        .page_number("D15, fine to coarse side (mm)", move |of| {
+            length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
+        })
         .column("d15_coarse_mm", |of| of.d15_coarse_mm)
         .column("drains_by", |of| of.drains_by)
+        .page_number("Drains: finest D15 / minimum D15F", move |of| margin(of.drains_by))
         .column("holds_by", |of| of.holds_by)
-        .column("not_kept", |of| not_kept(&of.not_kept))
+        .page_number("Retains: maximum D15F / coarsest D15", move |of| margin(of.holds_by))
+        .text("not_kept", "What else its sides do not keep", |of| not_kept(&of.not_kept))
         .column("source", |of| of.source.clone())
 }
 

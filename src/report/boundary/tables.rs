@@ -1,10 +1,11 @@
 //! The tables of the page of a all.
 
-use maud::{Markup, Render, html};
+use maud::{Markup, html};
 
 use super::words::{in_band, ratio, size_unit};
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, WalkRow};
 use crate::outcome::record::Note;
+use crate::outcome::table::{Columns, TableCell};
 use crate::report::appendix::input_files;
 use crate::report::names::{file_name, option_words};
 use crate::report::quantity::{NumberRole, length, percent, significant, whole};
@@ -14,6 +15,25 @@ use crate::report::table::Table;
 use crate::words::base_size;
 use crate::words::boundary::share_of_networks;
 use crate::words::sentence;
+
+/// The columns of the boundaries, whose cells the page decorates.
+fn columns<'a>() -> Columns<'a, BoundaryRow> {
+    let thick = |row: &BoundaryRow| {
+        let mm = row.thickness_mm.map(|mm| format!(", {} mm", significant(mm))).unwrap_or_default();
+        format!("{} layers{mm}", whole(row.layers))
+    };
+    let median = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| ratio(boundary.median));
+    Columns::default()
+        .name("density", "Density", |row: &BoundaryRow| row.name())
+        .text("thickness", "Thickness, at the no-erosion boundary", move |row| {
+            row.thickness.as_str().shown().below(thick(row))
+        })
+        .text("no_erosion", "No erosion in the model up to", move |row| median(&row.shown()[0]))
+        .text("continuing", "Continuing erosion from", move |row| median(&row.shown()[1]))
+        .number("not_monotone", "Not monotone", |row| {
+            format!("{} of {}", row.not_monotone, row.networks.len())
+        })
+}
 
 /// The boundaries of the model, a row a density and thickness.
 pub(super) fn boundaries(all: &Boundaries) -> Markup {
@@ -42,10 +62,6 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
             @for note in notes { br; span.small { (clean(&sentence(note, unit))) } }
         }
     };
-    let thick = |row: &BoundaryRow| {
-        let mm = row.thickness_mm.map(|mm| format!(", {} mm", significant(mm))).unwrap_or_default();
-        format!("{} layers{mm}", whole(row.layers))
-    };
     html! {
         p {
             "Results of the walks alone, without the rules of practice: D15F/D85B" (of_base)
@@ -55,23 +71,9 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
             }
             "; below it the D15F in mm where sizes have a unit."
         }
-        (Table::of(&all.boundaries).class("study")
-            .name("Density", |row| clean(&row.name()))
-            .text("Thickness, at the no-erosion boundary", |row| {
-                html! { (clean(&row.thickness)) br; span.small { (thick(row)) } }
-            })
-            .text("No erosion in the model up to", |row| {
-                let [no_erosion, _] = row.shown();
-                cell(no_erosion.as_ref(), &row.no_erosion_notes, true)
-            })
-            .text("Continuing erosion from", |row| {
-                let [_, continuing] = row.shown();
-                cell(continuing.as_ref(), &row.continuing_notes, false)
-            })
-            .number("Not monotone", |row| {
-                format!("{} of {}", row.not_monotone, row.networks.len())
-            })
-            .render())
+        (Table::of(&all.boundaries, columns()).class("study")
+            .showing("no_erosion", |row| cell(row.shown()[0].as_ref(), &row.no_erosion_notes, true))
+            .showing("continuing", |row| cell(row.shown()[1].as_ref(), &row.continuing_notes, false)))
         p.small {
             "No erosion: less than " (percent(all.threshold).in_digits(3))
             " of the mass of the base erodes in the first run. Continuing: at least as much in the second, \
