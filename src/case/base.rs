@@ -48,7 +48,8 @@ impl CaseBase {
         self.regraded_from.as_ref().map_or(&self.gradation, |(given, _)| given)
     }
 
-    /// What is wrong with its table: a sieve table alone can be in another unit, or the filter's.
+    /// What is wrong with its table: a sieve table alone can be in another unit, or the filter's. Tables that
+    /// a user named are looked at before ([`crate::scene::refuse_exchanged`]).
     pub(super) fn mistake(&self, scene: &Scene, filter: &CaseFilter) -> Option<Mistake> {
         match scene.base.gradation() {
             BaseGradation::Sieve(..) => Mistake::find(self.as_given(), &filter.gradation, false),

@@ -4,7 +4,6 @@ use super::{Case, CaseFilter, CaseNetwork, Input};
 use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::ExitRule;
-use crate::outcome::quantity::significant;
 use crate::outcome::record::{self, InputFile};
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
@@ -149,13 +148,11 @@ impl Case {
 
     /// What the user called the base, or what it is.
     fn base_name(&self) -> String {
-        let name = match &self.scene.base.gradation() {
+        match &self.scene.base.gradation() {
             BaseGradation::Sieve(..) => self.name_of("base.sieve"),
             BaseGradation::Single(_) => "one size".into(),
             BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-        };
-        let regraded = self.base.regraded_from.as_ref();
-        name + &regraded.map_or(String::new(), |(_, at)| format!(", regraded on {} mm", significant(*at)))
+        }
     }
 
     /// The network that was walked, where its constrictions have no direction of their own.

@@ -18,7 +18,7 @@ use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::record::{Outcome, SheetCover};
+use crate::outcome::record::Outcome;
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim, shown};
 use crate::run::unfinished::Unfinished;
@@ -60,7 +60,7 @@ pub fn run(
     let folder = claim(&options.out, KIND, overwrite)?;
     // What is there stays until every case is known to have what it needs.
     let study = |cases: ReadyCases, walk: Walk| {
-        let work = plan.work(cases?);
+        let work = plan.work(cases?)?;
         kept::study((&folder, KIND, overwrite), work.clone(), &callbacks.run, |_, _: Option<()>| {
             let walked = walk()?;
             walked.problem().map_or(Ok(()), Err)?;
@@ -93,14 +93,14 @@ pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBat
         let there = bytes.and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok());
         let is_walked = |cases: Option<&[PreparedCase]>| {
             let cases = cases.filter(|all| all.iter().all(|of| of.line(&of_walks.out).is_some()));
-            there.filter(|there| cases.is_some_and(|cases| there.work == plan.work(cases)))
+            there.filter(|there| cases.is_some_and(|cases| plan.has_work(cases, &there.work)))
         };
         let there = look(&plan.campaign, &of_walks, is_walked)?;
         return there.map_or_else(other, |there| Ok(Some(there)));
     }
     let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
     // Where a packing was taken away it is made again, and other work is refused then.
-    let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.work(all) == begun.work);
+    let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.has_work(all, &begun.work));
     if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
 }
 
@@ -138,17 +138,22 @@ impl BatchPlan {
         self.campaign.cases.iter().filter(is_other).count()
     }
 
-    /// Everything that the table follows from.
-    fn work(&self, cases: &[PreparedCase]) -> String {
-        let of_case = |case: &PreparedCase| format!("{} {}", case.planned.name, case.fingerprint);
-        let all: Vec<String> = cases.iter().map(of_case).collect();
-        let of_row = |(row, case): (&WalkedRow, &String)| {
-            (row.rules.clone(), row.governs, row.not_walked.clone(), self.in_full.contains(case))
-        };
-        let rows: Vec<_> = self.rows.iter().zip(&self.cases).map(of_row).collect();
-        let sheet = of_sheet(&self.cover(), self.shows_inches());
-        let samples = shown(&self.samples);
-        hash_of(&format!("{samples} {rows:?} {:?} {:?} {all:?}{sheet}", self.filters, self.notes))
+    /// Everything that the table follows from, as the record writes it: what a row does not state changes
+    /// nothing.
+    ///
+    /// # Errors
+    /// A name that is not UTF-8.
+    fn work(&self, cases: &[PreparedCase]) -> Result<String, RunError> {
+        let cases: Vec<_> = cases.iter().map(|case| (&case.planned.name, &case.fingerprint)).collect();
+        let in_full: Vec<bool> = self.cases.iter().map(|case| self.in_full.contains(case)).collect();
+        let (samples, sheet) = (shown(&self.samples), (self.cover(), self.shows_inches()));
+        let work = (samples, &self.rows, in_full, &self.filters, &self.notes, cases, sheet);
+        Ok(hash_of(&serde_json::to_string(&work).map_err(RunError::failed)?))
+    }
+
+    /// Compares a work with that of the batch with these cases.
+    fn has_work(&self, cases: &[PreparedCase], work: &str) -> bool {
+        self.work(cases).is_ok_and(|all| all == work)
     }
 
     /// The rows with what was walked of them.
@@ -178,11 +183,6 @@ impl BatchPlan {
         let (inches, model_leaves_out) = (self.shows_inches(), leaves_out_of_all(modelled));
         Ok(WalkedBatch { base, work, seed, notes, cover, inches, model_leaves_out, ..batch })
     }
-}
-
-/// What a sheet says of itself, as a part of what its batch follows from; nothing where nothing is said.
-fn of_sheet(cover: &SheetCover, inches: bool) -> String {
-    if cover.is_unset() && !inches { String::new() } else { format!(" {cover:?} {inches}") }
 }
 
 /// The outcome of a case that is done.

@@ -10,6 +10,7 @@ use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
+use crate::schema::setting_name;
 use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, WalkedRow};
 use crate::words::batch::{EXCHANGED, MAY_GOVERN};
@@ -229,10 +230,7 @@ fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Res
 
 /// The settings of a first look: as `--quick`, on a lattice no wider than is needed for the class.
 fn first_look(tables: &TableOptions) -> TableOptions {
-    let is_own = |change: &String| {
-        let name = change.split_once('=').map_or("", |(name, _)| name).trim();
-        OWN_LATTICE.contains(&name)
-    };
+    let is_own = |change: &String| OWN_LATTICE.contains(&setting_name(change));
     let lattice = ["nx", "ny"].map(|side| format!("network.{side}={ACROSS}"));
     let lattice = lattice.into_iter().filter(|_| !tables.changes.iter().any(is_own));
     let changes = lattice.chain(tables.changes.iter().cloned()).collect();

@@ -33,7 +33,7 @@ use serde::Deserialize;
 use toml::de::DeTable;
 
 use crate::scene::{Origin, Scene, SceneError};
-use crate::schema::hints;
+use crate::schema::{hints, setting_name};
 use crate::store::{folder_name, read_regular, why_not_read};
 use crate::text::is_hidden;
 
@@ -275,8 +275,7 @@ impl CasePlan {
         }
         let origin = Origin::Plan(self.file.clone(), name.clone());
         let mut scene = Scene::planned(base, settings, &origin)?;
-        let names_seed = |s: &String| s.split_once('=').is_some_and(|(name, _)| name.trim() == "seed");
-        if !settings.iter().flatten().any(names_seed) {
+        if !settings.iter().flatten().any(|setting| setting_name(setting) == "seed") {
             scene.walk.seed = match written.seeds {
                 Seeds::Common => written.seed,
                 Seeds::Own => xxhash_rust::xxh3::xxh3_64_with_seed(name.as_bytes(), written.seed),

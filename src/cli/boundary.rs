@@ -44,7 +44,9 @@ pub fn boundary(args: &BoundaryArgs) -> Result<(), RunError> {
 }
 
 fn words(all: &Boundaries) -> String {
-    let mut lines = vec![format!("Boundaries of the model. Base {}, filter {}", all.base.name, all.filter)];
+    let Boundaries { base, filter, curve_name, .. } = all;
+    let soils = format!("Base {}, filter {filter}, constrictions {curve_name}", base.name);
+    let mut lines = vec![format!("Boundaries of the model. {soils}")];
     let unit = SizeUnit::of(false, all.inches);
     lines.push(format!("Model (research): {}", held(all, unit)));
     lines.extend(all.base.size().map(|base| format!("  {}", base_size(&base, unit))));

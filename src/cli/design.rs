@@ -9,6 +9,7 @@ use crate::outcome::design::Specification;
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::scene::{About, Scene};
+use crate::schema::setting_name;
 use crate::store::format;
 use crate::study::specified::{SpecifyOptions, specify};
 use crate::words::products::{products, to_be_checked};
@@ -27,7 +28,7 @@ const EACH_FOLDER: &str = "voidwalk-designs";
 pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     let takes = [About::texts(), OfSpecification::OPTIONS.iter().map(ToString::to_string).collect()].concat();
     let settings = &args.settings.assignments;
-    let is_taken = |set: &str| takes.iter().any(|name| set.split('=').next().map(str::trim) == Some(name));
+    let is_taken = |set: &str| takes.iter().any(|name| setting_name(set) == name);
     if let Some(other) = settings.iter().find(|set| !is_taken(set)) {
         let problem =
             format!("a specification walks nothing, and takes no other settings than {}", takes.join(", "));

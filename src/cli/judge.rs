@@ -4,7 +4,6 @@ use super::args::{JudgeArgs, TableArgs};
 use super::judge_each::judge_each;
 use super::print::{shown, to_stdout};
 use super::progress::followed;
-use super::run::show;
 use crate::run::{self, RunError};
 use crate::scene::{Scene, TableOptions};
 
@@ -35,7 +34,5 @@ pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     if !tables.set.json && !quiet {
         to_stdout(&format!("base {}, filter {}\n", shown(&args.base), shown(filter)));
     }
-    show(&run, tables.set.json, quiet)?;
-    args.results.workbook(&run)?;
-    args.results.accept.judged(&run)
+    args.results.finish(&run, tables.set.json)
 }

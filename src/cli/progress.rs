@@ -16,6 +16,7 @@ use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
+use crate::verdict::Decision;
 use crate::words::{first_lines, sentence, so_far};
 
 /// Plain lines come at most this often.
@@ -155,7 +156,8 @@ impl Display {
                 notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, unit)))));
             }
             Event::VerdictStands(outcome) => {
-                for (name, words) in first_lines(outcome, SizeUnit::of(outcome.inputs.scale_free, false)) {
+                let unit = SizeUnit::of(outcome.inputs.scale_free, false);
+                for (name, words) in first_lines(outcome, &Decision::recorded(outcome), unit) {
                     self.line(&format!("{name}: {}\n", plain(&words)));
                 }
             }

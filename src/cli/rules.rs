@@ -5,13 +5,12 @@ use super::batch::each;
 use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::quantity::{SizeUnit, significant};
-use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
+use crate::outcome::record::{RuleNote, RuleRole};
 use crate::run::RunError;
 use crate::scene::TableOptions;
 use crate::store::format;
-use crate::verdict::PairRules;
-use crate::verdict::listed::listed;
-use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::verdict::rule_result::RuleResult;
+use crate::verdict::{ListedRule, PairRules};
 use crate::words::left_out::NOT_COVERED;
 use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
 use crate::words::rule_note::{regrade_reason, rule_notes};
@@ -97,8 +96,8 @@ fn words(
         sizes(&[("D15", filter.d15_mm), ("D85", filter.d85_mm)]),
         number(filter.cu)
     ));
-    let practice = practice_line(&pair.rules, pair.if_dispersive, pair.filter.d15_mm, SizeUnit::Mm);
-    line(format!("practice {practice}"));
+    let decision = pair.decision();
+    line(format!("practice {}", practice_line(&decision, SizeUnit::Mm)));
     for note in &pair.notes {
         let word = if note.is_of_a_mistake() { "warning" } else { "note   " };
         line(format!("{word} {}", sentence(note, SizeUnit::Mm)));
@@ -107,7 +106,6 @@ fn words(
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
     let notes = |notes: &[RuleNote]| rule_notes(notes, SizeUnit::Mm);
-    let listed = listed(&pair.rules);
     for (role, heading) in [
         (RuleRole::Retention, "The filter retains the base"),
         (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
@@ -117,7 +115,7 @@ fn words(
     ] {
         line(String::new());
         line(heading.to_owned());
-        for rule in listed.iter().filter(|rule| rule.role == role) {
+        for rule in decision.listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
@@ -139,9 +137,9 @@ fn words(
 }
 
 /// Result, name, value and limit of a rule.
-fn row(rule: &AppliedRule) -> String {
+fn row(rule: &ListedRule) -> String {
     // Short words, as in a column: what is not judged stands in the note below.
-    let word = match result_of(rule) {
+    let word = match rule.result {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",
         RuleResult::ExcessiveNotJudged => result(RuleResult::NotReached),

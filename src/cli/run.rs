@@ -16,7 +16,7 @@ use crate::run::folder::claim;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
-use crate::verdict::counts_as;
+use crate::verdict::Decision;
 use crate::words::first_lines;
 use crate::words::left_out::{NOT_COVERED, left_out_line};
 
@@ -25,16 +25,13 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
     let (scene, set, quiet) = (args.scene.scene()?, &args.scene.set, args.results.walk.quiet);
     let options = args.results.options(set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
-    show(&run, set.json, quiet)?;
-    args.results.workbook(&run)?;
-    args.results.accept.judged(&run)
+    args.results.finish(&run, set.json)
 }
 
 impl AcceptArgs {
     /// Ends a command by the verdict of its run.
-    pub fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
-        let outcome = &run.outcome;
-        let answer = JudgedAnswer { model: outcome.model.class, practice: counts_as(&outcome.rules) };
+    fn judged(&self, run: &FinishedRun, decision: &Decision) -> Result<(), RunError> {
+        let answer = JudgedAnswer { model: run.outcome.model.class, practice: decision.counts_as };
         accept(self.fail_on, [("", answer)])
     }
 }
@@ -51,8 +48,16 @@ impl ResultArgs {
         }
     }
 
+    /// Prints what came of a run, writes its workbook where it is asked for, and ends by its verdict.
+    pub fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
+        let decision = Decision::recorded(&run.outcome);
+        show(run, &decision, as_json, self.walk.quiet)?;
+        self.workbook(run)?;
+        self.accept.judged(run, &decision)
+    }
+
     /// Writes the workbook of a finished run, where it is asked for.
-    pub fn workbook(&self, run: &FinishedRun) -> Result<(), RunError> {
+    fn workbook(&self, run: &FinishedRun) -> Result<(), RunError> {
         #[cfg(feature = "xlsx")]
         if self.xlsx {
             let claimed = claim(&run.folder, FolderKind::Run, true)?;
@@ -74,8 +79,9 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
         ..RunOptions::default()
     };
     let run = followed(walk.quiet, |callbacks| run::resume(&args.folder, &options, callbacks))?;
-    show(&run, args.json, walk.quiet)?;
-    args.accept.judged(&run)
+    let decision = Decision::recorded(&run.outcome);
+    show(&run, &decision, args.json, walk.quiet)?;
+    args.accept.judged(&run, &decision)
 }
 
 /// The command line in words, whatever bytes it is made of.
@@ -85,11 +91,11 @@ pub fn command_line() -> String {
 }
 
 /// Prints what came of a run.
-pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
+fn show(run: &FinishedRun, decision: &Decision, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
         as_it_is(&json(format::OUTCOME, &run.outcome)?);
     } else if !quiet {
-        to_stdout(&summary(run));
+        to_stdout(&summary(run, decision));
     }
     Ok(())
 }
@@ -98,18 +104,18 @@ pub fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunErro
 const LABELS: usize = 4;
 
 /// What a user wants to know first.
-fn summary(run: &FinishedRun) -> String {
+fn summary(run: &FinishedRun, decision: &Decision) -> String {
     let outcome = &run.outcome;
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in first_lines(outcome, run.unit) {
+    for (name, said) in first_lines(outcome, decision, run.unit) {
         line(format!("{name}: {}", plain(&said)));
     }
     line(left_out_line(&outcome.model_leaves_out));
-    if outcome.headline.is_some() {
+    if decision.headline.is_some() {
         line(NOT_COVERED.into());
     }
     let page = shown(&run.folder.join("report.html"));

@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::values::assignment;
 use crate::scene::Scene;
-use crate::schema::{KeyInfo, Value};
+use crate::schema::{KeyInfo, Value, setting_name};
 
 /// The settings of a command.
 pub trait CommandSettings {
@@ -112,7 +112,7 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
         let mut assignments = set.clone();
         for key in C::OPTIONS {
             let Some(value) = matches.get_one::<String>(key) else { continue };
-            let is_this = |set: &&String| set.split('=').next().map(str::trim) == Some(*key);
+            let is_this = |set: &&String| setting_name(set) == *key;
             if let Some(twice) = set.iter().find(is_this) {
                 let option = option_name(key);
                 let problem = format!("--{option} and --set {twice} say the same thing twice: give one\n");

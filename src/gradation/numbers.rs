@@ -2,7 +2,6 @@
 
 use super::Gradation;
 use super::segments::count;
-use std::f64::consts::PI;
 
 impl Gradation {
     /// Number of particles of known size in one mm3 of solid: the integral of `6 / (pi D^3)` over the
@@ -48,40 +47,30 @@ impl Gradation {
     /// Share by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
     /// coarser than `high_mm`.
     pub fn number_fraction_in(&self, low_mm: f64, high_mm: f64) -> f64 {
-        (self.between(low_mm, high_mm).0 / self.particles_per_unit_volume()).min(1.0)
+        (self.number_in(low_mm, high_mm) / self.particles_per_unit_volume()).min(1.0)
     }
 
-    /// Mean of the cubed diameter (mm3), over the particles coarser than `low_mm` and no coarser than
-    /// `high_mm`; `None` where there are none.
-    pub fn mean_cube_between(&self, low_mm: f64, high_mm: f64) -> Option<f64> {
-        let (number, mass) = self.between(low_mm, high_mm);
-        (number > 0.0).then(|| 6.0 / PI * mass / number)
-    }
-
-    /// Particles per mm3 of solid, and fraction of the mass, in `low_mm < D <= high_mm`.
-    fn between(&self, low_mm: f64, high_mm: f64) -> (f64, f64) {
+    /// Particles per mm3 of solid in `low_mm < D <= high_mm`.
+    fn number_in(&self, low_mm: f64, high_mm: f64) -> f64 {
         if self.size_mm.len() == 1 {
             let inside = low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm;
-            return if inside { (self.number[0], 1.0) } else { (0.0, 0.0) };
+            return if inside { self.number[0] } else { 0.0 };
         }
-        let (mut number, mut mass) = (0.0, 0.0);
+        let mut number = 0.0;
         for (i, &whole) in self.log_ratio.iter().enumerate() {
             let (a, b) = (self.size_mm[i], self.size_mm[i + 1]);
-            let m = (self.percent[i + 1] - self.percent[i]) / 100.0;
             if low_mm <= a && b <= high_mm {
                 number += self.number[i + 1] - self.number[i];
-                mass += m;
                 continue;
             }
             let (from, to) = (a.max(low_mm), b.min(high_mm));
             if from < to {
                 let l = libm::log(to / from);
                 // The mass per unit of ln(D) is m / whole.
-                let part = if whole > 0.0 { (m * (l / whole)).min(m) } else { m };
-                number += count(from, l, part);
-                mass += part;
+                let m = (self.percent[i + 1] - self.percent[i]) / 100.0;
+                number += count(from, l, if whole > 0.0 { (m * (l / whole)).min(m) } else { m });
             }
         }
-        (number, mass)
+        number
     }
 }

@@ -2,13 +2,14 @@
 
 use maud::{Markup, html};
 
-use super::names::{as_sampled, input_name, is_named, soil_name};
+use super::names::{input_name, is_named, soil_name};
 use super::quantity::{SizeUnit, percent, significant};
 use super::shell::{clean, fact};
 use super::table::Table;
 use crate::outcome::record::{InputFile, Outcome};
 use crate::outcome::soil_sizes::us_sieve;
 use crate::outcome::table::Columns;
+use crate::words::grading;
 
 /// Rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
@@ -29,11 +30,12 @@ pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (filter, base) = (&inputs.filter, &inputs.base);
     let sampled = base.as_sampled.as_ref();
     let mut soils = vec![TabledSoil { kind: "Filter", name: &filter.name, rows: &filter.gradation }];
+    let name = if is_named("base", &base.name) { base.name.as_str() } else { "" };
     if let Some(sampled) = sampled {
-        let name = as_sampled(&base.name);
         soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &sampled.gradation });
     }
-    soils.push(TabledSoil { kind: "Base", name: &base.name, rows: &base.gradation });
+    let kind = sampled.map_or("Base".into(), |_| format!("Base, {}", grading(&base.size())));
+    soils.push(TabledSoil { kind: &kind, name, rows: &base.gradation });
     let note = html! {
         p.small {
             "Percent finer by mass, as walked and as the rules read them"
@@ -76,7 +78,7 @@ fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
     let columns = columns.number("percent_finer", "Percent finer", percent_finer);
     html! {
         div {
-            h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(&soil_name(name))) } } }
+            h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(soil_name(name))) } } }
             (Table::of(shown, columns))
             @if finest > 0.0 {
                 p.small {

@@ -66,7 +66,7 @@ fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     let soil = soil_name(filter);
     match alike.iter().position(|of| *of == filter) {
         Some(at) if alike.len() > 1 => name(&format!("{soil} ({})", at + 1)),
-        _ => name(&soil),
+        _ => name(soil),
     }
 }
 

@@ -2,10 +2,9 @@
 //! lines on the sheet of gradations.
 
 use super::figures::{Across, BLACK, Colour, Dash, Figure, GREEN, GREY, Line, PURPLE, Rule};
-use crate::outcome::record::{Outcome, RuleQuantity};
+use crate::outcome::record::RuleQuantity;
 use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
-use crate::verdict::rule_result::without_margin;
-use crate::verdict::tested::is_beyond_unclear;
+use crate::verdict::Decision;
 
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
@@ -21,16 +20,11 @@ const LIMITS: [(&str, &str, Colour, &str); 3] = [
 type Boundary = (usize, f64);
 
 /// The boundaries that are known for these soils.
-pub(super) fn boundaries(outcome: &Outcome) -> Vec<Boundary> {
+pub(super) fn boundaries(decision: &Decision) -> Vec<Boundary> {
     let limit = |id: &str| {
-        let rule = outcome.rules.iter().find(|rule| rule.id == id && rule.applies)?;
-        if id == TESTS_CONTINUING && is_beyond_unclear(&outcome.rules) {
-            return None;
-        }
-        let limit = rule
-            .limit
-            .filter(|limit| rule.quantity == RuleQuantity::D15F && *limit > 0.0 && limit.is_finite())?;
-        Some(limit)
+        let rule = decision.applied(id).filter(|rule| rule.quantity == RuleQuantity::D15F)?;
+        let is_unclear = id == TESTS_CONTINUING && decision.is_beyond_unclear;
+        rule.limit.filter(|limit| !is_unclear && *limit > 0.0 && limit.is_finite())
     };
     let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| Some((place, limit(id)?));
     LIMITS.iter().enumerate().filter_map(boundary).collect()
@@ -47,12 +41,12 @@ pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
 }
 
 /// The names of the lines, for the caption; nothing where there are none.
-pub(super) fn caption(outcome: &Outcome, boundaries: &[Boundary]) -> String {
+pub(super) fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
     // Design and no erosion are one number of a dispersive base.
-    let is_one = without_margin(&outcome.rules).is_some();
+    let is_one = decision.without_margin.is_some();
     let name = |(place, ..): &Boundary| match LIMITS[*place] {
         (DESIGN, ..) if is_one => "design and no erosion",
         (.., name) => name,

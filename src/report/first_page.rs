@@ -2,60 +2,41 @@
 //! the gradations with their sizes, and the rules of practice that decide or are not met.
 
 use maud::{Markup, html};
-use serde::Deserialize;
 
 use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
 use super::quantity::{SizeUnit, range_of_tests};
-use super::rules::{result, value_and_limit};
+use super::rules::result;
 use super::shell::{clean, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole, SheetCover};
+use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
 use crate::outcome::table::Columns;
-use crate::verdict::listed::listed;
-use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::scene::SheetUnits;
+use crate::verdict::rule_result::RuleResult;
+use crate::verdict::{Decision, ListedRule};
 use crate::words::left_out::left_out_line;
-use crate::words::rule::{self, limit_begins, limit_ends, value_begins};
-use crate::words::{first_lines, judged_alone};
-
-/// What the scene says of the page, and nothing else of it.
-#[derive(Default, Deserialize)]
-struct Said {
-    #[serde(default)]
-    about: About,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct About {
-    #[serde(flatten)]
-    cover: SheetCover,
-    coarse_left: bool,
-    units: Option<String>,
-}
-
-/// Whether gradations are drawn with coarse sizes on the left.
-pub(super) fn coarse_left(folder: &RunFolder) -> bool {
-    toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.coarse_left
-}
+use crate::words::rule::{self, limit_begins, limit_ends, value_and_limit, value_begins};
+use crate::words::{first_lines, grading, judged_alone};
 
 /// What sizes on the first sheet are shown in.
 pub(super) fn units(folder: &RunFolder) -> SizeUnit {
-    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.units;
-    SizeUnit::of(folder.outcome.inputs.scale_free, said.as_deref() == Some("us"))
+    SizeUnit::of(folder.outcome.inputs.scale_free, folder.about.sizes.units == Some(SheetUnits::Us))
 }
 
 /// The two soils, and what belongs to a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
     let (base, filter) = (titled("Base", &inputs.base.name), titled("filter", &inputs.filter.name));
-    let is_said = base.0 != "Base" || is_named("filter", &inputs.filter.name);
+    let regraded = inputs.base.regraded_at_mm.map(|_| grading(&inputs.base.size()));
+    let is_shown = is_named("Base", &inputs.base.name) || is_named("filter", &inputs.filter.name);
     html! {
         h1 { (QUESTION) }
-        @if is_said { p.names { (base) " against " (filter) } }
+        @if is_shown || regraded.is_some() {
+            p.names { (base) @if let Some(words) = regraded { " (" (words) ")" } " against " (filter) }
+        }
         (about(folder))
     }
 }
@@ -65,25 +46,24 @@ pub(super) const QUESTION: &str = "Will this filter hold this soil?";
 
 /// What is printed at the foot of every page.
 pub(super) fn foot_of(folder: &RunFolder) -> Option<String> {
-    foot(&toml::from_str::<Said>(&folder.scene).unwrap_or_default().about.cover)
+    foot(&folder.about.cover)
 }
 
 fn about(folder: &RunFolder) -> Markup {
-    let said = toml::from_str::<Said>(&folder.scene).unwrap_or_default().about;
     let manifest = &folder.manifest;
     let program = program(&manifest.version, manifest.commit.as_deref());
     let day = manifest.finished.split('T').next().map(String::from);
-    cover(&said.cover.dated(day), &program, Some(folder.outcome.seed))
+    cover(&folder.about.cover.clone().dated(day), &program, Some(folder.outcome.seed))
 }
 
 /// The answer: the lines of practice and model, and the number of notes.
-pub(super) fn answer(outcome: &Outcome, unit: SizeUnit) -> Markup {
+pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
     let notes = outcome.notes.len();
     html! {
-        section.verdict.(colour(outcome.headline)) {
-            @for (name, words) in first_lines(outcome, unit) {
+        section.verdict.(colour(decision.headline)) {
+            @for (name, words) in first_lines(outcome, decision, unit) {
                 p.practice { b { (name) } ": " (unbroken(&words)) "." }
-                @if name == "Practice" && let Some(alone) = judged_alone(outcome) {
+                @if name == "Practice" && let Some(alone) = judged_alone(outcome, decision) {
                     p.counted { (alone) }
                 }
             }
@@ -127,15 +107,15 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 }
 
 /// The rules of practice that decide or are not met, and how many others there are.
-pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let rules = listed(&outcome.rules);
-    let mut practice: Vec<&AppliedRule> = rules.iter().filter(|rule| rule.role != RuleRole::Walk).collect();
+pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
+    let rules = decision.listed.iter().filter(|rule| rule.role != RuleRole::Walk);
+    let mut practice: Vec<&ListedRule> = rules.collect();
     practice.sort_by_key(|rule| place(rule));
     let mut roles: Vec<RuleRole> = Vec::new();
-    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) = practice.into_iter().partition(|rule| {
+    let (shown, others): (Vec<&ListedRule>, Vec<&ListedRule>) = practice.into_iter().partition(|rule| {
         // Of several rules of one kind that are not met the first is enough here.
         let is_first = !roles.contains(&rule.role);
-        if result_of(rule) == RuleResult::NotMet {
+        if rule.result == RuleResult::NotMet {
             roles.push(rule.role);
         }
         place(rule) < NOT_MET || place(rule) == NOT_MET && is_first
@@ -174,9 +154,9 @@ pub(super) fn in_short(outcome: &Outcome, unit: SizeUnit) -> Markup {
 }
 
 /// How many of these rules have each result, those that are not met first.
-fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
+fn counts(rules: &[&ListedRule]) -> Vec<(usize, RuleResult)> {
     let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
-    let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
+    let count = |result: RuleResult| rules.iter().filter(|rule| rule.result == result).count();
     let counts = with.into_iter().chain(RuleResult::WITHOUT).map(|result| (count(result), result));
     counts.filter(|(count, _)| *count > 0).collect()
 }
@@ -188,9 +168,9 @@ const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEAB
 const NOT_MET: usize = DECIDING.len();
 
 /// The place of a rule: those that decide first, then those that are not met, and then the others.
-fn place(rule: &AppliedRule) -> usize {
+fn place(rule: &ListedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
-    match (deciding, result_of(rule)) {
+    match (deciding, rule.result) {
         (Some(place), _) => place,
         (None, RuleResult::NotMet) => NOT_MET,
         (None, _) => NOT_MET + 1,
@@ -217,9 +197,9 @@ fn quantity_in_brief(rule: &AppliedRule) -> &str {
     name.split([',', '(']).next().and_then(|name| name.split(" of the filter").next()).unwrap_or(name)
 }
 
-fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
+fn table(rules: &[&ListedRule], unit: SizeUnit) -> Markup {
     let columns = Columns::default()
-        .name("rule", "Rule", |rule: &&AppliedRule| purpose(rule))
+        .name("rule", "Rule", |rule: &&ListedRule| purpose(rule))
         .text("quantity", "Quantity", |rule| quantity_in_brief(rule).to_owned())
         .text("value", "Here", |rule| value_and_limit(rule, unit)[0].clone())
         .text("limit", "Limit", |rule| value_and_limit(rule, unit)[1].clone())

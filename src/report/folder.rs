@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::about::About;
 use super::error::ReportError;
 use super::files::{json, json_of, text};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
@@ -17,6 +18,8 @@ pub(super) struct RunFolder {
     pub packing: Option<PackingRecord>,
     /// `scene.toml`, verbatim.
     pub scene: String,
+    /// Its settings of the page.
+    pub about: About,
     /// The rows of its CSV files.
     pub rows: RunRows,
 }
@@ -41,9 +44,11 @@ impl RunFolder {
         let outcome = checked(&path, json(&path)?)?;
         let rows = rows_of(&outcome, folder, RowSource::Folder(folder))?;
         let manifest: Manifest = json(&folder.join(MANIFEST))?;
-        let scene = text(&folder.join("scene.toml"))?;
+        let path = folder.join(SCENE);
+        let scene = text(&path)?;
+        let about = About::read(&path, &scene)?;
         let packing = packing(&folder.join(PACKING), &manifest)?;
-        Ok(RunFolder { packing, outcome, manifest, scene, rows })
+        Ok(RunFolder { packing, outcome, manifest, scene, about, rows })
     }
 
     pub(super) fn of_texts(texts: RunTexts) -> Result<RunFolder, ReportError> {
@@ -53,7 +58,8 @@ impl RunFolder {
         let rows = rows_of(&outcome, Path::new(""), RowSource::Memory(recorded))?;
         let manifest = json_of(Path::new(MANIFEST), manifest)?;
         let packing = packing.map(|text| json_of(Path::new(PACKING), text)).transpose()?;
-        Ok(RunFolder { packing, outcome, manifest, scene: scene.to_owned(), rows })
+        let about = About::read(Path::new(SCENE), scene)?;
+        Ok(RunFolder { packing, outcome, manifest, scene: scene.to_owned(), about, rows })
     }
 
     /// What its figures and tables of walks show.
@@ -80,6 +86,7 @@ pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
 
 const OUTCOME: &str = "outcome.json";
 const MANIFEST: &str = "manifest.json";
+const SCENE: &str = "scene.toml";
 const PACKING: &str = "inputs/packing.json";
 
 fn rows_of(outcome: &Outcome, folder: &Path, source: RowSource) -> Result<RunRows, ReportError> {

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::appendix::{BETWEEN, TabledSoil, gradations};
 use super::figures::{Area, Axis, BLUE, Dash, Figure, GREEN, Line, VERMILLION, positive_range, shorten};
-use super::names::{as_sampled, is_named};
+use super::names::is_named;
 use super::quantity::SizeUnit;
 use super::shell::Drawn;
 use super::sizes::{SizedSoil, of_few, of_many};
@@ -93,8 +93,7 @@ impl<'a> GivenSoils<'a> {
         let mut soils = Vec::new();
         let named = |kind: &str, name: &'a str| if is_named(kind, name) { name } else { "" };
         for curve in curves {
-            // The size is in the heading of the part that it is of.
-            let name = if several { curve.name } else { named("base", as_sampled(curve.name)) };
+            let name = if several { curve.name } else { named("base", curve.name) };
             soils.push(TabledSoil { kind: "Base, as sampled", name, rows: curve.sampled });
             if !curve.regraded.is_empty() {
                 soils.push(TabledSoil { kind: "Base, regraded", name, rows: curve.regraded });

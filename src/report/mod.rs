@@ -30,6 +30,7 @@
 //! what the model found and leaves out, all rules. Figures and tables of research stay on the screen; paper
 //! ends with the gradations in numbers, the sources, and how to run it again.
 
+mod about;
 mod appendix;
 mod batch;
 mod boundaries;

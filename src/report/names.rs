@@ -12,39 +12,28 @@ use super::shell::clean;
 /// Endings of the tables that soils are read from.
 const TABLES: [&str; 7] = ["csv", "txt", "tsv", "xlsx", "ods", "ags", "dat"];
 
-/// What follows the name of a base that is walked regraded.
-const REGRADED: &str = ", regraded on ";
-
-/// The soil of `soils.xlsx#Till 3` is `Till 3`, that of `csv/tillh.csv` is `tillh`; any other name stays, and
-/// so does what a base is regraded on.
-pub(super) fn soil_name(name: &str) -> Cow<'_, str> {
-    match name.rsplit_once(REGRADED) {
-        Some((soil, size)) => Cow::Owned(format!("{}{REGRADED}{size}", own_name(soil))),
-        None => Cow::Borrowed(own_name(name)),
+/// The soil of `soils.xlsx#Till 3` is `Till 3`, that of `csv/tillh.csv` is `tillh`; any other name stays.
+pub(super) fn soil_name(name: &str) -> &str {
+    let (file, soil) = name.split_once('#').unwrap_or((name, ""));
+    let Some(stem) = ends_as_table(file) else { return name };
+    match (soil.trim(), last_part(stem)) {
+        ("", "") => name,
+        ("", stem) => stem,
+        (soil, _) => soil,
     }
-}
-
-/// The name of a soil without the size on which it is walked regraded.
-pub(super) fn as_sampled(name: &str) -> &str {
-    name.rsplit_once(REGRADED).map_or(name, |(soil, _)| soil)
 }
 
 /// Whether a soil has a name that says more than what it is: a column of a table may be called `Base`.
 pub(super) fn is_named(kind: &str, name: &str) -> bool {
-    let soil = soil_name(name);
-    let own = soil.split_once(REGRADED).map_or(&*soil, |(own, _)| own).trim();
-    !own.is_empty() && !own.eq_ignore_ascii_case(kind)
+    let soil = soil_name(name).trim();
+    !soil.is_empty() && !soil.eq_ignore_ascii_case(kind)
 }
 
-/// What a soil is, and its name where it has one: `Base Till 3, regraded on 4.75 mm`.
+/// What a soil is, and its name where it has one: `Base Till 3`.
 pub(super) fn titled(kind: &str, name: &str) -> Markup {
-    let soil = soil_name(name);
-    let regraded = soil.split_once(REGRADED).map(|(_, size)| size);
     html! {
         (kind)
-        @if is_named(kind, name) { " " b { bdi { (clean(&shorten(&soil, LINE))) } } } @else {
-            @if let Some(size) = regraded { " (regraded on " (clean(size)) ")" }
-        }
+        @if is_named(kind, name) { " " b { bdi { (clean(&shorten(soil_name(name), LINE))) } } }
     }
 }
 
@@ -71,10 +60,9 @@ pub(super) fn input_name(name: &str) -> Cow<'_, str> {
 /// What a soil is, in these words, and its name; the name of its file where it has none that says more than
 /// its kind: `Base base.csv`.
 pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
-    let file = name.split_once(REGRADED).map_or(name, |(file, _)| file);
-    let is_table = ends_as_table(file.split('#').next().unwrap_or_default()).is_some();
+    let is_table = ends_as_table(name.split('#').next().unwrap_or_default()).is_some();
     let shown = match is_named(kind, name) {
-        true => soil_name(name),
+        true => Cow::Borrowed(soil_name(name)),
         false => file_name(name),
     };
     html! {
@@ -123,16 +111,6 @@ fn ends_as_table(file: &str) -> Option<&str> {
     TABLES.iter().any(|table| ending.eq_ignore_ascii_case(table)).then_some(stem)
 }
 
-fn own_name(name: &str) -> &str {
-    let (file, soil) = name.split_once('#').unwrap_or((name, ""));
-    let Some(stem) = ends_as_table(file) else { return name };
-    match (soil.trim(), last_part(stem)) {
-        ("", "") => name,
-        ("", stem) => stem,
-        (soil, _) => soil,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,10 +119,9 @@ mod tests {
     fn a_name_that_says_no_more_than_its_kind_is_left_out() {
         let said = |kind, name| titled(kind, name).into_string();
         assert_eq!(said("Base", "/lab/base.csv"), "Base");
-        assert_eq!(said("Base", "soils.xlsx#BASE, regraded on 4.75 mm"), "Base (regraded on 4.75 mm)");
+        assert_eq!(said("Base", "soils.xlsx#BASE"), "Base");
         assert_eq!(said("filter", "C33 <sand>.csv"), "filter <b><bdi>C33 &lt;sand&gt;</bdi></b>");
-        let till = "Base <b><bdi>Till 3, regraded on 4.75 mm</bdi></b>";
-        assert_eq!(said("Base", "lab/soils.xlsx#Till 3, regraded on 4.75 mm"), till);
+        assert_eq!(said("Base", "lab/soils.xlsx#Till 3"), "Base <b><bdi>Till 3</bdi></b>");
         assert!(
             is_named("Base", "filter.csv") && !is_named("filter", "a/Filter.CSV") && !is_named("base", "")
         );
@@ -154,8 +131,6 @@ mod tests {
     fn a_name_that_says_no_more_than_its_kind_is_that_of_its_file_where_a_sheet_needs_one() {
         let said = |name| titled_by_file("Base", "Base", name).into_string();
         assert_eq!(said("/lab/base.csv"), "Base <b><bdi>base.csv</bdi></b>");
-        let regraded = "Base <b><bdi>base.csv, regraded on 4.75 mm</bdi></b>";
-        assert_eq!(said("/lab/base.csv, regraded on 4.75 mm"), regraded);
         assert_eq!(said("lab/soils.xlsx#base"), "Base <b><bdi>soils.xlsx#base</bdi></b>");
         assert_eq!(said("/lab/till.csv"), "Base <b><bdi>till</bdi></b>");
         assert_eq!([said("base"), said("")], ["Base", "Base"]);
@@ -172,7 +147,7 @@ mod tests {
         for (name, file) in [
             ("/tmp/a b/base.csv", "base.csv"),
             ("C:\\soils\\ring.xlsx#Base/Sample 1", "ring.xlsx#Base/Sample 1"),
-            ("/tmp/base.csv, regraded on 4.75 mm", "base.csv, regraded on 4.75 mm"),
+            ("the voids of /tmp/grains.csv, 3 times", "grains.csv, 3 times"),
             ("linear, Cu 3/4", "linear, Cu 3/4"),
         ] {
             assert_eq!(file_name(name), file);
@@ -201,8 +176,6 @@ mod tests {
             ("lab/soils.xlsx#Till 3", "Till 3"),
             ("soils.ods# ", "soils"),
             ("linear, Cu 1.5", "linear, Cu 1.5"),
-            ("till.csv, regraded on 4.75 mm", "till, regraded on 4.75 mm"),
-            ("linear, Cu 30, regraded on 2 mm", "linear, Cu 30, regraded on 2 mm"),
             ("Silty core fill no. 3", "Silty core fill no. 3"),
             ("#3", "#3"),
             (".csv", ".csv"),

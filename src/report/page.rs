@@ -27,6 +27,7 @@ use crate::outcome::record::Note;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
+use crate::verdict::Decision;
 use crate::words::capital;
 use crate::words::grading;
 use crate::words::left_out::left_out_words;
@@ -65,7 +66,7 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
-    let lines = first_lines(&outcome, SizeUnit::Mm);
+    let lines = first_lines(&outcome, &Decision::recorded(&outcome), SizeUnit::Mm);
     let said = Said {
         lines: &lines,
         meaning: in_words(&outcome, &walks),
@@ -90,9 +91,9 @@ fn replicate(outcome: &Outcome) -> [&'static str; 2] {
 
 /// The page of a run and all its figures.
 fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
-    let walks = run.walks();
+    let (walks, decision) = (run.walks(), Decision::recorded(&run.outcome));
     let verdict = run_figures::verdict(&walks);
-    let gradations = run_figures::gradations(run);
+    let gradations = run_figures::gradations(run, &decision);
     let figures: Vec<Drawn> = [
         run_figures::eroded(&walks),
         run_figures::layers(&walks),
@@ -103,25 +104,30 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     .flatten()
     .collect();
 
-    let page = page(run, &verdict, &gradations, &figures);
+    let page = page(run, &decision, [&verdict, &gradations], &figures);
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
 /// The page as text. `gradations` stands on its first sheet, `verdict` and `figures` below it.
-fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Drawn]) -> String {
+fn page(
+    folder: &RunFolder,
+    decision: &Decision,
+    [verdict, gradations]: [&Drawn; 2],
+    figures: &[Drawn],
+) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let unit = first_page::units(folder);
-    let soil = |name: &str| clean(&shorten(&soil_name(name), 60));
+    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
     let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
         true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
         false => first_page::QUESTION.to_owned(),
     };
     let main = html! {
         section.sheet {
-            (answer(outcome, unit))
+            (answer(outcome, decision, unit))
             (shell::figure(1, gradations))
-            div.pair { (in_short(outcome, unit)) (sizes(outcome, unit)) }
+            div.pair { (in_short(outcome, decision, unit)) (sizes(outcome, unit)) }
         }
         (shell::contents())
         (notes(outcome, unit))
@@ -130,7 +136,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
             p { "The model does not replace a filter test or a designer’s judgement." }
         }))
-        (rules(outcome, unit))
+        (rules(decision, unit))
         // What a client is not handed in stays on the screen.
         section.screen {
             h2 { "Figures" }
@@ -144,7 +150,7 @@ fn page(folder: &RunFolder, verdict: &Drawn, gradations: &Drawn, figures: &[Draw
             (inputs(outcome, folder.packing.as_ref()))
         }
         (appendix::of_run(outcome, unit))
-        (sources(outcome))
+        (sources(decision))
         (provenance(folder))
     };
     let foot = first_page::foot_of(folder);

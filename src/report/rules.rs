@@ -5,29 +5,29 @@ use maud::{Markup, html};
 use super::quantity::{SizeUnit, length};
 use super::shell::clean;
 use super::table::Table;
-use crate::outcome::record::{AppliedRule, Outcome, RuleRole};
+use crate::outcome::record::{AppliedRule, RuleRole};
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
-use crate::verdict::listed::listed;
-use crate::verdict::rule_result::{RuleResult, result_of};
+use crate::verdict::rule_result::RuleResult;
+use crate::verdict::{Decision, ListedRule};
 use crate::words::left_out::NOT_COVERED;
-use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends, value_begins};
+use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends};
+use crate::words::rule::{value_and_limit, value_begins};
 use crate::words::rule_note::rule_notes;
 
 /// Every rule with its value, limit, result, source and what it was made for.
-pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    let listed = listed(&outcome.rules);
-    let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        listed.iter().partition(|rule| rule.role == RuleRole::Walk);
+pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
+    let [practice, walk] = of_practice_and_walk(&decision.listed);
+    let sources = distinct_sources(&decision.listed);
     html! {
         h2 { "All rules" }
-        @if outcome.rules.is_empty() { p { "No rule was applied." } } @else {
+        @if decision.rules.is_empty() { p { "No rule was applied." } } @else {
             p.small { (LIMITS_ROUNDED) " " (NOT_COVERED) " In brackets: sources, below." }
-            (numbered(&practice, unit, &outcome.rules))
+            (numbered(&practice, unit, &sources))
             @if !walk.is_empty() {
                 div.screen {
                     h3 { "Comparisons of the walk with tests and with the paper" }
                     p.small { "They show whether the walk agrees with both. No filter fails by them." }
-                    (numbered(&walk, unit, &outcome.rules))
+                    (numbered(&walk, unit, &sources))
                 }
             }
         }
@@ -35,19 +35,18 @@ pub(super) fn rules(outcome: &Outcome, unit: SizeUnit) -> Markup {
 }
 
 /// Rules as a table in which numbers stand for the sources.
-fn numbered(rules: &[&AppliedRule], unit: SizeUnit, all: &[AppliedRule]) -> Markup {
-    let listed = distinct_sources(&listed(all));
-    table_with(rules, unit, |rule| match listed.iter().position(|source| *source == rule.source) {
+fn numbered(rules: &[&ListedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
+    table_with(rules, unit, |rule| match sources.iter().position(|source| *source == rule.source) {
         Some(place) => html! { " [" (place + 1) "]" },
         None => html! {},
     })
 }
 
 /// The sources of all rules, by the numbers that stand in the table.
-pub(super) fn sources(outcome: &Outcome) -> Markup {
-    let sources = distinct_sources(&listed(&outcome.rules));
-    let is_of_walk = |source: &String| {
-        let citing = outcome.rules.iter().filter(|rule| rule.source == *source);
+pub(super) fn sources(decision: &Decision) -> Markup {
+    let sources = distinct_sources(&decision.listed);
+    let is_of_walk = |source: &str| {
+        let citing = decision.rules.iter().filter(|rule| rule.source == source);
         citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
     };
     html! {
@@ -63,45 +62,44 @@ pub(super) fn sources(outcome: &Outcome) -> Markup {
     }
 }
 
+/// The rules of practice, and those that check the walk.
+fn of_practice_and_walk<'a>(rules: &'a [ListedRule<'a>]) -> [Vec<&'a ListedRule<'a>>; 2] {
+    let (walk, practice) = rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+    [practice, walk]
+}
+
 /// Each source once, those of practice first.
-fn distinct_sources(rules: &[AppliedRule]) -> Vec<String> {
-    let (walk, practice): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-        rules.iter().partition(|rule| rule.role == RuleRole::Walk);
-    let mut sources: Vec<String> = Vec::new();
-    for rule in practice.into_iter().chain(walk) {
-        if !rule.source.is_empty() && !sources.contains(&rule.source) {
-            sources.push(rule.source.clone());
+fn distinct_sources<'a>(rules: &'a [ListedRule<'a>]) -> Vec<&'a str> {
+    let mut sources: Vec<&str> = Vec::new();
+    for rule in of_practice_and_walk(rules).into_iter().flatten() {
+        if !rule.source.is_empty() && !sources.contains(&&*rule.source) {
+            sources.push(&rule.source);
         }
     }
     sources
 }
 
-/// Value and limit of a rule, which no line breaks apart from their units.
-pub(super) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
-    words::value_and_limit(rule, unit)
-}
-
-/// What stands in the place of a limit that is not there.
-fn no_limit(rule: &AppliedRule) -> &'static str {
-    let is_none = result_of(rule) == RuleResult::NotALimit;
+/// The sign in the place of a limit that is not there.
+fn no_limit(rule: &ListedRule) -> &'static str {
+    let is_none = rule.result == RuleResult::NotALimit;
     if is_none { words::result(RuleResult::NotALimit) } else { "–" }
 }
 
-/// What a rule found: a tick where it is kept alone.
-pub(super) fn result(rule: &AppliedRule) -> Shown {
-    let result = result_of(rule);
+/// The result of a rule: with a tick where it is kept, and there alone.
+pub(super) fn result(rule: &ListedRule) -> Shown {
+    let result = rule.result;
     let is_decided = matches!(result, RuleResult::Met | RuleResult::NotMet);
     words::result(result).shown().emphasised(is_decided.then_some(Emphasis::Kept(result == RuleResult::Met)))
 }
 
 /// Rules as a table, with what stands for the source behind the name of each.
-fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
+fn table_with(rules: &[&ListedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
     let value = |rule: &AppliedRule| {
         let [value, _] = value_and_limit(rule, unit);
         value.map_or_else(|| "–".to_owned(), |value| format!("{} {value}", value_begins(rule)))
     };
     let columns = Columns::default()
-        .name("rule", "Rule, what it is for, source", |rule: &&AppliedRule| rule.name.clone())
+        .name("rule", "Rule, what it is for, source", |rule: &&ListedRule| rule.name.clone())
         .text("authority", "Authority", |rule| {
             Some(rule.authorities().join(", ")).filter(|names| !names.is_empty())
         })
@@ -162,7 +160,9 @@ mod tests {
         assert_eq!(terzaghi(4.0003), ["4.0003", "4"]);
         assert_eq!(terzaghi(3.9998), ["3.9998", "4"]);
         assert_eq!(terzaghi(3.52), ["3.52", "4"]);
-        let page = table_with(&[&rule(TERZAGHI, 4.0003, 4.0)], SizeUnit::Mm, |_| html! {}).into_string();
+        let broken = [rule(TERZAGHI, 4.0003, 4.0)];
+        let listed = Decision::new(&broken, None, None).listed;
+        let page = table_with(&[&listed[0]], SizeUnit::Mm, |_| html! {}).into_string();
         assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
         // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
         let of = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);

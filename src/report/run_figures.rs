@@ -7,13 +7,13 @@ use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
-use super::first_page::coarse_left;
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
 use super::quantity::{SizeUnit, interval, interval_in_percent, length, percent, significant, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
+use crate::verdict::Decision;
 use crate::words::capital;
 use crate::words::{base_size, grading};
 
@@ -85,17 +85,17 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 }
 
 /// Filter, base and constrictions on semi-logarithmic axes.
-pub(super) fn gradations(folder: &RunFolder) -> Drawn {
+pub(super) fn gradations(folder: &RunFolder, decision: &Decision) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let limits = boundaries(&folder.outcome);
+    let limits = boundaries(decision);
     let sampled = base.as_sampled.as_ref();
     let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
     let rows =
         filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
     let x =
         size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
-    let x = if coarse_left(folder) { x.downward() } else { x };
+    let x = if folder.about.sizes.coarse_left { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
         Some(of) => base_size(&of, SizeUnit::Mm),
@@ -114,7 +114,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         figure = figure.sieves();
     }
     let name = |kind: &str, name: &str| match is_named(kind, name) {
-        true => format!("{kind}:\n{}", shorten(&soil_name(name), 24)),
+        true => format!("{kind}:\n{}", shorten(soil_name(name), 24)),
         false => kind.to_owned(),
     };
     boundaries::draw(&mut figure, &limits);
@@ -138,7 +138,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
         "Gradations by mass, constrictions by number.{}{}",
-        boundaries::caption(&folder.outcome, &limits),
+        boundaries::caption(decision, &limits),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)

@@ -135,7 +135,7 @@ fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError>
         packing,
         inputs: case.record(),
         left_out: left_out(&case, &of_run),
-        notes: ordered(&[], case.notes()),
+        notes: ordered(case.notes()),
         refusal,
     })
 }

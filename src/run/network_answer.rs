@@ -9,7 +9,7 @@ use crate::network::Network;
 use crate::outcome::record::Note;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::{PlannedWalk, ordered};
+use crate::verdict::{Decision, PlannedWalk, ordered};
 
 impl NetworkOutcome {
     /// Notes on the class, on so many networks of which this is the first.
@@ -30,7 +30,7 @@ impl NetworkOutcome {
                 ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        ordered(&rules, found)
+        ordered(Decision::new(&rules, None, None).notes().chain(found))
     }
 }
 

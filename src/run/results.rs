@@ -24,7 +24,7 @@ use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict
 use crate::store::format::{self, Format};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
-use crate::verdict::{dispersion, ordered, practice};
+use crate::verdict::{Decision, dispersion, ordered};
 use crate::walk::Shortcut;
 
 /// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
@@ -38,15 +38,12 @@ pub fn outcome(
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
     let inputs = rule_inputs(case, walked);
-    let rules = rules::apply(&inputs);
     let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
     let notes = notes_before_results(case, verdict, walked, (stopping.as_ref(), other.range.as_ref()));
     let inputs_record = case.record();
-    // Multiples of D0F are the sizes of a study, not of two soils.
-    let in_mm = !case.is_scale_free();
     let outcome = Outcome {
         headline: None,
-        practice: in_mm.then(|| practice::record(&rules, rules::tested_range(&inputs))).flatten(),
+        practice: None,
         model: Model {
             class: verdict,
             eroded_percent: eroded_percent(&summary, other.range.as_ref()),
@@ -71,7 +68,7 @@ pub fn outcome(
         inputs: inputs_record,
         network: case.network_summary(walked.first().and_then(|w| w.replicate.runs.first()?.k0_mm2)),
         ratios: case.ratios(),
-        rules,
+        rules: rules::apply(&inputs),
         infiltration: case
             .scene
             .is_lattice_by_area()
@@ -87,20 +84,23 @@ pub fn outcome(
     concluded_from_results(outcome, case, inputs)
 }
 
-/// The outcome with what follows from its results: notes, whether practice accepts the filter, the digest.
+/// The outcome with what follows from its results: what practice decides, notes, the digest.
 fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> Outcome {
-    let mut notes = std::mem::take(&mut outcome.notes);
-    notes.extend(outcome.notes_of_results());
+    let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
-        notes.extend(outcome.if_dispersive.map(dispersion::note));
     }
-    outcome.notes = ordered(&outcome.rules, notes);
     let d15f_mm = Some(outcome.inputs.filter.d15_mm);
-    let is_beyond =
-        outcome.if_dispersive.and_then(|limit| limit.broken_by(&outcome.rules, d15f_mm)).is_some();
-    let in_mm = !case.is_scale_free();
-    outcome.headline = in_mm.then(|| practice::headline(&outcome.rules, is_beyond)).flatten();
+    let decision = Decision::new(&outcome.rules, outcome.if_dispersive, d15f_mm);
+    let mut notes: Vec<Note> = decision.notes().collect();
+    // Multiples of D0F are the sizes of a study, not of two soils.
+    if !case.is_scale_free() {
+        (outcome.headline, outcome.practice) = (decision.headline, decision.record(range_of_tests_mm));
+    }
+    notes.append(&mut outcome.notes);
+    notes.extend(outcome.notes_of_results());
+    notes.extend(outcome.if_dispersive.map(dispersion::note));
+    outcome.notes = ordered(notes);
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
     outcome
 }
@@ -284,24 +284,29 @@ mod tests {
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
     }
 
+    fn line(outcome: &Outcome) -> String {
+        words::practice_line(&Decision::recorded(outcome), SizeUnit::Mm)
+    }
+
+    fn next_step(outcome: &Outcome) -> String {
+        words::next(outcome, &Decision::recorded(outcome), SizeUnit::Mm)
+    }
+
     /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
-        let next = words::next(&coarse, SizeUnit::Mm);
+        let next = next_step(&coarse);
         let beside = "at most 0.700\u{202f}mm (dispersive base: at most 0.500\u{202f}mm) and at least ";
         assert!(next.contains(beside), "{next}");
-        let next = words::next(&walked(45.0, 0.06, &[]), SizeUnit::Mm);
+        let next = next_step(&walked(45.0, 0.06, &[]));
         let beside = " to 0.700\u{202f}mm (dispersive base: at most 0.500\u{202f}mm)";
         assert!(next.starts_with("take a coarser filter, D15F ") && next.ends_with(beside), "{next}");
-        let open = words::next(&walked(25.0, 9.0, &[]), SizeUnit::Mm);
+        let open = next_step(&walked(25.0, 9.0, &[]));
         assert!(open.contains(" (dispersive base: less than "), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
             let said = walked(45.0, 1.2, &[set]);
-            assert!(
-                said.if_dispersive.is_none() && !words::next(&said, SizeUnit::Mm).contains("dispersive"),
-                "{set}"
-            );
+            assert!(said.if_dispersive.is_none() && !next_step(&said).contains("dispersive"), "{set}");
         }
     }
 
@@ -309,22 +314,12 @@ mod tests {
     fn a_filter_too_coarse_for_a_dispersive_base_is_said_in_the_line_of_practice() {
         let broken = walked(45.0, 0.6, &[]);
         assert_eq!(broken.headline, Some(Headline::MeetsUnlessDispersive));
-        assert!(
-            words::practice(&broken, SizeUnit::Mm)
-                .contains("; dispersive base: limit 0.500\u{202f}mm, not kept")
-        );
-        assert_eq!(
-            words::next(&broken, SizeUnit::Mm),
-            "have the base tested for dispersion by a pinhole or crumb test"
-        );
+        assert!(line(&broken).contains("; dispersive base: limit 0.500\u{202f}mm, not kept"));
+        assert_eq!(next_step(&broken), "have the base tested for dispersion by a pinhole or crumb test");
         let kept = walked(45.0, 0.45, &[]);
         assert_eq!(kept.headline, Some(Headline::Meets));
-        assert!(
-            !words::next(&kept, SizeUnit::Mm).contains("dispers"),
-            "{}",
-            words::next(&kept, SizeUnit::Mm)
-        );
-        assert!(!words::practice(&kept, SizeUnit::Mm).contains("dispersive"));
+        assert!(!next_step(&kept).contains("dispers"), "{}", next_step(&kept));
+        assert!(!line(&kept).contains("dispersive"));
     }
 
     /// With 38 % fines design allows 0.860 mm, more than the boundary of no erosion, and a dispersive base
@@ -332,7 +327,7 @@ mod tests {
     /// enough.
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
-        let next = |rows: &str| words::next(&walked_base(rows, 9.0, &[]), SizeUnit::Mm);
+        let next = |rows: &str| next_step(&walked_base(rows, 9.0, &[]));
         let begin = "take a filter with D15F at most 0.860\u{202f}mm (dispersive base: at most \
                      0.500\u{202f}mm) and at least ";
         let sieved = "0.075,38\n0.15,53.333\n0.3,68.667\n0.6,84\n1.2,89.846\n2.4,95.692\n4,100\n";
@@ -359,7 +354,7 @@ mod tests {
     fn the_next_step_goes_down_to_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
-            let next = words::next(&walked_base(rows, d15f, set), SizeUnit::Mm);
+            let next = next_step(&walked_base(rows, d15f, set));
             next.split("at most ").nth(1).map(|of| of.split('\u{202f}').next().unwrap().to_owned())
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
@@ -368,10 +363,10 @@ mod tests {
         let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
         let fine = of(0.18);
         assert_ne!(fine.model.class, Verdict::None);
-        assert_eq!(words::next(&fine, SizeUnit::Mm), "have this pair tested");
+        assert_eq!(next_step(&fine), "have this pair tested");
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = of(0.08);
-        assert_eq!(words::next(&fine, SizeUnit::Mm), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");
+        assert_eq!(next_step(&fine), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {

@@ -190,7 +190,7 @@ fn walk_here(
     let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
     let unit = SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches());
-    (callbacks.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
+    (callbacks.on_event)(Event::Noted { notes: &ordered(case.notes()), unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
     if resumed {

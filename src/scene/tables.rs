@@ -5,6 +5,7 @@ use std::path::Path;
 use super::values::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
 use crate::gradation::curves_in_file;
+use crate::schema::setting_name;
 use crate::verdict::{Mistake, PairOptions};
 
 /// What a scene of two tables is given besides them.
@@ -185,8 +186,10 @@ impl Scene {
     }
 }
 
-/// Refuses two sieve tables that can hardly be a base and its filter. A table that cannot be read, or holds
-/// several soils, is left to whoever reads it.
+/// Refuses two sieve tables that can hardly be a base and its filter, before any other work. A case cannot:
+/// no scene says whether its tables were named as a pair, or that they are as given. It refuses sizes so far
+/// apart that a unit must be wrong, and notes the rest. A table that cannot be read, or holds several soils,
+/// is left to whoever reads it.
 ///
 /// # Errors
 /// [`SceneError::Clash`], with both files and their sizes.
@@ -228,11 +231,6 @@ pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) 
 fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
     let is_set = |name: &str| changes.iter().any(|change| setting_name(change) == name);
     names.iter().copied().find(|name| is_set(name))
-}
-
-/// The name in `name=value`.
-fn setting_name(change: &str) -> &str {
-    change.split_once('=').map_or("", |(name, _)| name).trim()
 }
 
 /// A path as a TOML string, so that one like `1e5` stays a name.

@@ -17,6 +17,7 @@ mod value;
 use serde::Serialize;
 
 pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, words};
+pub(crate) use settings::setting_name;
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 

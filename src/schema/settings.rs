@@ -144,6 +144,11 @@ pub struct GivenSettings {
     values: BTreeMap<String, (Value, Origin)>,
 }
 
+/// The name in `name=value`; empty without a `=`.
+pub(crate) fn setting_name(assignment: &str) -> &str {
+    assignment.split_once('=').map_or("", |(name, _)| name).trim()
+}
+
 /// A larger settings file is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 

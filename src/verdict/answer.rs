@@ -1,12 +1,11 @@
 //! The notes of a case in the order in which every face shows them.
 
-use super::practice;
-use crate::outcome::record::{AppliedRule, Note};
+use crate::outcome::record::Note;
 
-/// The notes of a case and of its rules of practice, each once, in the order of their table.
-pub fn ordered(rules: &[AppliedRule], notes: Vec<Note>) -> Vec<Note> {
+/// The notes of a case, each once, in the order of their table.
+pub fn ordered(notes: impl IntoIterator<Item = Note>) -> Vec<Note> {
     let mut all: Vec<Note> = Vec::new();
-    for note in practice::notes(rules).into_iter().chain(notes) {
+    for note in notes {
         if !all.contains(&note) {
             all.push(note);
         }
@@ -29,7 +28,7 @@ mod tests {
         let mut all = vec![table[2].clone(), table[1].clone(), table[0].clone(), table[1].clone()];
         for _ in 0..all.len() {
             all.rotate_left(1);
-            assert_eq!(ordered(&[], all.clone()), table);
+            assert_eq!(ordered(all.clone()), table);
         }
     }
 }

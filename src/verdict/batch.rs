@@ -3,12 +3,9 @@
 
 use super::mistake::Mistake;
 use super::pair::{PairOptions, PairRules};
-use super::practice::{broken, open_sieves, standing};
 use super::rule_result::credit;
-use super::tested::{is_beyond_tests, tested};
-use super::washout::washout;
 use crate::gradation::SoilSample;
-use crate::outcome::design::retention::{retaining, retention};
+use crate::outcome::design::retention::retaining;
 use crate::outcome::record::{
     AppliedRule, IfDispersive, Note, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
 };
@@ -171,10 +168,8 @@ impl BatchRow {
         if is_refused {
             return Self { is_refused, ..row };
         }
-        let rules = &pair.rules;
-        // A D15F that lies in a finest tail has the limits in mm all the same.
-        let strictest = retention(rules, pair.filter.d15_mm.unwrap_or(1.0));
-        let strictest = strictest.map(|(rule, limit)| (rule, limit, rule.limit_at_most));
+        let (rules, decision) = (&pair.rules, pair.decision());
+        let strictest = decision.strictest.map(|(rule, limit)| (rule, limit, rule.limit_at_most));
         let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
         let open_base = is_open.then(|| OpenBase::of(base, false));
         // The strictest that a limit can be which hangs on sieves of the base that stand far apart.
@@ -187,45 +182,40 @@ impl BatchRow {
         let least = least.filter_map(|rule| Some((rule, hanging(rule)?, false)));
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
-        let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
-        let judged = design.and_then(|rule| rule.value).or(row.d15f_mm);
-        let between = open_sieves(rules);
+        let judged = decision.applied(DESIGN).and_then(|rule| rule.value).or(row.d15f_mm);
         // As on the page of the pair: what is left of a filter that may lose its own fines nobody knows.
-        let unknown = standing(rules).class() == PracticeClass::NotKnown
+        let unknown = decision.standing.class() == PracticeClass::NotKnown
             || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
-        let washout = washout(rules);
-        let is_kept = |role| broken(rules, role).is_empty();
-        let met = match is_kept(RuleRole::Retention) && is_kept(RuleRole::Continuation) {
-            false => Some(false),
-            true if washout.is_some() => Some(false),
-            true => (!unknown && strictest.is_some()).then_some(true),
+        let met = match decision.breaks(RuleRole::Retention) || decision.breaks(RuleRole::Continuation) {
+            true => Some(false),
+            false if decision.washout.is_some() => Some(false),
+            false => (!unknown && strictest.is_some()).then_some(true),
         };
-        let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies);
-        let drains = match broken(rules, RuleRole::Drainage).is_empty() {
-            true => drainage.and_then(|rule| rule.met),
-            false => Some(false),
+        let drainage = decision.applied(PERMEABILITY);
+        let drains = match decision.breaks(RuleRole::Drainage) {
+            true => Some(false),
+            false => drainage.and_then(|rule| rule.met),
         };
         let greatest = drainage.and_then(hanging);
-        let is_beyond = |limit: IfDispersive| limit.broken_by(rules, pair.filter.d15_mm).is_some();
         Self {
             d15f_mm: judged.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
             limit_mm: strictest.map(|(_, limit, _)| limit),
             limit_at_most: strictest.is_some_and(|(.., at_most)| at_most),
             rule: strictest.map_or(String::new(), |(rule, limit, _)| whose(rules, rule, limit)),
             met,
-            tests: tested(rules),
-            is_beyond_tests: is_beyond_tests(rules),
+            tests: decision.tests,
+            is_beyond_tests: decision.is_beyond_tests,
             drains,
             d15f_min_mm: greatest.or(drainage.and_then(|rule| rule.limit)),
             d15f_min_at_most: greatest.is_none() && drainage.is_some_and(|rule| rule.limit_at_most),
-            open_sieves: between.filter(|_| met.is_none()),
-            too_coarse_without_percent: washout.map(|washout| washout.left.percent),
-            may_segregate: !is_kept(RuleRole::Placing),
+            open_sieves: decision.open_sieves.filter(|_| met.is_none()),
+            too_coarse_without_percent: decision.washout.as_ref().map(|washout| washout.left.percent),
+            may_segregate: decision.breaks(RuleRole::Placing),
             is_drainage_judged: drainage.is_some(),
             joint: joint(rules),
             if_dispersive: pair.if_dispersive,
-            may_lose_fines: !is_kept(RuleRole::Stability),
-            breaks_if_dispersive: met == Some(true) && pair.if_dispersive.is_some_and(is_beyond),
+            may_lose_fines: decision.breaks(RuleRole::Stability),
+            breaks_if_dispersive: met == Some(true) && decision.beyond_dispersive.is_some(),
             ..row
         }
     }
@@ -286,6 +276,7 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::outcome::design::retention::retention;
     use crate::outcome::quantity::SizeUnit;
     use crate::verdict::BatchFilter;
     use crate::words::batch::{columns, counts, of_filter, open_limits};

@@ -49,16 +49,17 @@ impl IfDispersive {
 
     /// The D15F of a filter that breaks the limit then, as placed or without the finer part that it
     /// may lose, where it keeps `rules` as they are: what does not hold anyway would not hold the more.
-    pub fn broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<BeyondDispersive> {
+    pub(super) fn broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<BeyondDispersive> {
         let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
         if !d15f_mm.is_none_or(is_kept) {
             return None;
         }
         if let Some(d15f_mm) = d15f_mm.filter(|d15f| self.is_broken_by(*d15f)) {
-            return Some(BeyondDispersive { d15f_mm, without_percent: None });
+            return Some(BeyondDispersive { limit: *self, d15f_mm, without_percent: None });
         }
         let left = lost_beyond(rules, self.d15f_max_mm).filter(|_| washout(rules).is_none())?;
-        Some(BeyondDispersive { d15f_mm: left.d15f, without_percent: Some(left.percent) })
+        let without_percent = Some(left.percent);
+        Some(BeyondDispersive { limit: *self, d15f_mm: left.d15f, without_percent })
     }
 
     /// Whether a filter of this D15F (mm) is known to be too coarse for it.
@@ -70,6 +71,8 @@ impl IfDispersive {
 /// A filter that is too coarse for a dispersive base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondDispersive {
+    /// The limit that it breaks.
+    pub limit: IfDispersive,
     /// Its D15F (mm).
     pub d15f_mm: f64,
     /// The part (% of its mass) without which it has that D15F; `None` of the filter as placed.

@@ -6,7 +6,7 @@
 //! apart than [`WIDE_STEP`] alone, and a filter hides nothing of its own stability where 5 % pass or less.
 //! Whether a curve is flat enough to be a gap hangs on single sieves, and is not held of bases with fewer.
 
-use super::practice::{Standing, standing};
+use super::practice::Standing;
 use super::{BatchRow, PairOptions, PairRules};
 use crate::gradation::{FINES_MM, GAP_PERCENT, Gradation, SoilSample, USUAL_STEP, WIDE_STEP};
 use crate::outcome::record::PracticeClass;
@@ -70,7 +70,7 @@ fn soil(points: &[(f64, f64)]) -> Gradation {
 }
 
 fn place(base: &[(f64, f64)], filter: &[(f64, f64)]) -> Standing {
-    standing(&PairRules::of(&soil(base), &soil(filter)).rules)
+    PairRules::of(&soil(base), &soil(filter)).decision().standing
 }
 
 fn design_limit(base: &[(f64, f64)], filter: &[(f64, f64)]) -> f64 {
@@ -236,7 +236,7 @@ fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
         if row.is_refused {
             continue;
         }
-        let at = standing(&PairRules::of(&base, &filter[0].1).rules);
+        let at = PairRules::of(&base, &filter[0].1).decision().standing;
         let class = at.class();
         met += usize::from(row.met == Some(true));
         assert!(row.met != Some(true) || class == PracticeClass::Meets, "{row:?}");

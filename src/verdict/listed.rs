@@ -1,12 +1,31 @@
 //! Rules of practice in the rows of a table.
 
-use super::rule_result::without_margin;
+use std::borrow::Cow;
+use std::ops::Deref;
+
+use super::rule_result::{RuleResult, result_of, without_margin};
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 
+/// A rule in a row of a table, with its result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ListedRule<'r> {
+    rule: Cow<'r, AppliedRule>,
+    /// Its result.
+    pub result: RuleResult,
+}
+
+impl Deref for ListedRule<'_> {
+    type Target = AppliedRule;
+
+    fn deref(&self) -> &AppliedRule {
+        &self.rule
+    }
+}
+
 /// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
 /// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
-pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
+pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule<'_>> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
             |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
@@ -14,15 +33,17 @@ pub fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    let named = |rule: &AppliedRule| match is_one && rule.id == DESIGN {
-        true => {
-            let [name, source, applies_to] =
-                [OF_DISPERSIVE, OF_DISPERSIVE_SOURCE, FOR_DISPERSIVE].map(str::to_owned);
-            AppliedRule { name, authority: FELL.to_owned(), source, applies_to, ..rule.clone() }
-        }
-        false => rule.clone(),
+    let row = |rule| ListedRule {
+        result: result_of(rule),
+        rule: if is_one && rule.id == DESIGN { Cow::Owned(of_dispersive(rule)) } else { Cow::Borrowed(rule) },
     };
-    once.map(named).collect()
+    once.map(row).collect()
+}
+
+/// The limit of a dispersive base under its own name.
+fn of_dispersive(design: &AppliedRule) -> AppliedRule {
+    let [name, source, applies_to] = [OF_DISPERSIVE, OF_DISPERSIVE_SOURCE, FOR_DISPERSIVE].map(str::to_owned);
+    AppliedRule { name, authority: FELL.to_owned(), source, applies_to, ..design.clone() }
 }
 
 /// The authors of the limit of a dispersive base.
@@ -53,9 +74,9 @@ mod tests {
         let clay = [(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)];
         for (base, count) in [(&clay[..], 1), (&[(0.1, 0.0), (0.4, 100.0)], 2)] {
             let pair = PairRules::of(&Gradation::from_lines(base).unwrap(), &filter);
-            let drains = |rule: &&AppliedRule| rule.id.starts_with(PERMEABILITY);
-            assert_eq!(listed(&pair.rules).iter().filter(drains).count(), count);
-            assert_eq!(pair.rules.iter().filter(drains).count(), 2);
+            let drains = |rule: &AppliedRule| rule.id.starts_with(PERMEABILITY);
+            assert_eq!(listed(&pair.rules).iter().filter(|rule| drains(rule)).count(), count);
+            assert_eq!(pair.rules.iter().filter(|rule| drains(rule)).count(), 2);
         }
     }
 
@@ -67,8 +88,9 @@ mod tests {
         let filter = soil(&[(0.3, 0.0), (2.0, 100.0)]);
         let authors = |dispersive| {
             let options = PairOptions { dispersive, ..PairOptions::default() };
-            let rows = listed(&PairRules::of_envelopes(&base, &filter, options).rules);
-            let design = rows.into_iter().find(|rule| rule.id == DESIGN).unwrap();
+            let rules = PairRules::of_envelopes(&base, &filter, options).rules;
+            let rows = listed(&rules);
+            let design = rows.iter().find(|rule| rule.id == DESIGN).unwrap();
             design.authorities().join(", ")
         };
         assert_eq!(authors(false), "Sherard and Dunnigan, NRCS, USBR, USACE");

@@ -1,9 +1,10 @@
 //! Practice as facts: what its rules say of two soils, what a specification asks for, and notes. No walk
-//! decides here, and nothing here is a sentence.
+//! decides what practice says. Sentences are made in `words`, but for refusals of tables and for the formulas
+//! of a specification.
 //!
-//! - `practice` is where a filter stands by all rules, `tested` its class by the boundaries that Foster and
-//!   Fell saw in tests, `rule_result` what a single rule found, and `listed` the rules in the rows of a
-//!   table.
+//! - [`Decision`] is everything that practice decides of a pair, made once of its rules: `tested` has the
+//!   class by the boundaries that Foster and Fell saw in tests, `rule_result` what a single rule found, and
+//!   `listed` the rules in the rows of a table.
 //! - `washout` is what is left of a filter that is not internally stable, `dispersion` what a dispersive
 //!   base asks for.
 //! - [`PlannedWalk`] has the notes on soils and network before their walk, `walks` those of walks themselves;
@@ -21,14 +22,14 @@ mod designed_samples;
 pub(crate) mod dispersion;
 #[cfg(test)]
 mod fewer_sieves;
-pub(crate) mod listed;
+mod listed;
 mod mistake;
 mod pair;
 mod planned_walk;
 pub mod practice;
 pub mod rule_result;
 mod specification;
-pub mod tested;
+mod tested;
 mod walked_batch;
 pub(crate) mod walks;
 pub mod washout;
@@ -39,9 +40,10 @@ pub use answer::ordered;
 pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
 pub use designed_samples::{DesignedSample, DesignedSamples};
+pub use listed::ListedRule;
 pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;
-pub use practice::counts_as;
+pub use practice::Decision;
 pub use specification::{SpecificationOptions, least_of_band, no_band_between};
 pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::mistake::Mistake;
-use super::practice::{headline, record};
+use super::practice::Decision;
 use crate::gradation::{Gradation, RegradeReason};
 use crate::outcome::record::{AppliedRule, Headline, IfDispersive, Note, Practice};
 use crate::outcome::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, tested_range};
@@ -158,11 +158,12 @@ impl PairRules {
             true => None,
             false => IfDispersive::of_bases(bases, filter),
         };
-        let is_beyond = if_dispersive.is_some_and(|limit| limit.broken_by(&rules, filter.d(15.0)).is_some());
         let range = tested_range(&RuleInputs {
             dispersive: options.dispersive,
             ..RuleInputs::of_soils(base, filter)
         });
+        let decision = Decision::new(&rules, if_dispersive, filter.d(15.0));
+        let (headline, practice) = (decision.headline, decision.record(range));
         Self {
             filter: FilterSizes {
                 curves: names(filters),
@@ -189,12 +190,17 @@ impl PairRules {
                 cu: base.cu(),
                 cc: base.cc(),
             },
-            headline: headline(&rules, is_beyond),
-            practice: record(&rules, range),
+            headline,
+            practice,
             if_dispersive,
             rules,
             notes,
         }
+    }
+
+    /// The decision of practice on the pair.
+    pub fn decision(&self) -> Decision<'_> {
+        Decision::new(&self.rules, self.if_dispersive, self.filter.d15_mm)
     }
 }
 
@@ -203,7 +209,7 @@ mod tests {
     use super::*;
     use crate::outcome::record::{Headline, RuleRole};
     use crate::outcome::rules::DESIGN;
-    use crate::verdict::practice::{Standing, standing};
+    use crate::verdict::practice::Standing;
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
     #[test]
@@ -304,9 +310,10 @@ mod tests {
                 let alone = pairs.iter().flatten().filter(|of| of.id == rule.id).map(place);
                 assert_eq!(Some(place(rule)), alone.min(), "{} of {bases:?} and {filters:?}", rule.id);
             }
-            let worst = pairs.iter().map(|rules| worse(&standing(rules))).min().unwrap();
-            assert!(worse(&standing(&all)) <= worst, "{all:?}");
-            apart += usize::from(pairs.iter().any(|rules| worse(&standing(rules)) != worst));
+            let stands = |rules: &Vec<AppliedRule>| worse(&Decision::new(rules, None, None).standing);
+            let worst = pairs.iter().map(stands).min().unwrap();
+            assert!(stands(&all) <= worst, "{all:?}");
+            apart += usize::from(pairs.iter().any(|rules| stands(rules) != worst));
         }
         assert!(apart > 50, "{apart} envelopes have curves of which not all are as bad");
     }

@@ -1,88 +1,62 @@
-//! What the rules of filter practice say of a pair: where the filter stands by all of them, and notes.
+//! The decision of filter practice on a pair: made once, of its rules, for records, notes and every face.
 
-use super::rule_result::{has_no_margin, met_of};
-use super::tested::{is_beyond_tests, tested};
-use super::washout::washout;
-use crate::outcome::design::retention::retaining;
+use super::dispersion::BeyondDispersive;
+use super::listed::{ListedRule, listed};
+use super::rule_result::{RuleResult, has_no_margin, met_of, result_of, without_margin};
+use super::tested::{is_beyond_tests, is_beyond_unclear, tested};
+use super::washout::{Washout, washout};
+use crate::outcome::design::retention::{open_retention, retaining, retention};
 use crate::outcome::record::{
-    AppliedRule, Headline, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass,
-    Verdict, d15f_between,
+    AppliedRule, Headline, IfDispersive, Note, Outcome, Practice, PracticeClass, RuleNote, RuleQuantity,
+    RuleRole, TestedClass, Verdict, d15f_between,
 };
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
-/// The rules of a role that were made for these soils and are not kept.
-pub fn broken(rules: &[AppliedRule], role: RuleRole) -> Vec<&AppliedRule> {
-    match role {
-        RuleRole::Retention => retaining(rules).filter(|rule| rule.is_broken()).collect(),
-        _ => rules.iter().filter(|rule| rule.is_broken() && rule.role == role).collect(),
-    }
-}
-
-/// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
-/// Rules of retention stand in the line of practice.
-pub fn notes(rules: &[AppliedRule]) -> Vec<Note> {
-    let [unstable, undrained, placing] =
-        [RuleRole::Stability, RuleRole::Drainage, RuleRole::Placing].map(|role| broken(rules, role));
-    let limit = |of_size: bool| {
-        let is_wanted = |rule: &&&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
-        undrained.iter().find(is_wanted).and_then(|rule| rule.limit)
-    };
-    let authorities = unstable.iter().map(|rule| authority(rule).to_owned()).collect();
-    let quantities = placing.iter().map(|rule| rule.quantity.name().to_owned()).collect();
-    [
-        (!unstable.is_empty()).then_some(Note::LosesFines { authorities }),
-        limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
-        limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
-        (!placing.is_empty()).then_some(Note::MaySegregate { quantities }),
-        limit_without_margin(rules).map(|most_d15f_mm| Note::LimitWithoutMargin { most_d15f_mm }),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
-
-/// A limit of design (mm) that is not broken and has no margin.
-fn limit_without_margin(rules: &[AppliedRule]) -> Option<f64> {
-    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies)?;
-    design.limit.filter(|_| design.met != Some(false) && has_no_margin(rules))
-}
-
-/// What practice says of a pair, for programs; `None` where no rule of design was applied.
-pub fn record(rules: &[AppliedRule], range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
-    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies)?;
-    Some(Practice {
-        class: standing(rules).class(),
-        d15f_mm: d15f_between(&design.needs).or(design.value.map(|d15f| [d15f, d15f])),
-        limit_mm: design.limit,
-        limit_at_most: design.limit_at_most,
-        tests: tested(rules),
-        range_of_tests_mm,
-    })
-}
-
-/// The answer of practice, which is on the condition that the base is not dispersive where it would not hold
-/// such a base; `None` where no rule of design was applied.
-pub fn headline(rules: &[AppliedRule], breaks_if_dispersive: bool) -> Option<Headline> {
-    let breaks = |role| !broken(rules, role).is_empty();
-    Some(match standing(rules) {
-        Standing::NoRules => return None,
-        Standing::Fails => Headline::DoesNotMeet,
-        Standing::WashedOut => Headline::TooCoarseWithoutFiner,
-        Standing::NoMargin => Headline::BeyondDesign,
-        Standing::Unstable => Headline::MayLoseFiner,
-        Standing::Unknown(_) => Headline::TestMissing,
-        Standing::Open(_) => Headline::SievesMissing,
-        Standing::Met if breaks_if_dispersive => Headline::MeetsUnlessDispersive,
-        Standing::Met if breaks(RuleRole::Drainage) => Headline::MayNotDrain,
-        Standing::Met if breaks(RuleRole::Placing) => Headline::MaySegregate,
-        Standing::Met if is_drainage_unknown(rules) => Headline::DrainageNotKnown,
-        Standing::Met => Headline::Meets,
-    })
-}
-
-/// Whether the rule of drainage has no result.
-pub fn is_drainage_unknown(rules: &[AppliedRule]) -> bool {
-    rules.iter().any(|rule| rule.id == PERMEABILITY && rule.applies && rule.met.is_none())
+/// Everything that practice decides of a pair by its rules.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision<'r> {
+    /// Every rule.
+    pub rules: &'r [AppliedRule],
+    /// The result of every rule, in their order.
+    pub results: Vec<RuleResult>,
+    /// Rules as a sheet lists them.
+    pub listed: Vec<ListedRule<'r>>,
+    /// Rules that were made for these soils and are not kept; of retention those by which practice goes.
+    broken: Vec<&'r AppliedRule>,
+    /// Where the filter stands.
+    pub standing: Standing,
+    /// The answer, which is on the condition that the base is not dispersive where the filter would not hold
+    /// such a base; `None` where no rule of design was applied.
+    pub headline: Option<Headline>,
+    /// The class as which practice counts where verdicts are accepted or not, the worst that nobody excludes;
+    /// `None` where no rule of design was applied.
+    pub counts_as: Option<Verdict>,
+    /// The class by the boundaries of Foster and Fell.
+    pub tests: TestedClass,
+    /// Whether the filter is coarser than any for which tests found no erosion.
+    pub is_beyond_tests: bool,
+    /// Whether it is beyond a boundary of continuing erosion that tests leave unclear.
+    pub is_beyond_unclear: bool,
+    /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
+    /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
+    pub boundary: Option<&'r AppliedRule>,
+    /// What is left of a filter that is too coarse without its finer part.
+    pub washout: Option<Washout<'r>>,
+    /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+    pub without_margin: Option<&'r AppliedRule>,
+    /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
+    pub strictest: Option<(&'r AppliedRule, f64)>,
+    /// Whether the strictest limit is lower than that and not known.
+    pub is_strictest_open: bool,
+    /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
+    pub if_dispersive: Option<IfDispersive>,
+    /// The D15F that breaks that limit, where the filter keeps the others.
+    pub beyond_dispersive: Option<BeyondDispersive>,
+    /// The sizes between two sieves that stand far apart, on which the limit of design or the stability of
+    /// the filter depends.
+    pub open_sieves: Option<RuleNote>,
+    /// Whether the rule of drainage has no result.
+    pub is_drainage_unknown: bool,
 }
 
 /// Where a filter stands by practice, the worst first.
@@ -117,55 +91,174 @@ impl Standing {
     }
 }
 
-/// The sizes between two sieves that stand far apart, on which the limit of design or the stability of the
-/// filter depends.
-pub fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
+impl<'r> Decision<'r> {
+    /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
+    /// `None` where D15F lies in the filter's finest part.
+    pub fn new(rules: &'r [AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
+        let others = rules.iter().filter(|rule| rule.role != RuleRole::Retention);
+        let facts = Self {
+            rules,
+            results: rules.iter().map(result_of).collect(),
+            listed: listed(rules),
+            broken: retaining(rules).chain(others).filter(|rule| rule.is_broken()).collect(),
+            standing: Standing::NoRules,
+            headline: None,
+            counts_as: None,
+            tests: tested(rules),
+            is_beyond_tests: is_beyond_tests(rules),
+            is_beyond_unclear: is_beyond_unclear(rules),
+            boundary: None,
+            washout: washout(rules),
+            without_margin: without_margin(rules),
+            // A D15F that lies in a finest tail has the limits in mm all the same.
+            strictest: retention(rules, d15f_mm.unwrap_or(1.0)),
+            is_strictest_open: open_retention(rules).is_some(),
+            if_dispersive,
+            beyond_dispersive: if_dispersive.and_then(|limit| limit.broken_by(rules, d15f_mm)),
+            open_sieves: open_sieves(rules),
+            is_drainage_unknown: false,
+        };
+        let facts = Self {
+            standing: facts.stand(),
+            boundary: facts.telling_boundary(),
+            is_drainage_unknown: facts.applied(PERMEABILITY).is_some_and(|rule| rule.met.is_none()),
+            ..facts
+        };
+        Self { headline: facts.answer(), counts_as: facts.class(), ..facts }
+    }
+
+    /// The decision on a pair that was walked, with the answer that its record has.
+    pub fn recorded(outcome: &'r Outcome) -> Self {
+        let decided = Self::new(&outcome.rules, outcome.if_dispersive, Some(outcome.inputs.filter.d15_mm));
+        Self { headline: outcome.headline, ..decided }
+    }
+
+    /// The rule of this name, where it was made for these soils.
+    pub fn applied(&self, id: &str) -> Option<&'r AppliedRule> {
+        self.rules.iter().find(|rule| rule.id == id && rule.applies)
+    }
+
+    /// The rules of a role that were made for these soils and are not kept.
+    pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &'r AppliedRule> {
+        self.broken.iter().copied().filter(move |rule| rule.role == role)
+    }
+
+    /// Whether a rule of a role is not kept.
+    pub fn breaks(&self, role: RuleRole) -> bool {
+        self.broken(role).next().is_some()
+    }
+
+    fn stand(&self) -> Standing {
+        let Some(design) = self.applied(DESIGN) else { return Standing::NoRules };
+        // Beyond the limit of design alone, of which Terzaghi's ratio is that of a sand.
+        let is_within_tests = met_of(self.rules, TESTS_NO_EROSION) == Some(true);
+        let is_excused = |rule: &AppliedRule| is_within_tests && [DESIGN, "terzaghi"].contains(&&*rule.id);
+        let fails = self.broken(RuleRole::Retention).any(|rule| !is_excused(rule));
+        match (design.met, self.open_sieves) {
+            _ if fails || self.breaks(RuleRole::Continuation) => Standing::Fails,
+            _ if self.washout.is_some() => Standing::WashedOut,
+            (Some(false), _) => Standing::NoMargin,
+            (_, Some(sieves)) => Standing::Open(sieves),
+            _ if self.breaks(RuleRole::Stability) => Standing::Unstable,
+            (Some(true), None) => Standing::Met,
+            (None, None) => Standing::Unknown(design.needs.first().copied()),
+        }
+    }
+
+    fn answer(&self) -> Option<Headline> {
+        Some(match self.standing {
+            Standing::NoRules => return None,
+            Standing::Fails => Headline::DoesNotMeet,
+            Standing::WashedOut => Headline::TooCoarseWithoutFiner,
+            Standing::NoMargin => Headline::BeyondDesign,
+            Standing::Unstable => Headline::MayLoseFiner,
+            Standing::Unknown(_) => Headline::TestMissing,
+            Standing::Open(_) => Headline::SievesMissing,
+            Standing::Met if self.beyond_dispersive.is_some() => Headline::MeetsUnlessDispersive,
+            Standing::Met if self.breaks(RuleRole::Drainage) => Headline::MayNotDrain,
+            Standing::Met if self.breaks(RuleRole::Placing) => Headline::MaySegregate,
+            Standing::Met if self.is_drainage_unknown => Headline::DrainageNotKnown,
+            Standing::Met => Headline::Meets,
+        })
+    }
+
+    fn class(&self) -> Option<Verdict> {
+        let coarse = match self.tests {
+            TestedClass::Continuing => Verdict::Continuing,
+            TestedClass::Unknown if self.is_beyond_tests => Verdict::Undecided,
+            _ => Verdict::Some,
+        };
+        match self.standing {
+            Standing::NoRules => None,
+            Standing::Met => Some(Verdict::None),
+            Standing::Unknown(_) | Standing::Open(_) => Some(Verdict::Undecided),
+            Standing::NoMargin | Standing::Unstable => Some(Verdict::Some),
+            Standing::WashedOut if self.washout.as_ref().is_some_and(Washout::continues) => {
+                Some(Verdict::Continuing)
+            }
+            Standing::Fails | Standing::WashedOut => Some(coarse),
+        }
+    }
+
+    fn telling_boundary(&self) -> Option<&'r AppliedRule> {
+        let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
+        let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
+        match self.tests {
+            TestedClass::Continuing => self.applied(TESTS_CONTINUING),
+            _ if limits.is_some_and(|(tests, design)| tests < design) => no_erosion,
+            _ => no_erosion.filter(|_| design.is_some_and(|rule| rule.met == Some(false))),
+        }
+    }
+
+    /// The decision for programs; `None` where no rule of design was applied.
+    pub fn record(&self, range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
+        let design = self.applied(DESIGN)?;
+        Some(Practice {
+            class: self.standing.class(),
+            d15f_mm: d15f_between(&design.needs).or(design.value.map(|d15f| [d15f, d15f])),
+            limit_mm: design.limit,
+            limit_at_most: design.limit_at_most,
+            tests: self.tests,
+            range_of_tests_mm,
+        })
+    }
+
+    /// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
+    /// Rules of retention stand in the line of practice.
+    pub fn notes(&self) -> impl Iterator<Item = Note> {
+        let limit = |of_size: bool| {
+            let is_wanted = |rule: &&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
+            self.broken(RuleRole::Drainage).find(is_wanted).and_then(|rule| rule.limit)
+        };
+        let [unstable, placing] = [RuleRole::Stability, RuleRole::Placing].map(|role| self.breaks(role));
+        let authorities =
+            || self.broken(RuleRole::Stability).map(|rule| authority(rule).to_owned()).collect();
+        let quantities =
+            || self.broken(RuleRole::Placing).map(|rule| rule.quantity.name().to_owned()).collect();
+        [
+            unstable.then(|| Note::LosesFines { authorities: authorities() }),
+            limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
+            limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
+            placing.then(|| Note::MaySegregate { quantities: quantities() }),
+            self.limit_without_margin().map(|most_d15f_mm| Note::LimitWithoutMargin { most_d15f_mm }),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// A limit of design (mm) that is not broken and has no margin.
+    fn limit_without_margin(&self) -> Option<f64> {
+        let design = self.applied(DESIGN)?;
+        design.limit.filter(|_| design.met != Some(false) && has_no_margin(self.rules))
+    }
+}
+
+fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
     let counts = |rule: &&AppliedRule| {
         [DESIGN, TESTS_CONTINUING].contains(&&*rule.id) || rule.role == RuleRole::Stability
     };
     let open = rules.iter().filter(counts).filter(|rule| rule.applies && rule.met.is_none());
     open.flat_map(|rule| &rule.needs).copied().find(|need| need.sieves_between().is_some())
-}
-
-/// Where the filter of a pair stands.
-pub fn standing(rules: &[AppliedRule]) -> Standing {
-    let Some(design) = rules.iter().find(|rule| rule.id == DESIGN && rule.applies) else {
-        return Standing::NoRules;
-    };
-    let mut retention = broken(rules, RuleRole::Retention);
-    if met_of(rules, TESTS_NO_EROSION) == Some(true) {
-        // Beyond the limit of design alone, of which Terzaghi's ratio is that of a sand.
-        retention.retain(|rule| ![DESIGN, "terzaghi"].contains(&&*rule.id));
-    }
-    let fails = !retention.is_empty() || !broken(rules, RuleRole::Continuation).is_empty();
-    let open = open_sieves(rules);
-    match (design.met, open) {
-        _ if fails => Standing::Fails,
-        _ if washout(rules).is_some() => Standing::WashedOut,
-        (Some(false), _) => Standing::NoMargin,
-        (_, Some(sieves)) => Standing::Open(sieves),
-        _ if !broken(rules, RuleRole::Stability).is_empty() => Standing::Unstable,
-        (Some(true), None) => Standing::Met,
-        (None, None) => Standing::Unknown(design.needs.first().copied()),
-    }
-}
-
-/// The class as which practice counts where verdicts are accepted or not, the worst that nobody excludes;
-/// `None` where no rule was applied.
-pub fn counts_as(rules: &[AppliedRule]) -> Option<Verdict> {
-    let coarse = match tested(rules) {
-        TestedClass::Continuing => Verdict::Continuing,
-        TestedClass::Unknown if is_beyond_tests(rules) => Verdict::Undecided,
-        _ => Verdict::Some,
-    };
-    match standing(rules) {
-        Standing::NoRules => None,
-        Standing::Met => Some(Verdict::None),
-        Standing::Unknown(_) | Standing::Open(_) => Some(Verdict::Undecided),
-        Standing::NoMargin | Standing::Unstable => Some(Verdict::Some),
-        Standing::WashedOut if washout(rules).is_some_and(|of| of.continues()) => Some(Verdict::Continuing),
-        Standing::Fails | Standing::WashedOut => Some(coarse),
-    }
 }
 
 #[cfg(test)]
@@ -194,13 +287,13 @@ mod tests {
     fn practice_goes_by_design_where_tests_are_stricter() {
         for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
             let options = PairOptions { dispersive: false, ..PairOptions::default() };
-            let rules = PairRules::of_envelopes(&soil(base), &filter(d15f), options).rules;
-            assert_eq!((met_of(&rules, DESIGN), met_of(&rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
-            assert_eq!(standing(&rules), Standing::Met);
-            assert_eq!(counts_as(&rules), Some(Verdict::None));
-            assert!(matches!(notes(&rules)[..], [Note::LimitWithoutMargin { .. }]));
+            let pair = PairRules::of_envelopes(&soil(base), &filter(d15f), options);
+            let (rules, decision) = (&pair.rules, pair.decision());
+            assert_eq!((met_of(rules, DESIGN), met_of(rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
+            assert_eq!((decision.standing, decision.counts_as), (Standing::Met, Some(Verdict::None)));
+            assert!(matches!(decision.notes().collect::<Vec<_>>()[..], [Note::LimitWithoutMargin { .. }]));
             for (id, wanted) in [(DESIGN, design), (TESTS_NO_EROSION, tests)] {
-                let limit = rules.iter().find(|rule| rule.id == id).and_then(|rule| rule.limit).unwrap();
+                let limit = decision.applied(id).and_then(|rule| rule.limit).unwrap();
                 assert!((limit / wanted - 1.0).abs() < 0.01, "{id} {limit}");
             }
             let sample = crate::gradation::SoilSample {
@@ -210,8 +303,8 @@ mod tests {
             };
             assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
             // Beyond the limit of design it is not met.
-            let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options).rules;
-            assert_eq!(record(&coarse, None).unwrap().class, PracticeClass::DoesNotMeet);
+            let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options);
+            assert_eq!(coarse.practice.unwrap().class, PracticeClass::DoesNotMeet);
         }
     }
 
@@ -229,9 +322,10 @@ mod tests {
             (&sand, soil(&halved), PracticeClass::NotKnown, Verdict::Some),
             (&hidden, filter(1.0), PracticeClass::NotKnown, Verdict::Undecided),
         ] {
-            let rules = PairRules::of_envelopes(base, &filter, PairOptions::default()).rules;
-            assert_eq!((record(&rules, None).unwrap().class, counts_as(&rules)), (class, Some(counts)));
+            let pair = PairRules::of_envelopes(base, &filter, PairOptions::default());
+            let recorded = pair.practice.as_ref().unwrap().class;
+            assert_eq!((recorded, pair.decision().counts_as), (class, Some(counts)));
         }
-        assert_eq!(counts_as(&[]), None);
+        assert_eq!(Decision::new(&[], None, None).counts_as, None);
     }
 }

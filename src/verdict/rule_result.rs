@@ -1,9 +1,9 @@
-//! What single rules of practice found.
+//! The results of single rules of practice, and whose they are.
 
 use crate::outcome::record::{AppliedRule, RuleNote, RuleRole};
 use crate::outcome::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 
-/// What a rule of practice found. Every face shows this, and none works it out by itself.
+/// The result of a rule of practice, which `verdict` alone works out and faces show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RuleResult {
     /// Its limit is kept.
@@ -29,8 +29,8 @@ impl RuleResult {
     pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
 }
 
-/// What a rule found.
-pub fn result_of(rule: &AppliedRule) -> RuleResult {
+/// The result of a rule.
+pub(super) fn result_of(rule: &AppliedRule) -> RuleResult {
     match rule.met.filter(|_| rule.applies) {
         Some(true) if rule.role == RuleRole::Continuation => {
             match rule.notes.contains(&RuleNote::ExcessiveNotJudged) {
@@ -49,7 +49,7 @@ pub fn result_of(rule: &AppliedRule) -> RuleResult {
 
 /// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
 /// of its own, and so no margin.
-pub(crate) fn is_of_dispersive(rule: &AppliedRule) -> bool {
+fn is_of_dispersive(rule: &AppliedRule) -> bool {
     [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
         && rule.applies
         && rule.notes.contains(&RuleNote::Dispersive)
@@ -58,7 +58,7 @@ pub(crate) fn is_of_dispersive(rule: &AppliedRule) -> bool {
 }
 
 /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
-pub(crate) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
     let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
     (design.limit == tests.limit).then_some(design)
@@ -66,7 +66,7 @@ pub(crate) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
 
 /// Whether the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
 /// the lower end of the range in which erosion began in tests, or within that range.
-pub(crate) fn has_no_margin(rules: &[AppliedRule]) -> bool {
+pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     let limit = |id: &str| {
         let rule = rules.iter().find(|rule| rule.id == id && rule.applies && !rule.limit_at_most)?;
         rule.limit
@@ -101,7 +101,7 @@ pub fn cited_rule(rule: &AppliedRule) -> String {
 }
 
 /// Whether a rule that was made for these soils is kept; `None` where it has no result.
-pub(crate) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
 

@@ -8,7 +8,7 @@ use crate::outcome::record::{AppliedRule, RuleNote, TestedClass};
 use crate::outcome::rules::{TESTS_CONTINUING, TESTS_NO_EROSION};
 
 /// The class by the boundaries of Foster and Fell.
-pub fn tested(rules: &[AppliedRule]) -> TestedClass {
+pub(super) fn tested(rules: &[AppliedRule]) -> TestedClass {
     let met = |id| met_of(rules, id);
     match (met(TESTS_NO_EROSION), met(TESTS_CONTINUING)) {
         (_, Some(false)) => TestedClass::Continuing,
@@ -19,12 +19,12 @@ pub fn tested(rules: &[AppliedRule]) -> TestedClass {
 }
 
 /// Whether a filter is coarser than any for which tests of Foster and Fell found no erosion.
-pub fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
+pub(super) fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
     met_of(rules, TESTS_NO_EROSION) == Some(false)
 }
 
 /// Whether the filter lies beyond 9 D95B of a base for which tests identified no clear boundary.
-pub fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
+pub(super) fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
     let is_unclear = |rule: &&AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
     rules.iter().any(|rule| rule.id == TESTS_CONTINUING && is_unclear(&rule))
 }
@@ -59,7 +59,8 @@ mod tests {
         ] {
             let rules = rules(base, d15f);
             assert_eq!(tested(&rules), class, "{d15f}");
-            assert_eq!(crate::words::tested_class(&rules).contains("not excluded"), !excluded, "{d15f}");
+            let words = crate::words::tested_in_brief(class, is_beyond_tests(&rules));
+            assert_eq!(words.contains("not excluded"), !excluded, "{d15f}");
             assert_eq!(is_beyond_unclear(&rules), d15f == 40.0);
         }
     }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::batch::BatchRow;
 use super::batch_table::BatchFilter;
-use super::practice::counts_as;
+use super::practice::Decision;
 use crate::outcome::BaseSize;
 use crate::outcome::record::{Headline, ModelLimit, Outcome, Ratios, SheetCover, Statistic, Verdict, commit};
 use crate::outcome::verdict::THRESHOLD;
@@ -100,7 +100,7 @@ impl SampleWalk {
             in_full,
             headline: outcome.headline,
             verdict: outcome.model.class,
-            by_practice: counts_as(&outcome.rules),
+            by_practice: Decision::recorded(outcome).counts_as,
             replicates: outcome.replicates.len() as u64,
             ratios: outcome.ratios,
             base: outcome.inputs.base_size(),

@@ -13,6 +13,7 @@ use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
 use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Washout<'r> {
     /// What is left.
     pub left: WithoutFiner,
@@ -28,7 +29,7 @@ pub struct Washout<'r> {
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
 /// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
-pub fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
     let d15f = d15f.unwrap_or(1.0);

@@ -11,7 +11,7 @@
 //! widen its limits. And Terzaghi's ratio gives way to limits by fines once a base is known to have 15 % of
 //! them.
 
-use super::practice::headline;
+use super::practice::Decision;
 use crate::gradation::Gradation;
 use crate::outcome::record::{AppliedRule, PracticeClass, RuleRole};
 use crate::outcome::rules::{BaseSoil, RuleInputs, apply};
@@ -78,7 +78,7 @@ fn broken(rules: &[AppliedRule]) -> Vec<&str> {
 #[track_caller]
 fn no_better(worse: &[AppliedRule], than: &[AppliedRule]) {
     let fails = |rules: &[AppliedRule]| {
-        headline(rules, false).is_some_and(|headline| headline.class() == PracticeClass::DoesNotMeet)
+        Decision::new(rules, None, None).standing.class() == PracticeClass::DoesNotMeet
     };
     assert!(!fails(than) || fails(worse), "{worse:?} after {than:?}");
 }

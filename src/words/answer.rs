@@ -1,19 +1,22 @@
 //! The lines that every face begins with: practice, the model, and what to do next.
 
 use super::next::next;
-use super::practice::practice;
+use super::practice::practice_line;
 use crate::outcome::quantity::{SizeUnit, percent};
 use crate::outcome::record::{Model, Note, Outcome};
+use crate::verdict::Decision;
 
-/// Notes that stand on the first page and on a terminal; the rest stand further down the page.
+/// The most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
 pub const FOREMOST: usize = 3;
 
 /// The lines that every face begins with, each under its name: without two sieve curves in mm the model's
 /// alone.
-pub fn first_lines(outcome: &Outcome, unit: SizeUnit) -> Vec<(&'static str, String)> {
+pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(&'static str, String)> {
     let line = ("Model (research)", model(&outcome.model));
-    match outcome.headline {
-        Some(_) => vec![("Practice", practice(outcome, unit)), line, ("Next", next(outcome, unit))],
+    match decision.headline {
+        Some(_) => {
+            vec![("Practice", practice_line(decision, unit)), line, ("Next", next(outcome, decision, unit))]
+        }
         None => vec![line],
     }
 }

@@ -49,7 +49,7 @@ mod tests {
         let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
         let no_erosion = if networks.is_empty() { None } else { Boundary::of(&networks, d85_mm) };
         let text = serde_json::json!({
-            "version": "1", "filter": "f", "filter_cu": 1.5, "filter_d15_mm": null,
+            "version": "1", "filter": "f", "curve_name": "c", "filter_cu": 1.5, "filter_d15_mm": null,
             "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85_mm, "d95_over_d85": null,
                 "tail_mass_fraction": 0.0},
             "threshold": 0.075, "replicates": 2, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],

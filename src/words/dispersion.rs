@@ -1,26 +1,20 @@
 //! The limit of a base of which nobody has said whether it is dispersive.
 
 use crate::outcome::quantity::{NumberRole, SizeUnit, Unit, beside_limit, length, significant};
-use crate::outcome::record::{AppliedRule, DispersiveLack, IfDispersive};
+use crate::outcome::record::{DispersiveLack, IfDispersive};
+use crate::verdict::dispersion::BeyondDispersive;
 
-/// A filter that is too coarse for a dispersive base alone, in a clause; `None` where it keeps the limit, or
-/// is too coarse in any case.
-pub fn beyond_dispersive(
-    limit: IfDispersive,
-    rules: &[AppliedRule],
-    d15f_mm: Option<f64>,
-    unit: SizeUnit,
-) -> Option<String> {
-    let beyond = limit.broken_by(rules, d15f_mm)?;
-    let at_most = if limit.at_most { "at most " } else { "" };
+/// A filter that is too coarse for a dispersive base alone, in a clause.
+pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> String {
+    let at_most = if beyond.limit.at_most { "at most " } else { "" };
     let [value, most] =
-        beside_limit([Some(beyond.d15f_mm), Some(limit.d15f_max_mm)], false, Unit::Size(unit))
+        beside_limit([Some(beyond.d15f_mm), Some(beyond.limit.d15f_max_mm)], false, Unit::Size(unit))
             .map(Option::unwrap_or_default);
     let without = beyond.without_percent.map(|part| {
         format!(" (D15F {value} without the filter's finest {} %)", significant(part).decimals(1))
     });
     let without = without.unwrap_or_default();
-    Some(format!("dispersive base: limit {at_most}{most}, not kept{without}"))
+    format!("dispersive base: limit {at_most}{most}, not kept{without}")
 }
 
 /// The limit behind a D15F (mm) that is recommended; `None` where that holds for a dispersive base too.

@@ -1,28 +1,26 @@
 //! The next step by practice: which D15F a filter is to have, what to test, what to find out.
 
-use super::dispersion::{beside_dispersive, beyond_dispersive};
+use super::dispersion::beside_dispersive;
 use super::rule_note::missing;
 use crate::gradation::FINES_MM;
-use crate::outcome::design::retention::{open_retention, retention};
 use crate::outcome::quantity::{NumberRole, SizeUnit, length, limits, significant};
-use crate::outcome::record::{AppliedRule, IfDispersive, Outcome, RuleQuantity, RuleRole, Verdict};
-use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY, TESTS_CONTINUING};
-use crate::verdict::practice::{Standing, broken, standing};
+use crate::outcome::record::{AppliedRule, Outcome, RuleQuantity, RuleRole, TestedClass, Verdict};
+use crate::outcome::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY};
+use crate::verdict::Decision;
+use crate::verdict::practice::Standing;
 
 /// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault of it.
 const DRAIN_D15F_MM: f64 = 5.0;
 
 /// The next step by practice for a pair in mm, in a sentence without its end.
-pub fn next(outcome: &Outcome, unit: SizeUnit) -> String {
-    let (rules, d15f_mm) = (&outcome.rules[..], outcome.inputs.filter.d15_mm);
-    Pair { rules, d15f_mm, if_dispersive: outcome.if_dispersive, class: outcome.model.class, unit }.step()
+pub fn next(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> String {
+    Pair { decision, d15f_mm: outcome.inputs.filter.d15_mm, class: outcome.model.class, unit }.step()
 }
 
 /// A pair as practice sees it.
 struct Pair<'a> {
-    rules: &'a [AppliedRule],
+    decision: &'a Decision<'a>,
     d15f_mm: f64,
-    if_dispersive: Option<IfDispersive>,
     /// The class of the model.
     class: Verdict,
     unit: SizeUnit,
@@ -30,10 +28,10 @@ struct Pair<'a> {
 
 impl Pair<'_> {
     fn step(&self) -> String {
-        match standing(self.rules) {
+        match self.decision.standing {
             Standing::Fails | Standing::NoMargin => self.retention(),
             // As placed it is too coarse already.
-            Standing::WashedOut if !broken(self.rules, RuleRole::Retention).is_empty() => {
+            Standing::WashedOut if self.decision.breaks(RuleRole::Retention) => {
                 self.retention() + "; it must be internally stable"
             }
             Standing::WashedOut | Standing::Unstable => self.stability(),
@@ -61,7 +59,7 @@ impl Pair<'_> {
 
     /// A test of the base, where the filter is too coarse for a dispersive one alone.
     fn dispersion(&self) -> Option<String> {
-        beyond_dispersive(self.if_dispersive?, self.rules, Some(self.d15f_mm), self.unit)?;
+        self.decision.beyond_dispersive?;
         Some("have the base tested for dispersion by a pinhole or crumb test".into())
     }
 
@@ -72,8 +70,7 @@ impl Pair<'_> {
             _ => "take an internally stable filter".into(),
         };
         // A test of its stability would leave these open.
-        let is_open =
-            [RuleRole::Drainage, RuleRole::Placing].iter().any(|role| !broken(self.rules, *role).is_empty());
+        let is_open = self.decision.breaks(RuleRole::Drainage) || self.decision.breaks(RuleRole::Placing);
         if is_open { filter } else { format!("{filter}, or have its internal stability tested") }
     }
 
@@ -92,10 +89,9 @@ impl Pair<'_> {
 
     /// Beyond the boundary of continuing erosion no test of the pair is to be waited for.
     fn existing_filter(&self) -> &'static str {
-        let is_beyond = |rule: &AppliedRule| rule.id == TESTS_CONTINUING && rule.met == Some(false);
-        match self.rules.iter().any(is_beyond) {
-            true => "for an existing filter, assume continuing erosion",
-            false => "for an existing filter, have this pair tested",
+        match self.decision.tests {
+            TestedClass::Continuing => "for an existing filter, assume continuing erosion",
+            _ => "for an existing filter, have this pair tested",
         }
     }
 
@@ -123,24 +119,22 @@ impl Pair<'_> {
 
     /// The limit of a dispersive base beside a D15F (mm) that is recommended.
     fn beside_dispersive(&self, most: f64) -> Option<String> {
-        beside_dispersive(self.if_dispersive?, most, self.unit)
+        beside_dispersive(self.decision.if_dispersive?, most, self.unit)
     }
 
     /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
     /// not known.
     fn greatest(&self) -> Option<(f64, bool)> {
-        let (_, limit) = retention(self.rules, self.d15f_mm)?;
-        Some((limit, open_retention(self.rules).is_some()))
+        self.decision.strictest.map(|(_, limit)| (limit, self.decision.is_strictest_open))
     }
 
     fn drainage_rule(&self) -> Option<&AppliedRule> {
-        self.rules.iter().find(|rule| rule.id == PERMEABILITY && rule.applies)
+        self.decision.applied(PERMEABILITY)
     }
 
     fn drainage(&self) -> Option<String> {
-        let broken = broken(self.rules, RuleRole::Drainage);
         let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-            broken.into_iter().partition(|rule| rule.quantity == RuleQuantity::D15F);
+            self.decision.broken(RuleRole::Drainage).partition(|rule| rule.quantity == RuleQuantity::D15F);
         let fines = of_fines.iter().find_map(|rule| rule.limit);
         let least = of_size.iter().find_map(|rule| rule.limit);
         let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
@@ -160,8 +154,7 @@ impl Pair<'_> {
 
     /// What to ask of a filter whose fines nobody sieved.
     fn fines(&self) -> Option<String> {
-        let is_open = |rule: &&AppliedRule| rule.id == FILTER_FINES && rule.applies && rule.met.is_none();
-        let most = self.rules.iter().find(is_open)?.limit?;
+        let most = self.decision.applied(FILTER_FINES).filter(|rule| rule.met.is_none())?.limit?;
         Some(format!("have the fines of the filter tested, and wash it where needed: {}", few_fines(most)))
     }
 
@@ -174,7 +167,7 @@ impl Pair<'_> {
             let limit = rule.limit.filter(|_| self.d15f_mm <= DRAIN_D15F_MM)?;
             Some(format!("take out the grains coarser than {} mm", significant(limit).in_digits(3)))
         };
-        broken(self.rules, RuleRole::Placing).into_iter().find_map(step)
+        self.decision.broken(RuleRole::Placing).find_map(step)
     }
 
     /// What is missing to judge drainage.

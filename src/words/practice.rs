@@ -4,56 +4,44 @@ use super::dispersion::beyond_dispersive;
 use super::rule::value_and_limit;
 use super::rule_note::{missing, rule_note};
 use crate::outcome::quantity::{SizeUnit, Unit, beside_limit, significant};
-use crate::outcome::record::{
-    AppliedRule, Headline, IfDispersive, Note, Outcome, RuleNote, RuleRole, TestedClass,
-};
-use crate::outcome::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION, authority, authority_in_brief};
-use crate::verdict::practice::{Standing, broken, headline, is_drainage_unknown, standing};
-use crate::verdict::rule_result::{credit, met_of, without_margin};
-use crate::verdict::tested::{self, is_beyond_tests, is_beyond_unclear};
-use crate::verdict::washout::{Washout, washout};
-
-/// The line of practice of a pair that was walked.
-pub fn practice(outcome: &Outcome, unit: SizeUnit) -> String {
-    practice_line(&outcome.rules, outcome.if_dispersive, Some(outcome.inputs.filter.d15_mm), unit)
-}
+use crate::outcome::record::{AppliedRule, Headline, Note, Outcome, RuleNote, RuleRole, TestedClass};
+use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION, authority, authority_in_brief};
+use crate::verdict::Decision;
+use crate::verdict::practice::Standing;
+use crate::verdict::rule_result::credit;
+use crate::verdict::washout::Washout;
 
 /// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
-pub fn judged_alone(outcome: &Outcome) -> Option<&'static str> {
+pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
     let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
-    (standing(&outcome.rules) == Standing::Met && !is_envelope).then_some(
+    (decision.standing == Standing::Met && !is_envelope).then_some(
         "Judged for these two gradations alone. The coarsest filter and the finest base that the works allow \
          must keep the limit, too; that was not checked here.",
     )
 }
 
 /// The line of practice: the headline, D15F beside the limit of design, the class of tests, and every other
-/// rule that is not kept; with the limit that a filter of this D15F (mm) breaks if the base is dispersive.
-pub fn practice_line(
-    rules: &[AppliedRule],
-    if_dispersive: Option<IfDispersive>,
-    d15f_mm: Option<f64>,
-    unit: SizeUnit,
-) -> String {
-    let dispersive = if_dispersive.and_then(|limit| beyond_dispersive(limit, rules, d15f_mm, unit));
-    let Some(headline) = headline(rules, dispersive.is_some()) else {
+/// rule that is not kept; with the limit that the filter breaks if the base is dispersive.
+pub fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
+    let (Some(headline), Some(design)) = (decision.headline, decision.applied(DESIGN)) else {
         return "the limit of design was not applied".into();
     };
-    let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
-    let mut clauses: Vec<String> = design.map(|rule| of_design(rule, rules, unit)).into_iter().collect();
-    clauses.extend(of_other_retention(rules, design, unit));
-    clauses.extend(of_tests(rules, unit));
-    clauses.extend(washout(rules).map(|washout| without_finer(&washout, unit)));
-    clauses.extend(besides(rules, headline).into_iter().map(str::to_owned));
-    clauses.extend(dispersive);
+    let mut clauses = vec![of_design(design, decision.standing, unit)];
+    if design.met.is_none() {
+        clauses.extend(of_other_retention(decision, unit));
+    }
+    clauses.extend(of_tests(decision, unit));
+    clauses.extend(decision.washout.as_ref().map(|washout| without_finer(washout, unit)));
+    clauses.extend(besides(decision, headline).into_iter().map(str::to_owned));
+    clauses.extend(decision.beyond_dispersive.as_ref().map(|beyond| beyond_dispersive(beyond, unit)));
     format!("{}: {}", headline.words(), clauses.join("; "))
 }
 
 /// D15F beside the limit of design.
-fn of_design(rule: &AppliedRule, rules: &[AppliedRule], unit: SizeUnit) -> String {
+fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
     let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
-    let d15f = match standing(rules) {
+    let d15f = match standing {
         // D15F itself is what the sieves leave open.
         Standing::Open(sieves @ (RuleNote::D15FBetween(..) | RuleNote::FilterBetween(..))) => {
             rule_note(sieves, unit)
@@ -73,63 +61,46 @@ fn of_design(rule: &AppliedRule, rules: &[AppliedRule], unit: SizeUnit) -> Strin
     format!("{d15f}, {limit}{}", needs.unwrap_or_default())
 }
 
-/// Other rules of retention that are not kept, where the limit of design has no result.
-fn of_other_retention(rules: &[AppliedRule], design: Option<&AppliedRule>, unit: SizeUnit) -> Vec<String> {
-    let is_open = design.is_none_or(|design| design.met.is_none());
-    let others = broken(rules, RuleRole::Retention).into_iter();
-    let others = others.filter(|rule| is_open && ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id));
-    let words = |rule: &AppliedRule| {
+/// Rules of retention that are not kept besides the limit of design and the boundary of no erosion.
+fn of_other_retention(decision: &Decision, unit: SizeUnit) -> impl Iterator<Item = String> {
+    let others = decision.broken(RuleRole::Retention);
+    let others = others.filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id));
+    others.map(move |rule| {
         let [value, limit] = value_and_limit(rule, unit).map(Option::unwrap_or_default);
         format!("{} {value}, limit {limit} ({})", rule.quantity, authority(rule))
-    };
-    others.map(words).collect()
+    })
 }
 
 /// The class of such pairs in tests, with the boundary beyond which the filter lies.
-fn of_tests(rules: &[AppliedRule], unit: SizeUnit) -> Option<String> {
+fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
     // Within the one limit of a dispersive base tests have no other.
-    if without_margin(rules).is_some_and(|rule| rule.met == Some(true)) {
+    if decision.without_margin.is_some_and(|rule| rule.met == Some(true)) {
         return None;
     }
-    let boundary = |id: &str| {
-        let rule = rules.iter().find(|rule| rule.id == id && rule.applies)?;
+    let class = match decision.tests {
+        // What is met as placed says nothing of what is left.
+        TestedClass::None if decision.washout.is_some() => return None,
+        TestedClass::None => "no-erosion criterion met",
+        TestedClass::Unknown if !decision.is_beyond_tests => return None,
+        class => tested_in_brief(class, decision.is_beyond_tests),
+    };
+    let boundary = decision.boundary.and_then(|rule| {
         let at_most = if rule.limit_at_most { "at most " } else { "" };
         let [_, limit] = value_and_limit(rule, unit);
-        limit.map(|limit| format!("{at_most}{limit}"))
-    };
-    let class = match tested::tested(rules) {
-        // What is met as placed says nothing of what is left.
-        TestedClass::None if washout(rules).is_some() => return None,
-        TestedClass::None => "no-erosion criterion met",
-        TestedClass::Unknown if !is_beyond_tests(rules) => return None,
-        _ => tested_class(rules),
-    };
-    let beyond = match tested::tested(rules) {
-        TestedClass::Continuing => {
-            let unclear = if is_beyond_unclear(rules) { ", a boundary that tests leave unclear" } else { "" };
-            boundary(TESTS_CONTINUING).map(|limit| format!(" (beyond {limit}{unclear})"))
-        }
-        _ if is_below_design(rules) || met_of(rules, DESIGN) == Some(false) => {
-            boundary(TESTS_NO_EROSION).map(|limit| format!(" (no erosion up to {limit})"))
-        }
-        _ => None,
-    };
-    Some(format!("Foster and Fell: {class}{}", beyond.unwrap_or_default()))
+        let limit = limit.map(|limit| format!("{at_most}{limit}"))?;
+        Some(match decision.tests {
+            TestedClass::Continuing if decision.is_beyond_unclear => {
+                format!(" (beyond {limit}, a boundary that tests leave unclear)")
+            }
+            TestedClass::Continuing => format!(" (beyond {limit})"),
+            _ => format!(" (no erosion up to {limit})"),
+        })
+    });
+    Some(format!("Foster and Fell: {class}{}", boundary.unwrap_or_default()))
 }
 
-/// Whether the boundary of no erosion in tests lies below the limit of design.
-fn is_below_design(rules: &[AppliedRule]) -> bool {
-    let limit = |id: &str| rules.iter().find(|rule| rule.id == id && rule.applies)?.limit;
-    limit(TESTS_NO_EROSION).zip(limit(DESIGN)).is_some_and(|(tests, design)| tests < design)
-}
-
-/// The class by the boundaries that Foster and Fell saw in tests: beyond that of no erosion a base erodes,
-/// also where tests identified no boundary of the classes beyond.
-pub fn tested_class(rules: &[AppliedRule]) -> &'static str {
-    tested_in_brief(tested::tested(rules), is_beyond_tests(rules))
-}
-
-/// The same of a class, and whether the filter is coarser than any for which tests found no erosion.
+/// A class by the boundaries that Foster and Fell saw in tests. Beyond that of no erosion (`is_beyond`) a
+/// base erodes, also where tests identified no boundary of the classes beyond.
 pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
     match class {
         TestedClass::None => "no erosion",
@@ -160,8 +131,8 @@ fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
 }
 
 /// Other rules that are not kept and that the headline does not name.
-fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
-    let breaks = |role| !broken(rules, role).is_empty();
+fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
+    let breaks = |role| decision.breaks(role);
     let loses = [Headline::MayLoseFiner, Headline::TooCoarseWithoutFiner].contains(&headline);
     let drains = breaks(RuleRole::Drainage);
     let all = [
@@ -169,7 +140,7 @@ fn besides(rules: &[AppliedRule], headline: Headline) -> Vec<&'static str> {
         (drains && headline != Headline::MayNotDrain, "may not drain"),
         (breaks(RuleRole::Placing) && headline != Headline::MaySegregate, "may segregate"),
         (
-            !drains && is_drainage_unknown(rules) && headline != Headline::DrainageNotKnown,
+            !drains && decision.is_drainage_unknown && headline != Headline::DrainageNotKnown,
             "drainage not known",
         ),
     ];
@@ -181,7 +152,6 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::design::Specification;
     use crate::outcome::record::{PracticeClass, RuleQuantity};
-    use crate::verdict::practice::{notes, record};
     use crate::verdict::washout::tests::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
     use crate::verdict::{PairOptions, PairRules, SpecificationOptions};
     use crate::words::{dispersive_limit, sentence, specification};
@@ -214,12 +184,13 @@ mod tests {
             (&[(1.0, 0.0), (3.0, 100.0)], &[(0.3, 25.0), (1.0, 100.0)], Headline::TestMissing),
         ] {
             let rules = rules(filter, base, false);
-            assert_eq!(headline(&rules, false), Some(expected));
-            assert_eq!(record(&rules, None).unwrap().class, expected.class());
-            let line = practice_line(&rules, None, None, SizeUnit::Mm);
+            let decision = Decision::new(&rules, None, None);
+            assert_eq!(decision.headline, Some(expected));
+            assert_eq!(decision.record(None).unwrap().class, expected.class());
+            let line = practice_line(&decision, SizeUnit::Mm);
             assert!(line.starts_with(expected.words()) && line.split(' ').count() < 66, "{line}");
         }
-        assert_eq!(headline(&[], false), None);
+        assert_eq!(Decision::new(&[], None, None).headline, None);
     }
 
     #[test]
@@ -240,33 +211,33 @@ mod tests {
             let limit = pair.if_dispersive.unwrap();
             assert_eq!((limit.d15f_max_mm, limit.is_broken_by(d15f)), (0.5, breaks));
             assert_eq!(pair.headline == Some(Headline::MeetsUnlessDispersive), breaks);
-            let line = practice_line(&pair.rules, pair.if_dispersive, Some(d15f), SizeUnit::Mm);
+            let line = practice_line(&pair.decision(), SizeUnit::Mm);
             assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
             assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
         }
-        assert_eq!(headline(&rules(&filter(0.61), &base, true), false), Some(Headline::DoesNotMeet));
+        let rules = rules(&filter(0.61), &base, true);
+        assert_eq!(Decision::new(&rules, None, None).headline, Some(Headline::DoesNotMeet));
     }
 
     #[test]
     fn a_limit_of_which_only_the_most_is_known_is_recorded_as_that() {
         let silty = [(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)];
         // (40 - 22)/25 (4 x 0.3 - 0.7) + 0.7 = 1.06.
-        let practice = record(&rules(&[(3.0, 0.0), (6.0, 100.0)], &silty, true), None).unwrap();
+        let rules = rules(&[(3.0, 0.0), (6.0, 100.0)], &silty, true);
+        let practice = Decision::new(&rules, None, None).record(None).unwrap();
         assert_eq!((practice.class, practice.limit_at_most), (PracticeClass::DoesNotMeet, true));
         assert!((practice.limit_mm.unwrap() - 1.06).abs() < 1e-9);
-        assert_eq!(record(&[], None), None);
+        assert_eq!(Decision::new(&[], None, None).record(None), None);
     }
 
     #[test]
     fn a_d15f_between_distant_sieves_is_recorded_with_both() {
         let filter = Gradation::from_points(&[(0.3, 10.0), (38.0, 100.0)], None).unwrap();
-        let rules = PairRules::of(&Gradation::from_lines(&SAND).unwrap(), &filter).rules;
-        assert_eq!(headline(&rules, false), Some(Headline::SievesMissing));
-        assert_eq!(record(&rules, None).unwrap().d15f_mm, Some([0.3, 38.0]));
-        assert!(
-            practice_line(&rules, None, None, SizeUnit::Mm)
-                .contains("D15F lies between 0.3 and 38\u{202f}mm")
-        );
+        let pair = PairRules::of(&Gradation::from_lines(&SAND).unwrap(), &filter);
+        assert_eq!(pair.headline, Some(Headline::SievesMissing));
+        assert_eq!(pair.practice.as_ref().unwrap().d15f_mm, Some([0.3, 38.0]));
+        let line = practice_line(&pair.decision(), SizeUnit::Mm);
+        assert!(line.contains("D15F lies between 0.3 and 38\u{202f}mm"), "{line}");
     }
 
     /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
@@ -277,7 +248,7 @@ mod tests {
             (&SILTY, 0.85, ["1.28\u{202f}mm", "0.700\u{202f}mm"]),
         ] {
             let rules = rules(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)], base, false);
-            let line = practice_line(&rules, None, Some(d15f), SizeUnit::Mm);
+            let line = practice_line(&Decision::new(&rules, None, Some(d15f)), SizeUnit::Mm);
             assert!(limits.iter().all(|limit| line.contains(limit)), "{line}");
         }
     }
@@ -324,9 +295,9 @@ mod tests {
                 for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
                     let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
                     let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
-                    let mut said =
-                        vec![practice_line(&pair.rules, pair.if_dispersive, pair.filter.d15_mm, UNIT)];
-                    said.extend(notes(&pair.rules).iter().map(|note| sentence(note, UNIT)));
+                    let decision = pair.decision();
+                    let mut said = vec![practice_line(&decision, UNIT)];
+                    said.extend(decision.notes().map(|note| sentence(&note, UNIT)));
                     said.extend(pair.if_dispersive.map(|limit| dispersive_limit(limit, UNIT)));
                     said.extend(of_band.iter().flatten().cloned());
                     for rule in pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F) {

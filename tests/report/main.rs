@@ -159,7 +159,8 @@ fn nothing_may_run_or_be_fetched() {
 fn hostile_names_are_inert() {
     const EVIL: &str = "\"><script>alert(1)</script><img src=x onerror=alert(2)>&\u{0}\u{202e}";
     let mut plan = Plan::usual();
-    plan.scene = format!("# </pre>{EVIL}\nseed = 1\n");
+    // No TOML has U+0000.
+    plan.scene = format!("# </pre>{}\nseed = 1\n", EVIL.replace('\0', ""));
     let outcome = &mut plan.outcome;
     outcome.notes = vec![folder::note(EVIL)];
     let (inputs, rule) = (&mut outcome.inputs, &mut outcome.rules[0]);
@@ -340,6 +341,27 @@ fn a_malformed_file_is_named_with_its_line() {
         fs::write(folder.path().join(name), content).unwrap();
         let error = report::write(folder.path()).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}\ndoes not contain\n{expected}");
+    }
+}
+
+/// One mistyped value would leave a cover without client and project.
+#[test]
+fn a_scene_whose_cover_cannot_be_read_is_named_with_its_line_and_setting() {
+    for (added, expected) in [
+        ("[about]\nclient = \"W. B.\"\nunits = 3\n", "scene.toml:19: `units = 3`: "),
+        ("[about]\ndate = 2026-11-25\n", "scene.toml:18: `date = 2026-11-25`: "),
+        (
+            "[about]\nunits = \"uss\"\n",
+            "scene.toml:18: `units = \"uss\"`: unknown variant `uss`, expected `metric` or `us`",
+        ),
+        ("no scene at all\n", "scene.toml:17: `no scene at all`: "),
+    ] {
+        let (folder, mut plan) = (TempDir::new().unwrap(), Plan::usual());
+        plan.scene.push_str(added);
+        plan.write(folder.path());
+        let error = report::write(folder.path()).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}\ndoes not contain\n{expected}");
+        assert!(!folder.path().join("report.html").exists(), "{added}");
     }
 }
 

@@ -2,8 +2,8 @@
 
 use voidwalk::Gradation;
 use voidwalk::outcome::quantity::SizeUnit;
-use voidwalk::outcome::record::{Note, Verdict};
-use voidwalk::verdict::PairRules;
+use voidwalk::outcome::record::{Note, Outcome, Verdict};
+use voidwalk::verdict::{Decision, PairRules};
 
 use super::folder::Plan;
 use super::{made, words};
@@ -35,6 +35,10 @@ fn the_figure_of_what_left_says_what_only_the_curve_of_the_base_has() {
     assert!(!said(0.0).contains("The base's curve alone"));
 }
 
+fn next_step(outcome: &Outcome) -> String {
+    voidwalk::words::next(outcome, &Decision::recorded(outcome), SizeUnit::Mm)
+}
+
 /// A filter that may segregate is mended; cobbles are no fault of a drain, and of a good pair nothing is asked.
 #[test]
 fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
@@ -45,7 +49,7 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
         outcome.rules = PairRules::of(&base, &soil(filter)).rules;
         outcome.notes.clear();
         outcome.model.class = Verdict::None;
-        voidwalk::words::next(&outcome, SizeUnit::Mm)
+        next_step(&outcome)
     };
     assert_eq!(next(&[(0.5, 0.0), (1.5, 100.0)]), "nothing by these rules");
     let wide = next(&[(0.5, 0.0), (0.8, 15.0), (1.8, 30.0), (4.0, 50.0), (9.0, 65.0), (20.0, 100.0)]);
@@ -60,5 +64,5 @@ fn what_is_next_is_one_thing_that_is_wrong_with_this_pair() {
     outcome.inputs.scale_free = false;
     outcome.inputs.filter.d15_mm = 60.0;
     outcome.notes.clear();
-    assert_eq!(voidwalk::words::next(&outcome, SizeUnit::Mm), "nothing by these rules");
+    assert_eq!(next_step(&outcome), "nothing by these rules");
 }

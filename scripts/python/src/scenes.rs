@@ -163,7 +163,7 @@ pub fn run_in_memory<'py>(
     let (outcome, recorded, texts) = at_work(py, progress, |callbacks| {
         let case = runs::prepare(scene, &options.prepare, &callbacks.run)?;
         let unit = SizeUnit::of(case.is_scale_free(), false);
-        (callbacks.run.on_event)(Event::Noted { notes: &ordered(&[], case.notes()), unit });
+        (callbacks.run.on_event)(Event::Noted { notes: &ordered(case.notes()), unit });
         let pool = pool(options.prepare.threads)?;
         let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
         let threads = pool.current_num_threads() as u64;

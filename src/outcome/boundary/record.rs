@@ -25,8 +25,10 @@ pub struct Boundaries {
     pub boundaries: Vec<BoundaryRow>,
     /// The base.
     pub base: BaseStated,
-    /// The filter's shape in words.
+    /// The filter's shape, as the user calls it.
     pub filter: String,
+    /// Name of its constriction curve.
+    pub curve_name: String,
     /// Cu of the filter.
     pub filter_cu: Option<f64>,
     /// The filter's own D15F (mm), where its sizes are given.

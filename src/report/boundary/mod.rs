@@ -14,7 +14,7 @@ use maud::{Markup, html};
 use super::cover::program;
 use super::error::ReportError;
 use super::files::{json, rows};
-use super::names::titled_by_file;
+use super::names::{file_name, titled_by_file};
 use super::section::Sections;
 use super::shell::{citation, clean, unbroken};
 use super::written::Written;
@@ -65,11 +65,10 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
 
 /// The soil of the filter with its sizes as they were given, and its curve.
 fn filter_words(all: &Boundaries) -> Markup {
-    let (soil, curve) = all.filter.split_once(CURVE).unwrap_or((&all.filter, ""));
     html! {
-        (titled_by_file("filter", "filter of the shape", soil))
+        (titled_by_file("filter", "filter of the shape", &all.filter))
         @if let Some(said) = as_given(all) { " (" (said) ")" }
-        @if !curve.is_empty() { (CURVE) (clean(curve)) }
+        ", constrictions " (clean(&file_name(&all.curve_name)))
     }
 }
 
@@ -81,9 +80,6 @@ fn as_given(all: &Boundaries) -> Option<String> {
     let said: Vec<String> = d15.into_iter().chain(cu).chain(given).collect();
     (!said.is_empty()).then(|| said.join(", "))
 }
-
-/// What stands between the names of a filter and of its curve.
-const CURVE: &str = ", constrictions ";
 
 /// The notes that do not stand on the first sheet: folded on a screen, and open in print.
 fn others(rest: &[String]) -> Markup {

@@ -110,6 +110,7 @@ pub(super) fn made(all: &Boundaries, walks: &[WalkRow]) -> Markup {
             )))
             @if let Some(base) = all.base.size() { (fact("D85B", base_size(&base, size_unit(all)))) }
             (fact("Filter", file_name(&all.filter)))
+            (fact("Constriction curve", file_name(&all.curve_name)))
             @if let Some(mm) = all.filter_d15_mm { (fact("D15F of the filter as given", size(Some(mm)))) }
             (fact("Cu of the filter", cu(all.filter_cu)))
             (fact("Grains per void", known(grains, |grains| significant(grains).in_digits(4))))

@@ -45,6 +45,7 @@ fn all(no_erosion: Option<Boundary>) -> Boundaries {
             d85_as_sampled_mm: None,
         },
         filter: "f".into(),
+        curve_name: "c".into(),
         filter_cu: None,
         filter_d15_mm: None,
         inputs: Vec::new(),

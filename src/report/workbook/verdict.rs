@@ -5,7 +5,8 @@ use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
-use crate::verdict::rule_result::result_of;
+use crate::verdict::Decision;
+use crate::verdict::rule_result::RuleResult;
 use crate::words::rule::result;
 use crate::words::rule_note::rule_notes;
 use crate::words::{first_lines, sentence};
@@ -13,10 +14,11 @@ use crate::words::{first_lines, sentence};
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
     let outcome = &of.outcome;
+    let decision = Decision::recorded(outcome);
     vec![
-        verdict(outcome),
+        verdict(outcome, &decision),
         inputs(outcome),
-        rules(outcome),
+        rules(&decision),
         runs(outcome),
         gradations(outcome),
         provenance(of),
@@ -28,13 +30,13 @@ fn unit(outcome: &Outcome) -> &'static str {
     if outcome.inputs.scale_free { "D0F" } else { "mm" }
 }
 
-fn verdict(outcome: &Outcome) -> Sheet {
+fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
     let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
-    for (name, said) in first_lines(outcome, SizeUnit::Mm) {
+    for (name, said) in first_lines(outcome, decision, SizeUnit::Mm) {
         sheet.item(name, said, "");
     }
     let practice = outcome.practice.as_ref();
-    sheet.item("Practice", outcome.headline.map(Headline::words), "");
+    sheet.item("Practice", decision.headline.map(Headline::words), "");
     sheet.item("Class of the model", outcome.model.class.words(), "");
     sheet.item("Limit of design of D15F", practice.and_then(|practice| practice.limit_mm), unit(outcome));
     let d15f = practice.and_then(|practice| practice.d15f_mm);
@@ -65,7 +67,7 @@ fn inputs(outcome: &Outcome) -> Sheet {
     let mut sheet = Sheet::new("Inputs", &["Item", "Value", "Unit"]);
     let (inputs, unit) = (&outcome.inputs, unit(outcome));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
-    sheet.item("Filter", &*soil_name(&filter.name), "");
+    sheet.item("Filter", soil_name(&filter.name), "");
     for (name, size) in [
         ("D0F", filter.d0_mm),
         ("D15F", filter.d15_mm),
@@ -79,7 +81,7 @@ fn inputs(outcome: &Outcome) -> Sheet {
     sheet.item("Void ratio of the filter", filter.void_ratio, "-");
     sheet.item("Constriction curve", &filter.curve_name, "");
     sheet.item("Cu of the constrictions", filter.cu_csd, "-");
-    sheet.item("Base", &*soil_name(&base.name), "");
+    sheet.item("Base", soil_name(&base.name), "");
     for (name, size) in [
         ("D0B", Some(base.d0_mm)),
         ("D15B", base.d15_mm),
@@ -105,7 +107,7 @@ fn inputs(outcome: &Outcome) -> Sheet {
     sheet
 }
 
-fn rules(outcome: &Outcome) -> Sheet {
+fn rules(decision: &Decision) -> Sheet {
     let headings = [
         "Rule",
         "Authority",
@@ -125,13 +127,14 @@ fn rules(outcome: &Outcome) -> Sheet {
         "Id",
     ];
     let mut sheet = Sheet::new("Rules", &headings);
-    for rule in outcome.rules.iter().filter(|rule| rule.role != RuleRole::Walk) {
-        sheet.row(of_rule(rule));
+    let rules = decision.rules.iter().zip(&decision.results);
+    for (rule, result) in rules.filter(|(rule, _)| rule.role != RuleRole::Walk) {
+        sheet.row(of_rule(rule, *result));
     }
     sheet
 }
 
-fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
+fn of_rule(rule: &AppliedRule, found: RuleResult) -> [Entry; 16] {
     let notes: Vec<String> = [&rule.notes, &rule.needs].map(|notes| rule_notes(notes, SizeUnit::Mm)).into();
     let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
     let value_is = match rule.value_bound {
@@ -157,7 +160,7 @@ fn of_rule(rule: &AppliedRule) -> [Entry; 16] {
         (&rule.unit).into(),
         limit_is.into(),
         rule.applies.into(),
-        result(result_of(rule)).into(),
+        result(found).into(),
         // A boundary of continuing erosion that is not reached is no limit that is met.
         rule.met.filter(|met| rule.role != RuleRole::Continuation || !met).into(),
         (&rule.formula).into(),

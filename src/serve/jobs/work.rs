@@ -18,6 +18,7 @@ use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
 use crate::serve::batches::of_batch;
 use crate::serve::live::Live;
+use crate::verdict::Decision;
 use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
@@ -142,7 +143,7 @@ fn often() -> CheckpointInterval {
 pub fn of_run(outcome: &Outcome) -> Value {
     let unit = SizeUnit::of(outcome.inputs.scale_free, false);
     json!({
-        "lines": first_lines(outcome, unit),
+        "lines": first_lines(outcome, &Decision::recorded(outcome), unit),
         "model": outcome.model.class.words(),
         "colour": colour_of(outcome),
         "notes": outcome.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>(),

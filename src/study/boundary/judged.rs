@@ -94,6 +94,6 @@ impl Judged {
             .chain(not_compared)
             .chain(of_search(row))
             .chain(others);
-        ordered(&[], found.collect())
+        ordered(found)
     }
 }

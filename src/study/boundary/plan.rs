@@ -9,6 +9,7 @@ use crate::scene::{
     Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, keep_soils,
     quoted, refuse_exchanged,
 };
+use crate::schema::setting_name;
 use crate::walk::Engine;
 
 use super::options::{BoundaryOptions, Thickness};
@@ -68,7 +69,7 @@ fn default_density(options: &BoundaryOptions) -> Option<String> {
     let stated = |setting: &String| {
         let names =
             ["filter.density", "filter.friction", "filter.library", "filter.estimate", "filter.curve"];
-        names.contains(&key_of(setting))
+        names.contains(&setting_name(setting))
     };
     let needs_one = options.filter.as_deref().is_some_and(|shape| !shape_setting(shape).0);
     (needs_one && !options.settings.iter().any(stated)).then(|| match options.pack {
@@ -163,7 +164,7 @@ fn one(
         scene.network.set_layers(crate::scene::USUAL_LAYERS);
     }
     let is_stated = |key: &str| {
-        options.settings.iter().any(|setting| key_of(setting).split('.').next_back() == Some(key))
+        options.settings.iter().any(|setting| setting_name(setting).split('.').next_back() == Some(key))
     };
     if is_lattice && !["nx", "ny"].into_iter().any(is_stated) {
         scene.network.narrow_to(ACROSS);
@@ -193,7 +194,7 @@ fn one(
     let layers = scene.network.source().shape().map_or(crate::scene::USUAL_LAYERS, |[_, _, nz]| nz.into());
     let density = density_words(&scene);
     let thickness = thickness.unwrap_or(Thickness::Layers(layers));
-    let states_d0 = options.settings.iter().any(|setting| key_of(setting) == "filter.d0_mm");
+    let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
     Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
 }
 
@@ -216,19 +217,14 @@ fn regrade(scene: &mut Scene, options: &BoundaryOptions) -> Result<(), RunError>
     Ok(())
 }
 
-/// The key of a setting.
-fn key_of(setting: &str) -> &str {
-    setting.split('=').next().unwrap_or_default().trim()
-}
-
 /// Refuses a setting that says again what an argument of its own has said.
 fn refuse_twice(options: &BoundaryOptions, whose: &str, said: Option<&str>) -> Result<(), RunError> {
     let Some(said) = said else { return Ok(()) };
     let alike = |key: &str| match whose {
         "--thickness" => THICKNESSES.contains(&key),
-        _ => key == key_of(said),
+        _ => key == setting_name(said),
     };
-    match options.settings.iter().find(|setting| alike(key_of(setting))) {
+    match options.settings.iter().find(|setting| alike(setting_name(setting))) {
         Some(setting) => {
             Err(RunError::Refused(format!("{whose} and --set {setting} say the same thing twice: give one")))
         }

@@ -4,9 +4,7 @@ use super::*;
 use crate::gradation::{GAP_PERCENT, Gradation};
 use crate::outcome::design::RowNote;
 use crate::outcome::design::specification::{StepName, StepNote};
-use crate::outcome::record::{AppliedRule, DispersiveLack, Note, RuleNote, RuleRole};
-use crate::verdict::practice::broken;
-use crate::verdict::washout::washout;
+use crate::outcome::record::{DispersiveLack, Note, RuleNote, RuleRole};
 use crate::verdict::{PairOptions, PairRules};
 
 fn soil(points: &[(f64, f64)]) -> Gradation {
@@ -203,9 +201,10 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
             (name, curve.scaled(hair).unwrap())
         });
         let base = [("base".to_owned(), soil(points))];
-        let rules = PairRules::of_envelopes(&base, &sides, PairOptions::default()).rules;
+        let pair = PairRules::of_envelopes(&base, &sides, PairOptions::default());
+        let (rules, decision) = (&pair.rules, pair.decision());
         for role in [RuleRole::Retention, RuleRole::Continuation, RuleRole::Drainage, RuleRole::Placing] {
-            assert_eq!(broken(&rules, role), Vec::<&AppliedRule>::new(), "{points:?}");
+            assert_eq!(decision.broken(role).next(), None, "{points:?}");
         }
         let met = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap().met;
         for id in ["sherard-dunnigan", "permeability", "filter-uniformity", "filter-band", "filter-fines"] {
@@ -350,8 +349,8 @@ fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
             for side in of.band.iter().flat_map(SizeBand::continued) {
                 let side = Gradation::of_rows(&side).unwrap();
                 let side = side.scaled(1.0 - 1e-9).unwrap();
-                let rules = PairRules::of(&sand, &side).rules;
-                assert!(washout(&rules).is_none(), "{retains} {:?}", washout(&rules).map(|found| found.left));
+                let washout = PairRules::of(&sand, &side).decision().washout.map(|washout| washout.left);
+                assert_eq!(washout, None, "{retains}");
             }
         }
     }
