@@ -9,7 +9,6 @@ use super::cover::LINE;
 use super::error::ReportError;
 use super::figures::shorten;
 use crate::outcome::record::SheetCover;
-use crate::scene::SheetUnits;
 
 /// The table `about` of a scene.
 pub(super) struct About {
@@ -27,6 +26,16 @@ pub(super) struct ShownSizes {
     pub coarse_left: bool,
     /// The units of sizes; mm where nothing is stated.
     pub units: Option<SheetUnits>,
+}
+
+/// The units of sizes.
+#[derive(Clone, Copy, Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum SheetUnits {
+    /// mm alone.
+    Metric,
+    /// Inches beside mm.
+    Us,
 }
 
 impl About {

@@ -3,6 +3,7 @@
 
 use maud::{Markup, html};
 
+use super::about::SheetUnits;
 use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
@@ -14,7 +15,6 @@ use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
 use crate::outcome::table::Columns;
-use crate::scene::SheetUnits;
 use crate::verdict::rule_result::RuleResult;
 use crate::verdict::{Decision, ListedRule};
 use crate::words::left_out::left_out_line;
