@@ -34,20 +34,27 @@ def by_surface(points, percent):
     return rows[-1][1]
 
 
+def table_head():
+    """The names of the table's columns."""
+    return ",".join(["shape", "cu", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)])
+
+
+def row_of(packing):
+    """A packing's row of the table."""
+    half = by_surface(packing["points"], 50)
+    sizes = [by_surface(packing["points"], percent) / half for percent in SHAPE] + [size / half for size in packing["dc"]]
+    numbers = [packing["grains_per_void"], packing["void_ratio"], *sizes]
+    about = [str(int(packing["key"][:3])), f"{packing['cu']:.4g}", str(DENSITY[packing["density"]])]
+    return ",".join([*about, *(f"{n:.5g}" for n in numbers)])
+
+
 def main():
     lines = [json.loads(line) for line in (Path(sys.argv[1]) / "packings.jsonl").read_text().splitlines()]
-    names = ["shape", "cu", "density", "grains_per_void", "void_ratio", *(f"s{p}" for p in SHAPE), *(f"dc{p}" for p in PERCENT)]
-    rows = []
-    for of in sorted((of for of in lines if "dc" in of), key=lambda of: of["key"]):
-        half = by_surface(of["points"], 50)
-        sizes = [by_surface(of["points"], percent) / half for percent in SHAPE] + [size / half for size in of["dc"]]
-        numbers = [of["grains_per_void"], of["void_ratio"], *sizes]
-        about = [str(int(of["key"][:3])), f"{of['cu']:.4g}", str(DENSITY[of["density"]])]
-        rows.append(",".join([*about, *(f"{n:.5g}" for n in numbers)]))
+    rows = [row_of(packing) for packing in sorted(lines, key=lambda packing: packing["key"]) if "dc" in packing]
     made = {row.split(",")[0] for row in rows}
     kept = [row for row in TABLE.read_text().splitlines() if row[0].isdigit() and row.split(",")[0] not in made]
     both = sorted(kept + rows, key=lambda row: int(row.split(",")[0]))
-    TABLE.write_text(HEAD + "\n".join([",".join(names), *both]) + "\n")
+    TABLE.write_text(HEAD + "\n".join([table_head(), *both]) + "\n")
     print(f"{TABLE}: {len(both)} packings, {TABLE.stat().st_size / 1000:.0f} kB; refused: {len(lines) - len(rows)}")
 
 

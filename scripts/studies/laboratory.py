@@ -2,7 +2,7 @@
 """Models of filters beside tests: where the base begins to erode, with and without water, arches and openings; the largest particle that passes.
 
     scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
-        [--binary target/release/voidwalk] [--minutes 40]
+        [--experiment results/laboratory-experiment.csv] [--binary target/release/voidwalk] [--minutes 40]
 
 Walks the cells of PLAN in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
 again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
@@ -15,6 +15,8 @@ Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and 
 first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at the greatest, or the cell
 has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows `largest`: the largest eroded particle by
 D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not pass.
+
+`--experiment`: what each law predicts for uniform beads on beads (mass passed in the first run, k/k0), into this CSV and nothing else.
 
 `--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV and nothing
 else.
@@ -129,6 +131,19 @@ def increments_cells():
             yield *LOOSE, base, law, concentration, ratio, share
 
 
+EXPERIMENT_CELL = ["d15f_over_d85b", "law", "concentration", "blocked"]
+EXPERIMENT_RATIOS = [6.5, 8.0, 10.0]
+
+
+def experiment_cells():
+    """Uniform beads on beads of Cu 1.2, dense: every law at every concentration, blocked constrictions closed and open."""
+    for blocked in ("closed", "open"):
+        for ratio in EXPERIMENT_RATIOS:
+            for law in (NONE, MARIN, CRITICAL, ZURIGUEL):
+                for concentration in concentrations(law):
+                    yield ratio, law, concentration, blocked
+
+
 class Models(Walks):
     """Walks of cells: boundaries of two runs, and largest particles."""
 
@@ -192,6 +207,14 @@ class Models(Walks):
         self.used += seconds
         print(*cell, row, f"{seconds:.0f} s", flush=True)
         return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
+
+    def experiment(self, of):
+        """What one test of the experiment would give: mass that passes in the first run, in percent, and how much water flows at its end."""
+        ratio, law, concentration, blocked = of
+        cell = ("boundary", *BEADS, "1", "lattice", "flux", law, concentration, blocked)
+        runs = [replicate["runs"][0] for replicate in self.outcome(self.settings(cell, ratio) | {"runs": 1})["replicates"]]
+        print(*of, flush=True)
+        return dict(zip(EXPERIMENT_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
 
     def increments(self, of):
         """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
@@ -305,10 +328,14 @@ def main():
     parser.add_argument("--work", type=Path, required=True, help="folder for the packings")
     parser.add_argument("--out", help="of the cells")
     parser.add_argument("--increments", type=Path)
+    parser.add_argument("--experiment", type=Path)
     parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--threads", default="1")
     parser.add_argument("--minutes", type=float, default=40.0, help="of processor time, after which no cell begins")
     options = parser.parse_args()
+    if options.experiment:
+        columns = [*EXPERIMENT_CELL, *ERODED, "k_over_k0"]
+        each(options.experiment, EXPERIMENT_CELL, columns, experiment_cells(), Models(options).experiment)
     if options.increments:
         each(options.increments, INCREMENTS_CELL, [*INCREMENTS_CELL, *ERODED, "k_over_k0"], increments_cells(), Models(options).increments)
     if options.out:

@@ -45,7 +45,7 @@ impl LibraryFilter {
         };
         // Leaving the coarser grains out makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
-        let coarsest = (1.0 + found.off_by) / (1.0 - finer_by);
+        let coarsest = (1.0 + found.curve_error) / (1.0 - finer_by);
         let end = |density: LibraryDensity, of: Option<&FromLibrary>, factor: f64| {
             let [way, by] = match factor > 1.0 {
                 true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
@@ -53,10 +53,13 @@ impl LibraryFilter {
             };
             let name = format!("{}, constrictions {by} % {way}", density.name());
             let of = of?;
-            let times_grains = of.grains_per_void / found.grains_per_void;
+            // Of less base a larger share erodes: the coarsest curve goes with the fewest grains.
+            let error = if factor > 1.0 { 1.0 + of.grains_error } else { 1.0 - of.grains_error };
+            let times_grains = of.grains_per_void / error / found.grains_per_void;
             Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
         };
-        let ends = [end(loose, Some(&found), coarsest), end(dense, at_dense.as_ref(), 1.0 - found.off_by)];
+        let ends =
+            [end(loose, Some(&found), coarsest), end(dense, at_dense.as_ref(), 1.0 - found.curve_error)];
         Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
     }
 }
@@ -77,7 +80,10 @@ mod tests {
         assert_eq!(unknown.found, loose.found);
         // A dense filter has fewer grains a void, and is offered less base.
         let [of_loose, of_dense] = [&unknown.ends[0], &unknown.ends[1]].map(|end| end.times_grains);
-        assert!(of_loose == 1.0 && of_dense < 0.9, "{of_dense}");
+        let at_dense = dense.found.grains_per_void / loose.found.grains_per_void;
+        assert!(at_dense < 0.85, "{at_dense}");
+        // 6 % is the error of grains per void near a shape of the library.
+        assert!((of_loose * 1.06 - 1.0).abs() < 1e-12 && (of_dense * 0.94 / at_dense - 1.0).abs() < 1e-12);
         assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
     }
 

@@ -95,10 +95,11 @@ impl Case {
     fn guesses(&self) -> Vec<Note> {
         if let Some(library) = &self.filter.library {
             let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
-            let error_percent = 100.0 * library.found.off_by;
+            let [error_percent, grains_percent] =
+                [library.found.curve_error, library.found.grains_error].map(|error| 100.0 * error);
             let note = match density {
-                LibraryDensity::Unknown => Note::LibraryOfAnyDensity { error_percent },
-                _ => Note::LibraryOfDensity { density: density.name().into(), error_percent },
+                LibraryDensity::Unknown => Note::LibraryOfAnyDensity { error_percent, grains_percent },
+                _ => Note::LibraryOfDensity { density: density.name().into(), error_percent, grains_percent },
             };
             return std::iter::once(note).chain(library.part.as_ref().map(packed_part)).collect();
         }

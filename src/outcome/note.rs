@@ -346,16 +346,15 @@ notes! {
     OtherCurve { cu: f64, curve: String, curve_cu: f64 } "constrictions" "uncertainty.md"
         "The filter has a Cu of {cu}, but is walked with the constrictions of one of {curve_cu} ({curve}).";
     /// Constrictions from the library, at a density that is not known.
-    LibraryOfAnyDensity { error_percent: f64 } "density" "uncertainty.md"
-        "The density is not given: constrictions of similar packings, loose and dense and {error_percent} \
-         beyond, are \
-         walked; the worst counts."
+    LibraryOfAnyDensity { error_percent: f64, grains_percent: f64 } "density" "uncertainty.md"
+        "The density is not given: similar packings, loose to dense, are walked with constrictions \
+         {error_percent} and grains per void {grains_percent} beyond; the worst counts."
         "filter.library says how densely it lies; filter.density packs this very filter.";
     /// Constrictions from the library.
-    LibraryOfDensity { density: String, error_percent: f64 } "not packed" "uncertainty.md"
-        "The constrictions come from packings of similar filters ({density}), within {error_percent}; both \
-         ends are \
-         walked."
+    LibraryOfDensity { density: String, error_percent: f64, grains_percent: f64 }
+        "not packed" "uncertainty.md"
+        "Packings of similar filters ({density}) give the constrictions within {error_percent} and grains \
+         per void within {grains_percent}; both ends are walked."
         "filter.density packs this very filter.";
     /// A gradation outside the library.
     LikeNoneOfTheLibrary {} "constrictions" "uncertainty.md"

@@ -17,7 +17,7 @@ fn a_void_ratio_that_nobody_gave_is_said_to_be_of_the_library() {
         words(&made(&plan).0)
     };
     let other = "not given; 0.553 is that of the packing of the library";
-    assert!(said(Note::LibraryOfAnyDensity { error_percent: 10.0 }).contains(other));
+    assert!(said(Note::LibraryOfAnyDensity { error_percent: 10.0, grains_percent: 25.0 }).contains(other));
     let given = said(Note::FewReplicates { replicates: 3 });
     assert!(given.contains("0.553") && !given.contains(other));
 }
