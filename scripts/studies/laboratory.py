@@ -131,17 +131,18 @@ def increments_cells():
             yield *LOOSE, base, law, concentration, ratio, share
 
 
-EXPERIMENT_CELL = ["d15f_over_d85b", "law", "concentration", "blocked"]
+EXPERIMENT_CELL = ["d15f_over_d85b", "law", "concentration", "blocked", "inject_share"]
 EXPERIMENT_RATIOS = [6.5, 8.0, 10.0]
 
 
 def experiment_cells():
-    """Uniform beads on beads of Cu 1.2, dense: every law at every concentration, blocked constrictions closed and open."""
-    for blocked in ("closed", "open"):
-        for ratio in EXPERIMENT_RATIOS:
-            for law in (NONE, MARIN, CRITICAL, ZURIGUEL):
-                for concentration in concentrations(law):
-                    yield ratio, law, concentration, blocked
+    """Uniform beads on beads of Cu 1.2, dense: every law at every concentration, blocked constrictions closed and open, by the share of an increment."""
+    laws = [(law, concentration) for law in (NONE, MARIN, CRITICAL, ZURIGUEL) for concentration in concentrations(law)]
+    for share, ratios in ((0.01, EXPERIMENT_RATIOS), (0.001, [8.0]), (0.001, EXPERIMENT_RATIOS)):
+        for blocked in ("closed", "open"):
+            for ratio in ratios:
+                for law, concentration in laws:
+                    yield ratio, law, concentration, blocked, share
 
 
 class Models(Walks):
@@ -210,9 +211,10 @@ class Models(Walks):
 
     def experiment(self, of):
         """What one test of the experiment would give: mass that passes in the first run, in percent, and how much water flows at its end."""
-        ratio, law, concentration, blocked = of
+        ratio, law, concentration, blocked, share = of
         cell = ("boundary", *BEADS, "1", "lattice", "flux", law, concentration, blocked)
-        runs = [replicate["runs"][0] for replicate in self.outcome(self.settings(cell, ratio) | {"runs": 1})["replicates"]]
+        settings = self.settings(cell, ratio) | {"runs": 1, "inject_share": share}
+        runs = [replicate["runs"][0] for replicate in self.outcome(settings)["replicates"]]
         print(*of, flush=True)
         return dict(zip(EXPERIMENT_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
 
@@ -335,7 +337,7 @@ def main():
     options = parser.parse_args()
     if options.experiment:
         columns = [*EXPERIMENT_CELL, *ERODED, "k_over_k0"]
-        each(options.experiment, EXPERIMENT_CELL, columns, experiment_cells(), Models(options).experiment)
+        each(options.experiment, EXPERIMENT_CELL, columns, dict.fromkeys(experiment_cells()), Models(options).experiment)
     if options.increments:
         each(options.increments, INCREMENTS_CELL, [*INCREMENTS_CELL, *ERODED, "k_over_k0"], increments_cells(), Models(options).increments)
     if options.out:

@@ -8,6 +8,10 @@ use crate::gradation::Gradation;
 use crate::outcome::packing::PackedPart;
 use crate::scene::LibraryDensity;
 
+/// Least error of the grains per void where only the finer part of a filter was looked up: of C33 sand, which
+/// lacks the coarsest 4.3 % then, they were 12.6 % off (`results/library.md`).
+const GRAINS_ERROR_OF_PART: f64 = 0.25;
+
 /// A filter as the library knows it.
 #[derive(Clone)]
 pub struct LibraryFilter {
@@ -38,14 +42,20 @@ impl LibraryFilter {
             LibraryDensity::Unknown => [LibraryDensity::Loose, LibraryDensity::Dense],
             known => [known; 2],
         };
-        let Some(found) = from_library(&looked_up, loose.relative())? else { return Ok(None) };
-        let at_dense = match loose == dense {
-            true => Some(found.clone()),
-            false => from_library(&looked_up, dense.relative())?,
+        let find = |density: LibraryDensity| -> Result<Option<FromLibrary>, CurveError> {
+            let found = from_library(&looked_up, density.relative())?;
+            Ok(found.map(|found| match &part {
+                Some(_) => {
+                    FromLibrary { grains_error: found.grains_error.max(GRAINS_ERROR_OF_PART), ..found }
+                }
+                None => found,
+            }))
         };
+        let Some(found) = find(loose)? else { return Ok(None) };
+        let at_dense = if loose == dense { Some(found.clone()) } else { find(dense)? };
         // Leaving the coarser grains out makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
-        let coarsest = (1.0 + found.curve_error) / (1.0 - finer_by);
+        let coarsest = 1.0 / ((1.0 - found.curve_error) * (1.0 - finer_by));
         let end = |density: LibraryDensity, of: Option<&FromLibrary>, factor: f64| {
             let [way, by] = match factor > 1.0 {
                 true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
@@ -53,9 +63,11 @@ impl LibraryFilter {
             };
             let name = format!("{}, constrictions {by} % {way}", density.name());
             let of = of?;
-            // Of less base a larger share erodes: the coarsest curve goes with the fewest grains.
-            let error = if factor > 1.0 { 1.0 + of.grains_error } else { 1.0 - of.grains_error };
-            let times_grains = of.grains_per_void / error / found.grains_per_void;
+            // Of less base a larger share erodes: the coarsest curve goes with the fewest grains. The fine
+            // end offers no more base than the library says, so that no amount that may not be there seals
+            // it.
+            let error = if factor > 1.0 { of.grains_error } else { 0.0 };
+            let times_grains = of.grains_per_void / (1.0 + error) / found.grains_per_void;
             Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
         };
         let ends =
@@ -83,7 +95,7 @@ mod tests {
         let at_dense = dense.found.grains_per_void / loose.found.grains_per_void;
         assert!(at_dense < 0.85, "{at_dense}");
         // 6 % is the error of grains per void near a shape of the library.
-        assert!((of_loose * 1.06 - 1.0).abs() < 1e-12 && (of_dense * 0.94 / at_dense - 1.0).abs() < 1e-12);
+        assert!((of_loose * 1.06 - 1.0).abs() < 1e-12 && (of_dense / at_dense - 1.0).abs() < 1e-12);
         assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
     }
 
@@ -94,6 +106,6 @@ mod tests {
             [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5), (9.5, 100.0)];
         let filter = Gradation::from_lines(&points).unwrap();
         let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
-        assert!(found.is_some_and(|of| of.part.is_some()));
+        assert!(found.is_some_and(|of| of.part.is_some() && of.found.grains_error == GRAINS_ERROR_OF_PART));
     }
 }

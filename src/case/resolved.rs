@@ -60,9 +60,14 @@ impl Case {
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.filter.library.is_some() || scene.filter.estimate.is_some() {
-            // Another library, another way through it, or other draws of circles give other curves.
-            let ends = self.filter.curve_ends.iter().map(|end| &end.curve);
-            for curve in std::iter::once(&self.filter.curve).chain(ends) {
+            // Another library, another way through it, or other draws of circles give other curves, and other
+            // amounts of base.
+            let ends = &self.filter.curve_ends;
+            let own_grains = self.filter.library.as_ref().map(|library| library.found.grains_per_void);
+            for grains in own_grains.into_iter().chain(ends.iter().map(|end| end.times_grains)) {
+                text.extend_from_slice(&grains.to_le_bytes());
+            }
+            for curve in std::iter::once(&self.filter.curve).chain(ends.iter().map(|end| &end.curve)) {
                 let points: Vec<_> = curve.points().iter().map(|point| (point.percent, point.size)).collect();
                 text.extend_from_slice(format!("{points:?}").as_bytes());
             }
@@ -79,6 +84,16 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Ends that differ in their amount of base alone give other results.
+    #[test]
+    fn the_grains_per_void_of_an_end_are_in_the_fingerprint() {
+        let set = ["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"].map(str::to_owned);
+        let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+        let mut other = case.clone();
+        other.filter.curve_ends[0].times_grains *= 0.9;
+        assert_ne!(case.fingerprint(), other.fingerprint());
+    }
 
     #[test]
     fn what_is_only_said_of_a_scene_is_kept_and_changes_no_fingerprint() {

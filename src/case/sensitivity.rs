@@ -37,6 +37,16 @@ impl Case {
         ((self.supply.n_base as f64 * factor).round() as u64).max(1)
     }
 
+    /// Base particles with so many times the grains per void, none above a cap that the user set; those of
+    /// the case where the user states their number or the grains per void.
+    pub fn base_by_grains(&self, times_grains: f64) -> u64 {
+        let is_by_mass = matches!(self.scene.base.amount(), Amount::MassRatio(..));
+        let is_stated = self.scene.filter.grains_per_void.is_some();
+        let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass && !is_stated);
+        of_eq2
+            .map_or(self.supply.n_base, |n| (n as f64 * times_grains).round().min(self.cap()).max(1.0) as u64)
+    }
+
     fn cap(&self) -> f64 {
         match self.scene.base.amount() {
             Amount::MassRatio(_, Some(cap)) => cap as f64,

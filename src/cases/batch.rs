@@ -138,8 +138,8 @@ impl BatchPlan {
         self.campaign.cases.iter().filter(is_other).count()
     }
 
-    /// Everything that the table follows from, as the record writes it: what a row does not state changes
-    /// nothing.
+    /// Everything that the table follows from, as the record writes it; fields that the record leaves out are
+    /// left out here, too.
     ///
     /// # Errors
     /// A name that is not UTF-8.

@@ -347,8 +347,8 @@ notes! {
         "The filter has a Cu of {cu}, but is walked with the constrictions of one of {curve_cu} ({curve}).";
     /// Constrictions from the library, at a density that is not known.
     LibraryOfAnyDensity { error_percent: f64, grains_percent: f64 } "density" "uncertainty.md"
-        "The density is not given: similar packings, loose to dense, are walked with constrictions \
-         {error_percent} and grains per void {grains_percent} beyond; the worst counts."
+        "The density is not given: similar packings, loose to dense, are walked with errors of \
+         {error_percent} (constrictions) and {grains_percent} (grains per void)."
         "filter.library says how densely it lies; filter.density packs this very filter.";
     /// Constrictions from the library.
     LibraryOfDensity { density: String, error_percent: f64, grains_percent: f64 }

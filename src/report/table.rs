@@ -44,8 +44,12 @@ impl<'a, T> Table<'a, T> {
         self
     }
 
+    /// A column's cell of a row. Of two columns of one name the first is decorated: a factor of a campaign
+    /// may have the name of a column.
     fn cell(&self, column: &PageColumn<T>, row: &T) -> Markup {
-        match self.decorations.get(&*column.name) {
+        let first = self.columns.iter().find(|other| other.name == column.name);
+        let is_first = first.is_some_and(|first| std::ptr::eq(first, column));
+        match self.decorations.get(&*column.name).filter(|_| is_first) {
             Some(cell) => cell(row),
             None => markup(&(column.cell)(row)),
         }

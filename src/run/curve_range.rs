@@ -31,9 +31,7 @@ pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<
     let fit = fit(case);
     let one = |(part, end): (u64, &'a OtherCurve)| {
         let other = case.with_curve(end.curve.clone());
-        // What a user or a cap says of the amount of base holds for every curve.
-        let by_grains = case.supply.n_base_eq2 == Some(case.supply.n_base);
-        let n_base = case.times_base(if by_grains { end.times_grains } else { 1.0 });
+        let n_base = case.base_by_grains(end.times_grains);
         let walked = some_replicates(&other, part, 1..=u64::from(fit), n_base, context)?;
         Ok(BegunEnd { end, case: other, part, n_base, walked })
     };

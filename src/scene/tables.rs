@@ -186,9 +186,9 @@ impl Scene {
     }
 }
 
-/// Refuses two sieve tables that can hardly be a base and its filter, before any other work. A case cannot:
-/// no scene says whether its tables were named as a pair, or that they are as given. It refuses sizes so far
-/// apart that a unit must be wrong, and notes the rest. A table that cannot be read, or holds several soils,
+/// Refuses two sieve tables that can hardly be a base and its filter, before any other work. A case does
+/// not know whether its tables were named as a pair, or are as given: it refuses only sizes so far apart
+/// that a unit must be wrong, and notes the rest. A table that cannot be read, or holds several soils,
 /// is left to whoever reads it.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
 //! Practice as facts: what its rules say of two soils, what a specification asks for, and notes. No walk
-//! decides what practice says. Sentences are made in `words`, but for refusals of tables and for the formulas
+//! decides what practice says. Sentences are made in `words`, except refusals of tables and the formulas
 //! of a specification.
 //!
 //! - [`Decision`] is everything that practice decides of a pair, made once of its rules: `tested` has the

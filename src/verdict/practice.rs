@@ -46,7 +46,7 @@ pub struct Decision<'r> {
     pub without_margin: Option<&'r AppliedRule>,
     /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
     pub strictest: Option<(&'r AppliedRule, f64)>,
-    /// Whether the strictest limit is lower than that and not known.
+    /// Whether the strictest limit may be lower than that and is not known.
     pub is_strictest_open: bool,
     /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
     pub if_dispersive: Option<IfDispersive>,
@@ -127,10 +127,10 @@ impl<'r> Decision<'r> {
         Self { headline: facts.answer(), counts_as: facts.class(), ..facts }
     }
 
-    /// The decision on a pair that was walked, with the answer that its record has.
+    /// The decision on a pair that was walked: without an answer where its record has none.
     pub fn recorded(outcome: &'r Outcome) -> Self {
         let decided = Self::new(&outcome.rules, outcome.if_dispersive, Some(outcome.inputs.filter.d15_mm));
-        Self { headline: outcome.headline, ..decided }
+        Self { headline: outcome.headline.and(decided.headline), ..decided }
     }
 
     /// The rule of this name, where it was made for these soils.

@@ -61,7 +61,10 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
         .page_number("Drains: finest D15 / minimum D15F", move |of| margin(of.drains_by))
         .column("holds_by", |of| of.holds_by)
         .page_number("Retains: maximum D15F / coarsest D15", move |of| margin(of.holds_by))
-        .text("not_kept", "What else its sides do not keep", |of| not_kept(&of.not_kept))
+        .column("not_kept", |of| not_kept(&of.not_kept))
+        .page_text("What else its sides do not keep", |of| {
+            Some(not_kept(&of.not_kept)).filter(|words| !words.is_empty())
+        })
         .column("source", |of| of.source.clone())
 }
 

@@ -360,7 +360,7 @@ mod tests {
             assert!(s.value.is_some() != limits, "{}: either a value or limits", s.id);
             let (low, high) = s.allowed();
             assert!(low <= high, "{}", s.id);
-            let known = ["printed", "exact", "about", "sample", "rerun", "word"];
+            let known = ["printed", "exact", "about", "derived", "sample", "rerun", "word"];
             assert!(known.iter().any(|kind| s.why.starts_with(kind)), "{}: {}", s.id, s.why);
         }
         let used: BTreeSet<&str> = all.iter().map(|s| s.measure.as_str()).collect();

@@ -1,4 +1,4 @@
-//! The tables of the page of a all.
+//! The tables of the page of boundaries.
 
 use maud::{Markup, html};
 

@@ -50,7 +50,7 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     let folder = tempfile::tempdir().unwrap();
     let options = BoundaryOptions {
         filter: Some("1.5".into()),
-        ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2", "base.cu=3"])
+        ..tiny(&folder.path().join("out"), &["network.nz=5", "replicates=2", "base.cu=3"])
     };
     let all = found(&options);
     let [unknown, dense] = &all.boundaries[..] else { panic!("{:?}", all.boundaries) };
@@ -125,7 +125,7 @@ fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
     let options = BoundaryOptions {
         filter: Some("1.5".into()),
         densities: vec!["unknown".into(), "loose".into()],
-        thicknesses: vec!["4layers".parse().unwrap(), "6layers".parse().unwrap()],
+        thicknesses: vec!["4layers".parse().unwrap(), "5layers".parse().unwrap()],
         ..tiny(&folder.path().join("out"), &["replicates=2", "base.cu=3"])
     };
     let all = found(&options);
@@ -144,7 +144,7 @@ fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
         ("loose, constrictions ", Some("loose".to_owned())),
     ];
     let expected = expected.map(|(density, end_of)| (density.to_owned(), end_of));
-    for thickness in ["4 layers", "6 layers"] {
+    for thickness in ["4 layers", "5 layers"] {
         let mut found = of(thickness);
         found.sort_by_key(|row| expected.iter().position(|of| of == row));
         assert_eq!(found, expected, "{thickness}");
