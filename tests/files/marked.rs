@@ -39,6 +39,11 @@ fn ods(styles: &str, cell: &str) -> Vec<u8> {
 
 /// An .xlsx of the same rows, in which `size` and `value` are the cells of the third, with their styles.
 fn xlsx(formats: &str, strings: &str, heading: &str, rows: &[(&str, &str)]) -> Vec<u8> {
+    xlsx_ending("</sheetData></worksheet>", formats, strings, heading, rows)
+}
+
+/// The same, whose sheet ends so.
+fn xlsx_ending(end: &str, formats: &str, strings: &str, heading: &str, rows: &[(&str, &str)]) -> Vec<u8> {
     let text = |text: &str| format!("<c t=\"inlineStr\"><is><t>{text}</t></is></c>");
     let mut sheet = format!("<row>{}{}</row>", text(heading), text("% passing"));
     for (size, value) in rows {
@@ -57,8 +62,50 @@ fn xlsx(formats: &str, strings: &str, heading: &str, rows: &[(&str, &str)]) -> V
         ),
         ("xl/styles.xml", styles),
         ("xl/sharedStrings.xml", format!("<sst>{strings}</sst>")),
-        ("xl/worksheets/sheet1.xml", format!("<worksheet><sheetData>{sheet}</sheetData></worksheet>")),
+        ("xl/worksheets/sheet1.xml", format!("<worksheet><sheetData>{sheet}{end}")),
     ])
+}
+
+const ROWS: [(&str, &str); 4] = [
+    ("<c><v>9.5</v></c>", "<c><v>100</v></c>"),
+    ("<c><v>4.75</v></c>", "<c><v>97</v></c>"),
+    ("<c><v>2</v></c>", "<c><v>81</v></c>"),
+    ("<c><v>0.425</v></c>", "<c><v>0</v></c>"),
+];
+
+#[test]
+fn a_time_is_no_opening_whatever_its_format() {
+    let of_format = |id: &str| {
+        let formats = format!("<numFmt numFmtId=\"170\" formatCode=\"{id}\"/>");
+        let mut rows = ROWS;
+        rows[0].0 = "<c s=\"1\"><v>45724</v></c>";
+        read(&xlsx(&formats, "", "Sieve (mm)", &rows))
+    };
+    assert_eq!(of_format("0.0").unwrap().last(), Some(&(45724.0, 100.0)));
+    for format in ["m:ss", "[s]", "h AM/PM", "m"] {
+        assert!(of_format(format).is_err(), "{format}");
+    }
+}
+
+#[test]
+fn a_sheet_that_is_cut_off_is_not_read_as_whole() {
+    let ending = |end: &str| read(&xlsx_ending(end, "", "", "Sieve (mm)", &ROWS));
+    assert_eq!(ending("</sheetData></worksheet>").unwrap().len(), 4);
+    assert!(ending("").is_err());
+}
+
+#[test]
+fn an_unknown_entity_does_not_glue_its_neighbours() {
+    let mut rows = ROWS;
+    rows[2].1 = "<c><v>8&b;1</v></c>";
+    assert!(read(&xlsx("", "", "Sieve (mm)", &rows)).is_err());
+}
+
+#[test]
+fn a_table_within_a_cell_does_not_hide_the_rows_behind_it() {
+    let nested = "<table:table-cell><table:table table:name=\"B\"><table:table-row><table:table-cell/>\
+                  </table:table-row></table:table></table:table-cell>";
+    assert!(read(&ods("", nested)).unwrap_err().contains("a table of its own"));
 }
 
 #[test]

@@ -199,6 +199,9 @@ fn paragraphs(
                 spans.push(attribute(e, "text:style-name").unwrap_or_default());
             }
             Event::End(e) if e.name().as_ref() == "text:span" => drop(spans.pop()),
+            Event::Start(e) if e.name().as_ref() == "table:table" => {
+                return Err(unreadable(file, "a cell holds a table of its own"));
+            }
             Event::Start(e) if SPACES.contains(&e.name().as_ref()) => runs.push(" ", Kind::Plain, ""),
             Event::End(e) if e.name().as_ref() == end => return Ok(runs.text().trim().to_owned()),
             Event::Eof => return Err(broken(file)),

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::cells::{Budget, Cells};
+use super::cells::{Budget, Cells, tidy};
 use super::grid::Grid;
 use super::literals::{as_shown, parts_of};
 use super::runs::{Kind, Runs};
@@ -88,7 +88,8 @@ fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
             Event::Start(e) if e.local_name().as_ref() == "rPh" => phonetic = true,
             Event::End(e) if e.local_name().as_ref() == "rPh" => phonetic = false,
             Event::End(e) if e.local_name().as_ref() == "si" => {
-                strings.push(rich.runs.text());
+                // Shortened once: a sheet may name one long text many times.
+                strings.push(tidy(&rich.runs.text()));
                 if strings.len() > MOST_STRINGS {
                     return Err(too_large(file, &format!("more than {MOST_STRINGS} texts")));
                 }
@@ -157,7 +158,7 @@ fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
                 let id = attribute(&e, "numFmtId").and_then(|id| id.parse::<u32>().ok()).unwrap_or(0);
                 styles.push(match id {
                     9 | 10 => Style::Percent,
-                    14..=22 | 45..=47 => Style::Date,
+                    14..=22 | 27..=36 | 45..=47 | 50..=58 => Style::Date,
                     id => formats.get(&id).cloned().unwrap_or_else(|| of_format("")),
                 });
             }
@@ -167,15 +168,24 @@ fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     }
 }
 
-/// What a format's code shows; quoted text and conditions in brackets say nothing of dates.
+/// The style of a format's code: quoted text and conditions in brackets say nothing of dates, an elapsed time
+/// in brackets (`[h]`) does.
 fn of_format(code: &str) -> Style {
     let (before, after, plain) = parts_of(code);
     let plain = plain.to_lowercase().replace("general", "");
     match () {
         () if plain.contains('%') => Style::Percent,
-        () if plain.contains(['d', 'y']) || plain.contains("mm") || plain.contains("h:") => Style::Date,
+        () if plain.contains(['d', 'y', 'h', 'm', 's']) || counts_time(code) => Style::Date,
         () => Style::Number(before, after),
     }
+}
+
+/// Whether a format's code has hours, minutes or seconds that go on counting: `[h]`, `[mm]`, `[ss]`.
+fn counts_time(code: &str) -> bool {
+    let within = code.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
+    within.map(|(unit, _)| unit.to_lowercase()).any(|unit| {
+        ["h", "m", "s"].iter().any(|letter| !unit.is_empty() && unit.replace(letter, "").is_empty())
+    })
 }
 
 struct Context<'a> {
@@ -193,9 +203,11 @@ impl Context<'_> {
         let mut cells = Cells::new(self.file, self.sheet, budget);
         let (mut row, mut column) = (0usize, 0usize);
         let is_hidden = |e: &BytesStart| attribute(e, "hidden").is_some_and(|h| h == "1" || h == "true");
-        let mut before = None;
+        let (mut before, mut within) = (None, false);
         loop {
             match reader.read_event().map_err(|_| broken(self.file))? {
+                Event::Start(e) if e.local_name().as_ref() == "sheetData" => within = true,
+                Event::End(e) if e.local_name().as_ref() == "sheetData" => within = false,
                 Event::Start(e) if e.local_name().as_ref() == "col" && is_hidden(&e) => {
                     let end = |name| attribute(&e, name).and_then(|n| n.parse::<usize>().ok());
                     if let (Some(first), Some(last)) = (end("min"), end("max")) {
@@ -225,6 +237,8 @@ impl Context<'_> {
                     cells.put(row, column, &text)?;
                     column += 1;
                 }
+                // A part that was cut off lacks rows.
+                Event::Eof if within => return Err(broken(self.file)),
                 Event::Eof => return Ok(cells.done(self.hidden)),
                 _ => {}
             }
@@ -325,8 +339,20 @@ mod tests {
             [Some((0, 0)), Some((6, 1)), Some((9, 26))]
         );
         assert_eq!([place_of("7"), place_of("A0"), place_of("AAAA1"), place_of("")], [None; 4]);
-        assert!(of_format("0.0%") == Style::Percent && of_format("dd\\-mmm") == Style::Date);
-        for code in ["0.00\" mm\"", "[Red]0.0;General", "0.0_D_M", "0.0\\d", "0*d"] {
+        assert!(of_format("0.0%") == Style::Percent);
+        for code in ["dd\\-mmm", "m", "m:ss", "[s]", "[hh]:mm", "h AM/PM"] {
+            assert_eq!(of_format(code), Style::Date, "{code}");
+        }
+        for code in [
+            "0.00\" mm\"",
+            "[Red]0.0;General",
+            "[Magenta]0.0",
+            "0.00E+00",
+            "[>=100]0;0.0",
+            "0.0_D_M",
+            "0.0\\d",
+            "0*d",
+        ] {
             assert!(matches!(of_format(code), Style::Number(..)), "{code}");
         }
     }

@@ -96,7 +96,9 @@ pub(super) fn characters(event: &Event) -> Option<String> {
         Event::CData(text) => Some((**text).to_owned()),
         Event::GeneralRef(reference) => {
             let written = format!("&{};", &**reference);
-            Some(quick_xml::escape::unescape(&written).map_or_else(|_| String::new(), |c| c.into_owned()))
+            // An unknown one stays as it is written: without it `8&b;1` would be 81.
+            let known = quick_xml::escape::unescape(&written).map(std::borrow::Cow::into_owned);
+            Some(known.unwrap_or(written))
         }
         _ => None,
     }
