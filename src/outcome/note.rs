@@ -430,8 +430,8 @@ notes! {
         "A filter that is packed whole (filter.density) has one measured curve.";
     /// A range of constriction curves that gives more than one class.
     CurveDecides { of_the_curve: String } "constrictions" "uncertainty.md"
-        "The class depends on which constriction curve the filter has: that of the likeliest curve is \
-         {of_the_curve}."
+        "The class depends on where the filter lies within the range that was walked: its likeliest \
+         constrictions give {of_the_curve}."
         "A filter that is packed whole (filter.density) has one measured curve.";
     /// A base far coarser than its filter.
     UnitDoubtful { base_d50_mm: f64, filter_d50_mm: f64 } "tables" "soils.md"
