@@ -1,31 +1,23 @@
 #!/usr/bin/env python3
 """Largest eroded particle over ten networks for a base of size classes, beside a continuous one: the table of `results/paper-findings.md`.
 
-    scripts/studies/base_classes.py [--binary target/release/voidwalk]
+    scripts/studies/base_classes.py [--binary target/release/voidwalk] [--threads 2]
 
 Prints for each run the greatest less the least largest particle, in percent of the mean, and the mass that erodes.
 """
 
 import argparse
-import json
 import math
-import subprocess
 import tempfile
 from pathlib import Path
+
+from arches import Walks
 
 BASES = [(3, 5), (1.5, 25)]
 CLASSES = [10, 20, 50]
 # A class is this narrow, relative to its size: a sieve table has no vertical step.
 WIDTH = 1e-4
 COMMON = {"filter.curve": '"cu1.5-loose"', "replicates": 10, "seed": 2016, "record.sensitivity": "[]", "record.thickness": "[]"}
-
-
-def outcome(binary, folder, name, settings):
-    (folder / "scene.toml").write_text("")
-    command = [binary, "run", folder / "scene.toml", "--out", folder / name, "--quiet"]
-    command += [part for key, value in (COMMON | settings).items() for part in ("--set", f"{key}={value}")]
-    subprocess.run([str(part) for part in command], check=True)
-    return json.loads((folder / name / "outcome.json").read_text())
 
 
 def classes(curve, count):
@@ -55,18 +47,19 @@ def show(name, found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", default="target/release/voidwalk")
+    parser.add_argument("--threads", default="2")
     options = parser.parse_args()
+    outcome = lambda settings: Walks(options).outcome(COMMON | settings)
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
         for cu, percent in BASES:
             base = f"base Cu {cu} at Dc{percent}"
             settings = {"base.cu": cu, "base.d85_at_dc": percent, "base.dc_curve": '"cu1.5-loose"'}
-            continuous = outcome(options.binary, folder, f"{cu}-{percent}", settings)
+            continuous = outcome(settings)
             show(f"{base}, continuous", continuous)
             for count in CLASSES:
-                sheet = folder / f"{cu}-{percent}-{count}.csv"
+                sheet = Path(scratch) / f"{count}.csv"
                 sheet.write_text(classes(continuous["inputs"]["base"]["gradation"], count))
-                show(f"{base}, {count} classes", outcome(options.binary, folder, sheet.stem, {"base.sieve": f'"{sheet}"'}))
+                show(f"{base}, {count} classes", outcome({"base.sieve": f'"{sheet}"'}))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Error of the schedule by which the flow is solved, beside solving it whenever anything has closed.
 
-    scripts/studies/flow_schedule.py --work FOLDER [--binary target/release/voidwalk] [--replicates 60]
+    scripts/studies/flow_schedule.py --work FOLDER [--binary target/release/voidwalk] [--threads 2] [--replicates 60]
 
 Walks a base of 20,000 particles, Cu 1.5, on the voids of 400 grains (filter Cu 1.5, loose, two copies), two runs, with a `walk.flow_tolerance` of 0,
 0.03, 0.1 and 1, on the same random numbers. Prints a table in Markdown: percentage points eroded beyond those of tolerance 0, with the standard
@@ -9,10 +9,11 @@ error, and the scatter of the mean of ten replicates.
 """
 
 import argparse
-import json
 import statistics
 import subprocess
 from pathlib import Path
+
+from arches import Walks
 
 SIZES_MM = [0.26, 0.33, 0.36, 0.38, 0.40]
 TOLERANCES = [0.03, 0.1, 1]
@@ -21,18 +22,12 @@ FILTER = "[filter]\ncu = 1.5\nd0_mm = 1\nfriction = 0.3\n[packing]\ngrains = 400
 
 
 def outcome(options, size, tolerance):
-    folder = options.work / f"{size}-{tolerance}"
-    if not (folder / "outcome.json").exists():
-        grains = (options.work / "packing/grains.csv").resolve()
-        settings = {
-            "filter.cu": 1.5, "filter.d0_mm": 1, "network.kind": '"graph"', "network.packing": f'"{grains}"', "network.copies": COPIES,
-            "base.cu": 1.5, "base.d85_mm": size, "base.n_base": PARTICLES, "replicates": options.replicates, "runs": 2, "seed": 5,
-            "walk.flow_tolerance": tolerance, "record.sensitivity": "[]", "record.thickness": "[]",
-        }
-        command = [options.binary, "run", options.work / "empty.toml", "--out", folder, "--quiet"]
-        command += [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
-        subprocess.run([str(part) for part in command], check=True)
-    return json.loads((folder / "outcome.json").read_text())
+    grains = (options.work / "packing/grains.csv").resolve()
+    return Walks(options).outcome({
+        "filter.cu": 1.5, "filter.d0_mm": 1, "network.kind": '"graph"', "network.packing": f'"{grains}"', "network.copies": COPIES,
+        "base.cu": 1.5, "base.d85_mm": size, "base.n_base": PARTICLES, "replicates": options.replicates, "runs": 2, "seed": 5,
+        "walk.flow_tolerance": tolerance, "record.sensitivity": "[]", "record.thickness": "[]",
+    })
 
 
 def eroded(found, run):
@@ -43,10 +38,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--binary", default="target/release/voidwalk")
+    parser.add_argument("--threads", default="2")
     parser.add_argument("--replicates", type=int, default=60)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
-    (options.work / "empty.toml").write_text("")
     (options.work / "filter.toml").write_text(FILTER)
     if not (options.work / "packing/packing.json").exists():
         command = [options.binary, "pack", options.work / "filter.toml", "--seed", "1", "--out", options.work / "packing", "--quiet"]

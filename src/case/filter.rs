@@ -60,7 +60,16 @@ impl CaseFilter {
         };
         let curve_ends = match (fixed, &library) {
             (Some(_), _) => Vec::new(),
-            (None, Some(library)) => library.ends.clone(),
+            (None, Some(library)) => {
+                // What a user states of it holds for every curve.
+                let is_stated = scene.filter.grains_per_void.is_some();
+                let times = |end: &OtherCurve| if is_stated { 1.0 } else { end.times_grains };
+                library
+                    .ends
+                    .iter()
+                    .map(|end| OtherCurve { times_grains: times(end), ..end.clone() })
+                    .collect()
+            }
             (None, None) => {
                 let part = packed.as_ref().and_then(|packed| packed.part.as_ref());
                 curve_ends::of(&curve, &gradation, part, guessed_density)

@@ -38,11 +38,10 @@ impl Case {
     }
 
     /// Base particles with so many times the grains per void, none above a cap that the user set; those of
-    /// the case where the user states their number or the grains per void.
+    /// the case where the user states their number.
     pub fn base_by_grains(&self, times_grains: f64) -> u64 {
         let is_by_mass = matches!(self.scene.base.amount(), Amount::MassRatio(..));
-        let is_stated = self.scene.filter.grains_per_void.is_some();
-        let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass && !is_stated);
+        let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass);
         of_eq2
             .map_or(self.supply.n_base, |n| (n as f64 * times_grains).round().min(self.cap()).max(1.0) as u64)
     }
@@ -60,6 +59,26 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
     use crate::words::left_out::left_out;
+
+    /// The coarse end of the library has 6 % fewer grains per void near one of its shapes.
+    #[test]
+    fn the_base_of_an_end_follows_its_grains_unless_they_are_stated_and_keeps_the_cap() {
+        let of = |set: &[&str]| {
+            let set = [&["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"], set].concat();
+            let set: Vec<String> = set.into_iter().map(str::to_owned).collect();
+            let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+            (case.base_by_grains(case.filter.curve_ends[0].times_grains), case.supply.n_base)
+        };
+        let (of_end, n_base) = of(&[]);
+        assert_eq!(of_end, (n_base as f64 / 1.06).round() as u64);
+        // Between the base of the end and that of the case, and below both.
+        for (cap, expected) in [(n_base - 1, of_end), (of_end / 2, of_end / 2)] {
+            assert_eq!(of(&[&format!("base.cap={cap}")]), (expected, cap));
+        }
+        let (of_end, n_base) = of(&["filter.grains_per_void=0.5"]);
+        assert_eq!(of_end, n_base);
+        assert_eq!(of(&["base.n_base=1000"]), (1000, 1000));
+    }
 
     #[test]
     fn what_is_not_walked_is_said_with_its_reason() {

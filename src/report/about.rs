@@ -48,7 +48,8 @@ impl About {
     }
 }
 
-/// The settings of one kind in the table `about`; nothing else of the scene is looked at.
+/// The settings of one kind in the table `about`; nothing else of the scene is looked at. Each kind is read
+/// apart, as an error within a flattened struct would have no line.
 fn about<T: Default + DeserializeOwned>(path: &Path, scene: &str) -> Result<T, ReportError> {
     #[derive(Deserialize)]
     struct Scene<T> {

@@ -14,8 +14,8 @@ type Decoration<'a, T> = Box<dyn Fn(&T) -> Markup + 'a>;
 pub(super) struct Table<'a, T> {
     rows: Vec<&'a T>,
     columns: Vec<PageColumn<'a, T>>,
-    /// By the names of their columns.
-    decorations: BTreeMap<&'static str, Decoration<'a, T>>,
+    /// By the places of their columns.
+    decorations: BTreeMap<usize, Decoration<'a, T>>,
     class: Option<&'static str>,
     more: Markup,
 }
@@ -37,33 +37,30 @@ impl<'a, T> Table<'a, T> {
         Self { more, ..self }
     }
 
-    /// The cells of the column of this name show this instead.
-    pub(super) fn showing(mut self, name: &'static str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
-        assert!(self.columns.iter().any(|column| column.name == name), "{name} is no column");
-        self.decorations.insert(name, Box::new(cell));
+    /// The cells of the first column of this name show this instead: a factor of a campaign may have the name
+    /// of a column, too.
+    pub(super) fn showing(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
+        let place = self.columns.iter().position(|column| column.name == name);
+        self.decorations.insert(place.unwrap_or_else(|| panic!("{name} is no column")), Box::new(cell));
         self
     }
 
-    /// A column's cell of a row. Of two columns of one name the first is decorated: a factor of a campaign
-    /// may have the name of a column.
-    fn cell(&self, column: &PageColumn<T>, row: &T) -> Markup {
-        let first = self.columns.iter().find(|other| other.name == column.name);
-        let is_first = first.is_some_and(|first| std::ptr::eq(first, column));
-        match self.decorations.get(&*column.name).filter(|_| is_first) {
+    fn cell(&self, place: usize, row: &T) -> Markup {
+        match self.decorations.get(&place) {
             Some(cell) => cell(row),
-            None => markup(&(column.cell)(row)),
+            None => markup(&(self.columns[place].cell)(row)),
         }
     }
 
-    /// The columns without those of texts that are empty in every row.
-    fn filled(&self) -> Vec<&PageColumn<'a, T>> {
-        let is_filled = |column: &&PageColumn<T>| {
+    /// The columns with their places, without those of texts that are empty in every row.
+    fn filled(&self) -> Vec<(usize, &PageColumn<'a, T>)> {
+        let is_filled = |(place, column): &(usize, &PageColumn<T>)| {
             column.kind != ColumnKind::Text
-                || self.decorations.contains_key(&*column.name)
+                || self.decorations.contains_key(place)
                 || self.rows.is_empty()
                 || self.rows.iter().any(|row| (column.cell)(row) != Shown::default())
         };
-        self.columns.iter().filter(is_filled).collect()
+        self.columns.iter().enumerate().filter(is_filled).collect()
     }
 }
 
@@ -96,15 +93,15 @@ impl<T> Render for Table<'_, T> {
         let columns = self.filled();
         html! {
             div.scroll { table class=[self.class] {
-                thead { tr { @for column in &columns { @match column.kind {
+                thead { tr { @for (_, column) in &columns { @match column.kind {
                     ColumnKind::Number => th.n { (markup(&column.heading)) },
                     _ => th { (markup(&column.heading)) },
                 } } } }
                 tbody {
-                    @for row in &self.rows { tr { @for column in &columns { @match column.kind {
-                        ColumnKind::Name => th { (self.cell(column, row)) },
-                        ColumnKind::Text => td { (self.cell(column, row)) },
-                        ColumnKind::Number => td.n { (self.cell(column, row)) },
+                    @for row in &self.rows { tr { @for (place, column) in &columns { @match column.kind {
+                        ColumnKind::Name => th { (self.cell(*place, row)) },
+                        ColumnKind::Text => td { (self.cell(*place, row)) },
+                        ColumnKind::Number => td.n { (self.cell(*place, row)) },
                     } } } }
                     (self.more)
                 }

@@ -57,9 +57,7 @@ impl Row {
             let wanted = Wanted { density, ..self.wanted.clone() };
             let end_of = Some(self.wanted.density.clone());
             let mut case = self.case.with_curve(end.curve.clone());
-            // What a user says of it holds for every curve.
-            let times = if case.scene.filter.grains_per_void.is_none() { end.times_grains } else { 1.0 };
-            case.filter.grains_per_void = case.filter.grains_per_void.map(|grains| grains * times);
+            case.filter.grains_per_void = case.filter.grains_per_void.map(|grains| grains * end.times_grains);
             Self { case, wanted, end_of, ..self.clone() }
         };
         self.case.filter.curve_ends.iter().map(of).collect()
