@@ -26,8 +26,8 @@ pub(crate) fn hash_of(work: &str) -> String {
 }
 
 /// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
-/// start of it found, and not at all where all but its page is there. `study` writes its tables; then come
-/// its record and its page, and nothing is left to continue.
+/// start of it found, and not at all where all but the page of a study without cases is there. `study` writes
+/// its tables; then come its record and its page, and nothing is left to continue.
 ///
 /// # Errors
 /// What is there is of another study; what the study and the folder say.
@@ -39,7 +39,8 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
 ) -> Result<R, RunError> {
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
     let kept = Kept::new(kind, folder, &mark.work);
-    let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite);
+    // Of a batch the cases are looked at again: each has files of its own.
+    let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite && !kind.has_cases());
     let record = match whole {
         Some(record) => record,
         None => {

@@ -162,6 +162,17 @@ fn killed_at_any_time_and_continued_the_table_is_the_same() {
     fs::remove_file(at.join("killed/batch.json")).unwrap();
     judged(&at, &again);
     assert!(tables(&at.join("killed")) == expected && moments(&at.join("killed")) == walked);
+    // Killed when all but the end of its mark was written, and a case harmed since: it is walked again.
+    other(&format!("{{\"kind\": \"batch\", \"work\": {}}}", record(&at.join("killed"))["work"]));
+    let mut cases: Vec<_> = fs::read_dir(at.join("killed/pairs/cases")).unwrap().flatten().collect();
+    cases.sort_by_key(|case| case.file_name());
+    let harmed = cases[0].path().join("case.json");
+    let whole = fs::read(&harmed).unwrap();
+    fs::write(&harmed, &whole[..whole.len() / 2]).unwrap();
+    judged(&at, &again);
+    assert!(tables(&at.join("killed")) == expected && moments(&at.join("killed")) != walked);
+    let fingerprint = |case: &[u8]| serde_json::from_slice::<Value>(case).unwrap()["fingerprint"].clone();
+    assert_eq!(fingerprint(&fs::read(&harmed).unwrap()), fingerprint(&whole));
     other("{\"kind\": \"batch\", \"work\": \"other\"}");
     refused(&call(&at, &again), "holds another batch");
 }
