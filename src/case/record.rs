@@ -3,7 +3,7 @@
 use super::{Case, CaseFilter, CaseNetwork, Input};
 use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
-use crate::network::ExitRule;
+use crate::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
 use crate::outcome::record::{self, InputFile};
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
@@ -163,6 +163,8 @@ impl Case {
             return None;
         }
         let CaseNetwork { voids, constrictions, start_nodes: inlets, layers, .. } = self.network;
+        let tolerance = self.scene.exits.flow_tolerance.unwrap_or(FLOW_TOLERANCE);
+        let flow_tolerance = rule.needs_flow().then_some(tolerance);
         let k0_m2 = k0_mm2.filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
         Some(record::NetworkSummary {
             kind: match &self.network.fixed {
@@ -180,6 +182,8 @@ impl Case {
             thickness_mm: self.thickness(),
             k0_m2,
             k0_m_per_s: k0_m2.map(|k| k * GRAVITY / KINEMATIC_VISCOSITY),
+            flow_tolerance,
+            flow_error_pp: flow_tolerance.and_then(flow_error_pp),
         })
     }
 

@@ -38,7 +38,7 @@ pub use graph::GraphShape;
 pub use passage::Passage;
 pub use percolation::percolation_threshold;
 pub use reach::Reachability;
-pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE};
+pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE, flow_error_pp};
 
 use twins::{Undirected, hash_column};
 

@@ -83,6 +83,7 @@ fn the_graph_is_walked_and_its_folder_says_what_it_is() {
     assert_eq!((&network["copies"], &network["thickness_mm"]), (&2.into(), &12.0.into()));
     assert!(network["voids"].as_u64().unwrap() > 150 && network["inlets"].as_u64().unwrap() > 20);
     assert!(network["k0_m2"].as_f64().unwrap() > 0.0 && network["k0_m_per_s"].as_f64().unwrap() > 0.0);
+    assert_eq!((&network["flow_tolerance"], &network["flow_error_pp"]), (&0.03.into(), &0.3.into()));
     for replicate in outcome["replicates"].as_array().unwrap() {
         for run in replicate["runs"].as_array().unwrap() {
             let k = run["k_over_k0"].as_f64().unwrap();

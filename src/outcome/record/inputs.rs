@@ -178,6 +178,14 @@ pub struct NetworkSummary {
     pub k0_m2: Option<f64>,
     /// Hydraulic conductivity of the clean filter for water of 10 C (m/s), likewise.
     pub k0_m_per_s: Option<f64>,
+    /// Share of the inflow that may close before the flow is solved again (`walk.flow_tolerance`); `None`
+    /// where no water flows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_tolerance: Option<f64>,
+    /// Percentage points of eroded mass by which such walks differed at most from walks of tolerance 0, on
+    /// ten filters (graph.md); `None` where no water flows, and for tolerances that were not measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_error_pp: Option<f64>,
 }
 
 /// How a network was made.
