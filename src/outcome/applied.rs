@@ -36,7 +36,8 @@ pub struct AppliedRule {
     /// The most, or the least, that the rule allows; `None` where no number is known.
     pub limit: Option<f64>,
     /// Unit of value and limit: `mm`, `D0F`, `%`; empty for a ratio.
-    pub unit: String,
+    #[cfg_attr(feature = "cli", schemars(with = "String"))]
+    pub unit: RuleUnit,
     /// Whether `limit` is the least that the rule allows instead of the most.
     pub at_least: bool,
     /// Whether the true limit is not known, and is at most `limit`; on either side of it where `needs` names
@@ -78,6 +79,35 @@ impl AppliedRule {
     /// Whether it is a rule of practice that was made for these soils and is not kept.
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
+    }
+}
+
+/// The unit of a rule's value and limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum RuleUnit {
+    /// Sizes in mm.
+    #[serde(rename = "mm")]
+    Mm,
+    /// Sizes as multiples of D0F.
+    #[serde(rename = "D0F")]
+    D0f,
+    /// A ratio.
+    #[serde(rename = "")]
+    One,
+    /// Percent of the mass.
+    #[serde(rename = "%")]
+    Percent,
+}
+
+impl RuleUnit {
+    /// Its name, as it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mm => "mm",
+            Self::D0f => "D0F",
+            Self::One => "",
+            Self::Percent => "%",
+        }
     }
 }
 

@@ -132,7 +132,7 @@ impl BatchRow {
         let base = &sample.curve;
         let bases = [(sample.name.clone(), base.clone())];
         let mistake = Mistake::of_envelopes(&bases, curves);
-        let pair = PairRules::of_envelopes(&bases, curves, options);
+        let pair = PairRules::with_mistake(&bases, curves, options, mistake.as_ref());
         let row = Self {
             sample: sample.name.clone(),
             path: sample.path.clone(),

@@ -128,9 +128,9 @@ impl PairRules {
         filters: &[NamedCurve],
         options: PairOptions,
     ) -> Result<Self, Mistake> {
-        match Mistake::of_envelopes(bases, filters).filter(|of| of.is_refused() && !options.as_given) {
-            Some(mistake) => Err(mistake),
-            None => Ok(Self::of_envelopes(bases, filters, options)),
+        match Mistake::of_envelopes(bases, filters) {
+            Some(mistake) if mistake.is_refused() && !options.as_given => Err(mistake),
+            mistake => Ok(Self::with_mistake(bases, filters, options, mistake.as_ref())),
         }
     }
 
@@ -139,16 +139,25 @@ impl PairRules {
     /// # Panics
     /// Where either has no curve.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve], options: PairOptions) -> Self {
-        let (rules, [filter, base]) = apply_and_decide(bases, filters, options.dispersive, options.joint_mm);
+        Self::with_mistake(bases, filters, options, Mistake::of_envelopes(bases, filters).as_ref())
+    }
+
+    /// Every rule, where it is known what is wrong with the two.
+    pub(super) fn with_mistake(
+        bases: &[NamedCurve],
+        filters: &[NamedCurve],
+        options: PairOptions,
+        mistake: Option<&Mistake>,
+    ) -> Self {
+        let (rules, [filter, base], soil) =
+            apply_and_decide(bases, filters, options.dispersive, options.joint_mm);
         let ((curve, filter), (base_curve, base)) = (&filters[filter], &bases[base]);
-        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category, .. } =
-            BaseSoil::of(base, false);
+        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category, .. } = soil.clone();
         let names = |curves: &[NamedCurve]| match curves.len() {
             1 => Vec::new(),
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
         };
-        let mistake = Mistake::of_envelopes(bases, filters);
-        let mut notes: Vec<Note> = mistake.map(|mistake| mistake.note).into_iter().collect();
+        let mut notes: Vec<Note> = mistake.map(|mistake| mistake.note.clone()).into_iter().collect();
         for (whose, curves) in [("filter", filters), ("base", bases)] {
             if curves.len() > 1 {
                 notes.push(Note::Envelope { soil: whose.into(), curves: names(curves) });
@@ -160,7 +169,7 @@ impl PairRules {
         };
         let range = tested_range(&RuleInputs {
             dispersive: options.dispersive,
-            ..RuleInputs::of_soils(base, filter)
+            ..RuleInputs::with_soil(base, soil, filter)
         });
         let decision = Decision::new(&rules, if_dispersive, filter.d(15.0));
         let (headline, practice) = (decision.headline, decision.record(range));

@@ -9,7 +9,7 @@
 use super::rule_result::met_of;
 use crate::gradation::WIDE_LOOSE_PERCENT;
 use crate::outcome::design::retention::retention;
-use crate::outcome::record::{AppliedRule, RuleRole, WithoutFiner};
+use crate::outcome::record::{AppliedRule, RuleRole, RuleUnit, WithoutFiner};
 use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
@@ -22,7 +22,7 @@ pub struct Washout<'r> {
     /// The least limit of retention.
     pub least: f64,
     /// Unit of sizes.
-    pub unit: &'r str,
+    pub unit: RuleUnit,
     /// The boundary of continuing erosion of tests, where it is beyond that, too.
     continuing: Option<&'r AppliedRule>,
 }
@@ -41,7 +41,7 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
         left,
         by,
         least,
-        unit: rules.iter().find(|rule| rule.id == DESIGN).map_or("mm", |rule| &rule.unit),
+        unit: rules.iter().find(|rule| rule.id == DESIGN).map_or(RuleUnit::Mm, |rule| rule.unit),
     })
 }
 

@@ -4,7 +4,9 @@ use super::dispersion::beyond_dispersive;
 use super::rule::value_and_limit;
 use super::rule_note::{missing, rule_note};
 use crate::outcome::quantity::{SizeUnit, Unit, beside_limit, significant};
-use crate::outcome::record::{AppliedRule, Headline, Note, Outcome, RuleNote, RuleRole, TestedClass};
+use crate::outcome::record::{
+    AppliedRule, Headline, Note, Outcome, RuleNote, RuleRole, RuleUnit, TestedClass,
+};
 use crate::outcome::rules::{DESIGN, TESTS_NO_EROSION, authority, authority_in_brief};
 use crate::verdict::Decision;
 use crate::verdict::practice::Standing;
@@ -116,11 +118,11 @@ pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
 fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
     let more = if washout.is_capped() { " or more" } else { "" };
     let d15f = match washout.unit {
-        "mm" => {
+        RuleUnit::Mm => {
             let numbers = [Some(washout.left.d15f), Some(washout.least)];
             beside_limit(numbers, false, Unit::Size(unit))[0].clone().unwrap_or_default()
         }
-        name => format!("{} {name}", significant(washout.left.d15f).decimals(3)),
+        unit => format!("{} {}", significant(washout.left.d15f).decimals(3), unit.name()),
     };
     format!(
         "D15F {d15f} without its finest {} %{more} ({}){}",

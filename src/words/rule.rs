@@ -1,7 +1,7 @@
 //! Single rules of practice in words: their results, values beside limits, and how a sentence cites them.
 
 use crate::outcome::quantity::{SizeUnit, Unit, beside_limit};
-use crate::outcome::record::{AppliedRule, RuleRole, ValueBound};
+use crate::outcome::record::{AppliedRule, RuleRole, RuleUnit, ValueBound};
 use crate::outcome::rules::PERMEABILITY_LEAST;
 use crate::verdict::rule_result::RuleResult;
 
@@ -55,11 +55,11 @@ pub fn value_begins(rule: &AppliedRule) -> &'static str {
 /// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
 /// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
 pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
-    let unit = match rule.unit.as_str() {
-        "" => Unit::None,
-        "%" => Unit::Percent,
-        "D0F" => Unit::Size(SizeUnit::D0f),
-        _ => Unit::Size(unit),
+    let unit = match rule.unit {
+        RuleUnit::One => Unit::None,
+        RuleUnit::Percent => Unit::Percent,
+        RuleUnit::D0f => Unit::Size(SizeUnit::D0f),
+        RuleUnit::Mm => Unit::Size(unit),
     };
     beside_limit([rule.value, rule.limit], rule.at_least, unit)
 }

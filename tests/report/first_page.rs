@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::{Headline, RuleQuantity, RuleRole, SampledBase};
+use voidwalk::outcome::record::{Headline, RuleQuantity, RuleRole, RuleUnit, SampledBase};
 use voidwalk::outcome::rules::RULES;
 use voidwalk::run::FolderKind;
 use voidwalk::verdict::{PairOptions, PairRules};
@@ -64,7 +64,7 @@ fn inches_stand_beside_mm_where_a_scene_asks_for_them() {
     (plan.outcome.inputs.scale_free, plan.outcome.inputs.network.thickness_mm) = (false, Some(609.6));
     plan.outcome.inputs.filter.gradation = vec![[4.75, 0.0], [9.5, 50.0], [19.0, 100.0]];
     let rule = &mut plan.outcome.rules[0];
-    (rule.id, rule.quantity, rule.unit) = ("sherard-dunnigan".into(), RuleQuantity::D15F, "mm".into());
+    (rule.id, rule.quantity, rule.unit) = ("sherard-dunnigan".into(), RuleQuantity::D15F, RuleUnit::Mm);
     (rule.applies, rule.value, rule.limit) = (true, Some(5.08), Some(2.54));
     let metric = words(&made(&plan).0);
     assert!(!metric.contains("US sieveSize"));
@@ -100,7 +100,7 @@ fn boundaries_of_practice_stand_at_the_row_of_d15f() {
     {
         let rule = &mut plan.outcome.rules[rule];
         (rule.id, rule.quantity) = (id.into(), RuleQuantity::D15F);
-        (rule.applies, rule.limit, rule.unit) = (true, Some(limit), "mm".into());
+        (rule.applies, rule.limit, rule.unit) = (true, Some(limit), RuleUnit::Mm);
     }
     let (text, figure) = gradations(&plan);
     // No name of the row runs into theirs.

@@ -253,7 +253,7 @@ pub fn outcome(replicates: u64) -> Outcome {
                 quantity,
                 value: Some(value),
                 limit: Some(limit),
-                unit: String::new(),
+                unit: RuleUnit::One,
                 at_least: false,
                 limit_at_most: false,
                 met: Some(value <= limit),

@@ -36,7 +36,7 @@ pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
 pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
 pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
-pub use super::applied::{AppliedRule, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
+pub use super::applied::{AppliedRule, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
 pub use super::left_out::LeftOut;
 pub use super::model_limit::ModelLimit;
 pub use super::note::Note;

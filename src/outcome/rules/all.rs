@@ -1,8 +1,8 @@
 //! The table of rules.
 
-use super::rule::{FilterRule, Pairing, RuleUnit};
+use super::rule::{FilterRule, Pairing};
 use super::{drainage, exit, retention, stability, walk};
-use crate::outcome::applied::{RuleQuantity, RuleRole};
+use crate::outcome::applied::{RuleQuantity, RuleRole, RuleUnit};
 
 /// The rule by which new filters are specified.
 pub const DESIGN: &str = "sherard-dunnigan";
@@ -74,7 +74,7 @@ pub const RULES: &[FilterRule] = &[
                   (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.4 D85B, not less than \
                   0.2 mm; 40 to 85 %: 0.5 mm",
         at_least: false,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
                  9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
                  Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
@@ -93,7 +93,7 @@ pub const RULES: &[FilterRule] = &[
         formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
                   0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",
         at_least: false,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: FELL,
         pairing: Pairing::EachPair,
         judge: retention::no_erosion,
@@ -109,7 +109,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: RuleQuantity::D15F,
         formula: "9 D95B",
         at_least: false,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
                  9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
                  (RMC-CPD-2023-04), chapter Foster and Fell",
@@ -158,7 +158,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: RuleQuantity::D15F,
         formula: "5 D15B by USBR (2011) and NRCS (2017), and not less than 0.1 mm",
         at_least: true,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  USBR (2011) and NRCS (2017)",
         pairing: Pairing::EachPair,
@@ -174,7 +174,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: RuleQuantity::D15F,
         formula: "3 D15B, the least of the 3 to 5 D15B of EM 1110-2-1901, and not less than 0.1 mm",
         at_least: true,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  EM 1110-2-1901 (2005)",
         pairing: Pairing::EachPair,
@@ -205,7 +205,7 @@ pub const RULES: &[FilterRule] = &[
         quantity: RuleQuantity::named("D100F"),
         formula: "75 mm",
         at_least: false,
-        unit: RuleUnit::Size,
+        unit: RuleUnit::Mm,
         source: OURS,
         pairing: Pairing::EachFilter,
         judge: drainage::greatest_size,

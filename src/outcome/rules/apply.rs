@@ -4,9 +4,9 @@ use super::all::{DESIGN, RULES};
 use super::base::BaseSoil;
 use super::judging::margin;
 use super::open::{OpenBase, OpenFilter, judged_over};
-use super::rule::{FilterRule, Judged, Pairing, RuleInputs, RuleUnit};
+use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
 use crate::gradation::Gradation;
-use crate::outcome::applied::{AppliedRule, WithoutFiner};
+use crate::outcome::applied::{AppliedRule, RuleUnit, WithoutFiner};
 
 /// Applies every rule.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
@@ -41,14 +41,15 @@ pub fn apply_to_envelopes(
     apply_and_decide(bases, filters, dispersive, joint_mm).0
 }
 
-/// The same, and the places of the filter and of the base that keep the limit of design worst.
+/// The same, the places of the filter and of the base that keep the limit of design worst, and that base as
+/// practice describes it.
 pub fn apply_and_decide(
     bases: &[NamedCurve],
     filters: &[NamedCurve],
     dispersive: bool,
     joint_mm: Option<f64>,
-) -> (Vec<AppliedRule>, [usize; 2]) {
-    let soils: Vec<BaseSoil> = bases.iter().map(|(_, base)| BaseSoil::of(base, false)).collect();
+) -> (Vec<AppliedRule>, [usize; 2], BaseSoil) {
+    let mut soils: Vec<BaseSoil> = bases.iter().map(|(_, base)| BaseSoil::of(base, false)).collect();
     let open_bases: Vec<OpenBase> = bases.iter().map(|(_, base)| OpenBase::of(base, false)).collect();
     let open_filters: Vec<OpenFilter> =
         filters.iter().map(|(_, filter)| OpenFilter::of(filter, true)).collect();
@@ -96,7 +97,7 @@ pub fn apply_and_decide(
         };
         Some(AppliedRule { filter_curve, base_curve, ..applied })
     };
-    (RULES.iter().zip(worst).filter_map(named).collect(), at)
+    (RULES.iter().zip(worst).filter_map(named).collect(), at, soils.swap_remove(at[1]))
 }
 
 /// The worst result of a rule among curves.
@@ -159,10 +160,8 @@ fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
         value_bound: judged.value_bound,
         limit: judged.limit,
         unit: match rule.unit {
-            RuleUnit::Size if scale_free => "D0F".into(),
-            RuleUnit::Size => "mm".into(),
-            RuleUnit::One => String::new(),
-            RuleUnit::Percent => "%".into(),
+            RuleUnit::Mm if scale_free => RuleUnit::D0f,
+            unit => unit,
         },
         at_least: rule.at_least,
         limit_at_most: judged.limit_at_most,

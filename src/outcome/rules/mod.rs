@@ -26,7 +26,7 @@ pub use base::BaseSoil;
 pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
 pub(crate) use open::{OpenBase, sieved_limit};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests, tested_range};
-pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, RuleUnit, SizeBound};
+pub use rule::{FilterRule, Fines, Judged, Pairing, RuleInputs, SizeBound};
 
 #[cfg(test)]
 mod bounds;

@@ -2,7 +2,7 @@
 
 use super::base::BaseSoil;
 use crate::gradation::Gradation;
-use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole, ValueBound, WithoutFiner};
+use crate::outcome::record::{RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
 
 /// A rule of practice, as it stands in the table of [`super::RULES`].
 pub struct FilterRule {
@@ -24,7 +24,7 @@ pub struct FilterRule {
     pub formula: &'static str,
     /// Whether the limit is the least that it allows, and not the most.
     pub at_least: bool,
-    /// The unit of value and limit.
+    /// The unit of value and limit; sizes in mm stand for multiples of D0F, too.
     pub unit: RuleUnit,
     /// Where it is published.
     pub source: &'static str,
@@ -53,17 +53,6 @@ pub enum Pairing {
     EachFilter,
     /// All curves of the filter at once.
     AllFilters,
-}
-
-/// The unit of a rule's value and limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RuleUnit {
-    /// Sizes: mm, or multiples of D0F.
-    Size,
-    /// A ratio.
-    One,
-    /// Percent of the mass.
-    Percent,
 }
 
 /// What a rule finds for two soils.
@@ -161,7 +150,7 @@ impl<'a> RuleInputs<'a> {
     }
 
     /// The same of a base that was described already.
-    pub(super) fn with_soil(base: &'a Gradation, base_soil: BaseSoil, filter: &'a Gradation) -> Self {
+    pub(crate) fn with_soil(base: &'a Gradation, base_soil: BaseSoil, filter: &'a Gradation) -> Self {
         Self {
             filter,
             filter_is_measured: true,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::gradation::Gradation;
-use crate::outcome::applied::{AppliedRule, RuleRole};
+use crate::outcome::applied::{AppliedRule, RuleRole, RuleUnit};
 use crate::outcome::record::RuleNote;
 
 fn sieve(points: &[(f64, f64)]) -> Gradation {
@@ -47,7 +47,7 @@ fn sherard_and_dunnigan_by_hand_in_each_category() {
     ] {
         let rule = of("sherard-dunnigan", &filter(6.3), &base(fines, d85));
         assert!(close(rule.limit, limit) && close(rule.value, 6.3), "{fines} {d85}: {rule:?}");
-        assert_eq!((rule.met, rule.applies, rule.unit.as_str()), (Some(false), true, "mm"));
+        assert_eq!((rule.met, rule.applies, rule.unit), (Some(false), true, RuleUnit::Mm));
         assert_eq!(of("sherard-dunnigan", &filter(0.999 * limit), &base(fines, d85)).met, Some(true));
     }
 }
@@ -197,7 +197,7 @@ fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
 #[test]
 fn terzaghi_is_for_few_fines_and_takes_the_regraded_base() {
     let rule = of("terzaghi", &filter(2.1), &base(5.0, 0.5));
-    assert!(close(rule.value, 4.2) && rule.met == Some(false) && rule.unit.is_empty());
+    assert!(close(rule.value, 4.2) && rule.met == Some(false) && rule.unit == RuleUnit::One);
     let rule = of("terzaghi", &filter(2.1), &base(30.0, 0.5));
     assert!(!rule.applies && rule.met.is_none());
     let percent = rule.notes.iter().find_map(|note| match *note {
@@ -235,7 +235,7 @@ fn fines_and_cobbles_of_the_filter() {
     let dirty = sieve(&[(0.075, 6.0), (5.0, 60.0), (80.0, 100.0)]);
     let soil = base(5.0, 0.5);
     let fines = of("filter-fines", &dirty, &soil);
-    assert!(close(fines.value, 6.0) && fines.met == Some(false) && fines.unit == "%");
+    assert!(close(fines.value, 6.0) && fines.met == Some(false) && fines.unit == RuleUnit::Percent);
     assert_eq!(of("filter-greatest-size", &dirty, &soil).met, Some(false));
     let clean = sieve(&[(0.3, 2.0), (5.0, 60.0), (75.0, 100.0)]);
     assert_eq!(of("filter-fines", &clean, &soil).met, Some(true));
@@ -306,7 +306,7 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     let d15f = 1.5f64.powf(0.3);
     for (id, limit) in [("sherard-dunnigan", 0.8), ("foster-fell-no-erosion", 1.4)] {
         let rule = find(id);
-        assert!(close(rule.limit, limit) && close(rule.value, d15f) && rule.unit == "D0F");
+        assert!(close(rule.limit, limit) && close(rule.value, d15f) && rule.unit == RuleUnit::D0f);
         assert!(rule.applies && rule.notes.contains(&RuleNote::TakenAsSand));
     }
     assert_eq!(find("sherard-dunnigan").met, Some(false));
@@ -465,7 +465,7 @@ fn burenkova_and_wan_and_fell_by_hand() {
     let rule = of("wan-fell", &gap, &soil);
     let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
     assert!(rule.value.is_some_and(|found| (found - by_hand).abs() < 1e-6), "{rule:?}");
-    assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == "%");
+    assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == RuleUnit::Percent);
     // Uniform sand is not what Wan and Fell tested; nor is No. 78 stone, which Burenkova's range would blame.
     let uniform = sieve(&[(1.0, 0.0), (2.25, 100.0)]);
     assert!(!of("wan-fell", &uniform, &soil).applies);

@@ -157,7 +157,7 @@ fn of_rule(rule: &AppliedRule, found: RuleResult) -> [Entry; 16] {
         rule.value.into(),
         value_is.into(),
         rule.limit.into(),
-        (&rule.unit).into(),
+        rule.unit.name().into(),
         limit_is.into(),
         rule.applies.into(),
         result(found).into(),
