@@ -1,6 +1,6 @@
 //! What went in, as a run folder records it.
 
-use super::{Case, CaseFilter, CaseNetwork, Input};
+use super::{Case, CaseFilter, CaseNetwork, Input, RECORD};
 use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
@@ -11,6 +11,11 @@ impl Case {
     /// Files that were read, with their checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
         self.inputs.iter().map(Input::file).collect()
+    }
+
+    /// The record of the filter's packing, where it was packed.
+    pub fn packing_record(&self) -> Option<&Input> {
+        self.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))
     }
 
     /// What the user called the file of a setting.

@@ -73,7 +73,7 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
             record
         }
     };
-    callbacks.results(kind, folder.path())?;
+    callbacks.results(kind, folder.path(), None)?;
     folder.remove_all(kept.files)?;
     unfinished::end(folder)?;
     Ok(record)

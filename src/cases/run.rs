@@ -309,7 +309,7 @@ fn write_ledger(
         ));
     }
     let lines = ledger::collect(plan, cases, out)?;
-    callbacks.results(FolderKind::Campaign, out)?;
+    callbacks.results(FolderKind::Campaign, out, None)?;
     Ok(lines)
 }
 

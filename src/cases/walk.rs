@@ -33,6 +33,7 @@ use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::run::shared_networks::SharedNetworks;
 use crate::run::studies::Studies;
+use crate::run::summary::concluded;
 use crate::store::format;
 use crate::store::{Folder, StoreError, make_folder};
 
@@ -257,7 +258,7 @@ impl CaseRunner<'_> {
         let (callbacks, networks) = (&counting, self.networks.as_ref());
         let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
         let walked = OtherWalks::with_case(case, &context).and_then(|(walked, other)| {
-            let verdict = results::outcome(case, &walked, &other, Studies::default(), 0.0).model.class;
+            let verdict = other.verdict(concluded(case, &walked).0);
             Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
         });
         for problem in checkpoints.passed_over() {
@@ -285,22 +286,23 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &walked, &other, studies, seconds);
+        let outcome = results::outcome(case, &case.notes(), &walked, &other, studies, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
-        folder.remove(LINE)?;
-        // Results of what the case was before the plan was changed; another process that walks this very case
-        // has written this very scene, and its files stay.
-        if folder.read("scene.toml")?.as_deref() != Some(case.resolved().to_toml().as_bytes()) {
-            clear(folder, FolderKind::Run)?;
-        }
-        results::write_scene(folder, case)?;
-        results::write(folder, case, &outcome, &walked, &manifest)?;
-        self.callbacks.run.results(FolderKind::Run, folder.path())?;
-        let made =
-            Made { host: manifest.host, threads, job: self.job.clone(), started: manifest.started, seconds };
+        let (host, started, job) = (manifest.host.clone(), manifest.started.clone(), self.job.clone());
+        let made = Made { host, threads, job, started, seconds };
         let place = prepared.folder().display().to_string();
         let fingerprint = prepared.fingerprint.clone();
         let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &outcome, made);
+        let files = results::files(case, outcome, &walked, manifest)?;
+        folder.remove(LINE)?;
+        // Results of what the case was before the plan was changed; another process that walks this very case
+        // has written this very scene, and its files stay.
+        if folder.read("scene.toml")?.as_deref() != Some(files.scene.as_bytes()) {
+            clear(folder, FolderKind::Run)?;
+        }
+        results::write_scene(folder, case)?;
+        results::write(folder, case, &files)?;
+        self.callbacks.run.results(FolderKind::Run, folder.path(), Some(files))?;
         folder.write(LINE, &results::json(format::CASE, &line)?)?;
         checkpoints.clear()?;
         (self.callbacks.on_case)(name, CaseEvent::Done(&line));

@@ -50,7 +50,8 @@ pub fn check(args: &SceneArgs) -> Result<(), RunError> {
 
 fn words(check: &Check) -> String {
     let (filter, base, network) = (&check.inputs.filter, &check.inputs.base, &check.inputs.network);
-    let unit = if check.inputs.scale_free { "D0F" } else { "mm" };
+    let in_unit = SizeUnit::of(check.inputs.scale_free, false);
+    let unit = in_unit.short();
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |name: &str, value: String| {
@@ -108,11 +109,10 @@ fn words(check: &Check) -> String {
     }
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
     for part in &check.left_out {
-        line("left out", left_out(part, SizeUnit::of(check.inputs.scale_free, false).short()));
+        line("left out", left_out(part, unit));
     }
-    let unit = SizeUnit::of(check.inputs.scale_free, false);
     for note in &check.notes {
-        line("note", sentence(note, unit));
+        line("note", sentence(note, in_unit));
     }
     let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
     line("shipped curves", names.join(", "));

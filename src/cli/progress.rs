@@ -41,7 +41,7 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
 pub fn unfollowed() -> Callbacks<'static> {
     Callbacks {
         warn: &|warning| to_stderr(&format!("warning: {}\n", plain(warning))),
-        on_results: &|kind, folder| Ok(page(kind, folder).map(drop)?),
+        on_results: &|kind, folder, run| Ok(page(kind, folder, run).map(drop)?),
         ..Callbacks::default()
     }
 }
@@ -157,8 +157,8 @@ impl Display {
             }
             Event::VerdictStands(outcome) => {
                 let unit = SizeUnit::of(outcome.inputs.scale_free, false);
-                for (name, words) in first_lines(outcome, &Decision::recorded(outcome), unit) {
-                    self.line(&format!("{name}: {}\n", plain(&words)));
+                for (line, words) in first_lines(outcome, &Decision::recorded(outcome), unit) {
+                    self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }
             }
             Event::Packing(_)

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::print::{shown, to_stdout};
+use crate::outcome::RunFiles;
 use crate::report::{self, ReportError};
 use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
@@ -16,7 +17,7 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
         return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
     let claimed = claim(folder, kind, true)?;
-    let page = page(kind, claimed.path()).map_err(|error| match error {
+    let page = page(kind, claimed.path(), None).map_err(|error| match error {
         ReportError::Form { .. } => RunError::Refused(error.to_string()),
         _ => RunError::failed(error),
     })?;
@@ -24,11 +25,14 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Writes the page of results that are whole; a set of constrictions has none, and neither has
-/// a server's folder.
-pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, ReportError> {
+/// Writes the page of results that are whole, of a run from the content of its files where that is at hand; a
+/// set of constrictions has none, and neither has a server's folder.
+pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, ReportError> {
     let written = match kind {
-        FolderKind::Run => report::write(folder),
+        FolderKind::Run => match run {
+            Some(files) => report::write_walked(folder, files),
+            None => report::write(folder),
+        },
         FolderKind::Packing => report::write_packing(folder),
         FolderKind::Campaign => report::write_campaign(folder),
         FolderKind::Percolation => report::write_percolation(folder),

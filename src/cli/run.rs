@@ -111,8 +111,8 @@ fn summary(run: &FinishedRun, decision: &Decision) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (name, said) in first_lines(outcome, decision, run.unit) {
-        line(format!("{name}: {}", plain(&said)));
+    for (first, said) in first_lines(outcome, decision, run.unit) {
+        line(format!("{}: {}", first.name(), plain(&said)));
     }
     line(left_out_line(&outcome.model_leaves_out));
     if decision.headline.is_some() {

@@ -19,7 +19,7 @@ pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
             memory: args.memory,
             threads: args.threads,
         },
-        on_results: |kind, folder| Ok(page(kind, folder).map(drop)?),
+        on_results: |kind, folder, run| Ok(page(kind, folder, run).map(drop)?),
         command: command_line(),
     })?;
     let (address, folder) = (plain(&server.address()), shown(server.folder()));

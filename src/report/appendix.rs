@@ -72,7 +72,7 @@ fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
     if unit == SizeUnit::MmAndInches {
         columns = columns.name("us_sieve", "US sieve", |row: &[f64; 2]| us_sieve(row[0]).unwrap_or_default());
     }
-    let heading = format!("Size ({})", SizeUnit::of(unit == SizeUnit::D0f, false).name());
+    let heading = format!("Size ({})", unit.short());
     let percent_finer = |row: &[f64; 2]| significant((row[1] * 100.0).round() / 100.0).in_digits(4);
     let columns = columns.number("size", heading, |row| significant(row[0]).in_digits(4));
     let columns = columns.number("percent_finer", "Percent finer", percent_finer);

@@ -235,7 +235,7 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     let marks = || marks.iter().filter_map(|(mark, name, colour)| Some(((*mark)?, *name, *colour)));
     let gradations = || batch.filters.iter().flat_map(|filter| &filter.gradations);
     let sizes = batch.base.iter().chain(gradations().flatten()).map(|row| row[0]);
-    let x = size_axis(false, sizes.chain(marks().map(|((mm, _), ..)| mm)));
+    let x = size_axis(SizeUnit::Mm, sizes.chain(marks().map(|((mm, _), ..)| mm)));
     let what = "Percent finer by mass against size of the base as sampled and of every filter, with the \
                 limits of D15F";
     let mut figure = Figure::new("Gradations", what, "", x, Axis::percent("Percent finer (%)"))

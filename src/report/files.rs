@@ -24,8 +24,11 @@ pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
-/// The record of walks in memory, which `path` names in errors; it need not begin as a file does.
-pub(super) fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
+/// [`json()`] of a text, which `path` names in errors; it need not begin as a file does.
+///
+/// # Errors
+/// As [`json()`].
+pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
     serde_json::from_str(text).map_err(|error| form(path, &error))
 }
 

@@ -19,7 +19,7 @@ use crate::verdict::rule_result::RuleResult;
 use crate::verdict::{Decision, ListedRule};
 use crate::words::left_out::left_out_line;
 use crate::words::rule::{self, limit_begins, limit_ends, value_and_limit, value_begins};
-use crate::words::{first_lines, grading, judged_alone};
+use crate::words::{FirstLine, first_lines, grading, judged_alone};
 
 /// What sizes on the first sheet are shown in.
 pub(super) fn units(folder: &RunFolder) -> SizeUnit {
@@ -61,9 +61,9 @@ pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> 
     let notes = outcome.notes.len();
     html! {
         section.verdict.(colour(decision.headline)) {
-            @for (name, words) in first_lines(outcome, decision, unit) {
-                p.practice { b { (name) } ": " (unbroken(&words)) "." }
-                @if name == "Practice" && let Some(alone) = judged_alone(outcome, decision) {
+            @for (line, words) in first_lines(outcome, decision, unit) {
+                p.practice { b { (line.name()) } ": " (unbroken(&words)) "." }
+                @if line == FirstLine::Practice && let Some(alone) = judged_alone(outcome, decision) {
                     p.counted { (alone) }
                 }
             }

@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::about::About;
 use super::error::ReportError;
-use super::files::{json, json_of, text};
+use super::files::{json, text};
+use super::quantity::SizeUnit;
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
-use crate::outcome::Recorded;
+use crate::outcome::RunFiles;
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
 
@@ -24,20 +25,6 @@ pub(super) struct RunFolder {
     pub rows: RunRows,
 }
 
-/// What the files of a run folder would say that a run in memory does not write.
-pub struct RunTexts<'a> {
-    /// `outcome.json`.
-    pub outcome: &'a str,
-    /// `manifest.json`.
-    pub manifest: &'a str,
-    /// `scene.toml`.
-    pub scene: &'a str,
-    /// `inputs/packing.json`, where the filter was packed.
-    pub packing: Option<&'a str>,
-    /// The rows of the CSV files.
-    pub recorded: Recorded,
-}
-
 impl RunFolder {
     pub(super) fn read(folder: &Path) -> Result<RunFolder, ReportError> {
         let path = folder.join(OUTCOME);
@@ -51,15 +38,13 @@ impl RunFolder {
         Ok(RunFolder { packing, outcome, manifest, scene, about, rows })
     }
 
-    pub(super) fn of_texts(texts: RunTexts) -> Result<RunFolder, ReportError> {
-        let RunTexts { outcome, manifest, scene, packing, recorded } = texts;
-        let path = Path::new(OUTCOME);
-        let outcome = checked(path, json_of(path, outcome)?)?;
-        let rows = rows_of(&outcome, Path::new(""), RowSource::Memory(recorded))?;
-        let manifest = json_of(Path::new(MANIFEST), manifest)?;
-        let packing = packing.map(|text| json_of(Path::new(PACKING), text)).transpose()?;
-        let about = About::read(Path::new(SCENE), scene)?;
-        Ok(RunFolder { packing, outcome, manifest, scene: scene.to_owned(), about, rows })
+    /// That of a run whose files have this content; errors name a file of `folder`.
+    pub(super) fn of(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
+        let RunFiles { outcome, manifest, scene, packing, recorded } = files;
+        let outcome = checked(&folder.join(OUTCOME), outcome)?;
+        let rows = rows_of(&outcome, folder, RowSource::Memory(recorded))?;
+        let about = About::read(&folder.join(SCENE), &scene)?;
+        Ok(RunFolder { packing, outcome, manifest, scene, about, rows })
     }
 
     /// What its figures and tables of walks show.
@@ -77,7 +62,7 @@ pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
         threshold: outcome.threshold,
         inject_share: outcome.inputs.inject_share,
         base: &outcome.inputs.base.gradation,
-        scale_free: outcome.inputs.scale_free,
+        unit: SizeUnit::of(outcome.inputs.scale_free, false),
         d15f_mm: Some(outcome.inputs.filter.d15_mm),
         thickness_mm: outcome.inputs.network.thickness_mm,
         rows,

@@ -9,7 +9,7 @@ use crate::outcome::record::{Infiltration, InfiltrationSize, Outcome, Run};
 use crate::outcome::table::{Columns, TableCell};
 
 /// Eq. (1) for single particles, what the walk found, and where the two part.
-pub(super) fn infiltration(outcome: &Outcome) -> Markup {
+pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
         h2 { "Infiltration depth without blocking" }
         @match &outcome.infiltration {
@@ -25,15 +25,14 @@ pub(super) fn infiltration(outcome: &Outcome) -> Markup {
                      is its chance to move one layer downstream in the directed lattice that is walked. \
                      Nothing is blocked here."
                 }
-                (sizes(found, outcome.inputs.scale_free))
-                (beside_the_walk(found, outcome))
+                (sizes(found, unit))
+                (beside_the_walk(found, outcome, unit))
             },
         }
     }
 }
 
-fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
-    let unit = SizeUnit::of(scale_free, false);
+fn sizes(found: &Infiltration, unit: SizeUnit) -> Markup {
     let layers = |layers: Option<f64>| layers.map_or("no end".shown(), TableCell::shown);
     let columns = Columns::default()
         .name("particle", "Particle", |row: &InfiltrationSize| row.name.clone())
@@ -45,8 +44,7 @@ fn sizes(found: &Infiltration, scale_free: bool) -> Markup {
     Table::of(&found.sizes, columns).render()
 }
 
-fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
-    let scale_free = outcome.inputs.scale_free;
+fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> Markup {
     // Mean over the replicates of what some of them have.
     let mean = |run: u64, of: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
         let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
@@ -56,14 +54,14 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome) -> Markup {
             n => show(values.iter().sum::<f64>() / n as f64),
         }
     };
-    let in_unit = |d| length(d, SizeUnit::of(scale_free, false)).to_string();
+    let in_unit = |d| length(d, unit).to_string();
     let layer = |layer| format!("{layer:.1}");
     let eroded = |run: usize| outcome.summary.get(run).map(|s| s.eroded_mass_fraction.mean);
     html! {
         ul {
             li {
                 "By the closed form particles up to "
-                (length(found.coarsest_through_mm, SizeUnit::of(scale_free, false)))
+                (length(found.coarsest_through_mm, unit))
                 " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }

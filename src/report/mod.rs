@@ -9,7 +9,8 @@
 //! `figures/*.svg`, each a file of its own, and `report.html`.
 //!
 //! # Pages without a folder
-//! What was walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
+//! [`write_walked()`] writes the page of a run that was walked now, and reads nothing of its folder. What was
+//! walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
 //! [`network_walk_page()`] from the record of walks on given networks; [`run_brief()`] and
 //! [`network_walk_brief()`] are the verdict alone, for a notebook.
 //!
@@ -80,10 +81,9 @@ pub use designs::write_designs;
 pub use error::ReportError;
 pub use export::{Exported, export};
 pub use first_page::colour_of;
-pub use folder::RunTexts;
 pub use network_walk::{network_walk_brief, network_walk_page};
 pub use packing::write_packing;
-pub use page::{run_brief, run_page, write};
+pub use page::{run_brief, run_page, write, write_walked};
 pub use percolation::{percolation_spread, write_percolation};
 pub use soils::soils_figure;
 pub use specification::write_specification;

@@ -19,7 +19,7 @@ use crate::outcome::network_walk::NetworkWalkRecord;
 use crate::outcome::quantity::{SizeUnit, length, percent, significant, whole};
 use crate::outcome::record::Verdict;
 use crate::words::left_out::left_out_words;
-use crate::words::sentence;
+use crate::words::{FirstLine, sentence};
 
 /// What errors call the record.
 const RECORD: &str = "outcome";
@@ -57,7 +57,7 @@ pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     Ok(brief(
         &walks,
         &Said {
-            lines: &[("Model (research)", record.verdict.words().to_owned())],
+            lines: &[(FirstLine::Model, record.verdict.words().to_owned())],
             meaning: in_words(&walks),
             notes: &record.notes,
             replicate: replicate(&record),
@@ -91,7 +91,7 @@ fn walks<'a>(record: &'a NetworkWalkRecord, rows: &'a RunRows) -> Walks<'a> {
         threshold: record.threshold,
         inject_share: 1.0 / record.increments as f64,
         base: &record.base.gradation,
-        scale_free: false,
+        unit: SizeUnit::Mm,
         d15f_mm: record.d15f_mm,
         thickness_mm: None,
         rows,
@@ -110,7 +110,7 @@ fn replicate(record: &NetworkWalkRecord) -> [&'static str; 2] {
 /// The base, and the diameters of the constrictions.
 fn sizes(record: &NetworkWalkRecord) -> Drawn {
     let (base, network) = (&record.base.gradation, &record.network.diameters);
-    let x = size_axis(false, base.iter().chain(network).map(|row| row[0]));
+    let x = size_axis(SizeUnit::Mm, base.iter().chain(network).map(|row| row[0]));
     let what = "Percent finer against size for the base (by mass) and the constrictions (by number)";
     let y = Axis::percent("Percent finer (%)");
     let mut figure =
@@ -197,7 +197,7 @@ fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
 
 fn inputs(record: &NetworkWalkRecord) -> Markup {
     let (base, network) = (&record.base, &record.network);
-    let mm = |value: f64| length(value, SizeUnit::of(false, false));
+    let mm = |value: f64| length(value, SizeUnit::Mm);
     let sizes = |sizes: [Option<f64>; 3]| sizes.map(|size| known(size, mm)).join(", ");
     html! {
         h2 { "How this was made" }

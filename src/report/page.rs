@@ -9,7 +9,7 @@ use super::error::ReportError;
 use super::figures::shorten;
 use super::files::json_of;
 use super::first_page::{self, answer, in_short, sizes};
-use super::folder::{RunFolder, RunTexts, checked, walks};
+use super::folder::{RunFolder, checked, walks};
 use super::infiltration::infiltration;
 use super::names::{file_name, is_named, soil_name};
 use super::quantity::{SizeUnit, length, percent, significant, whole};
@@ -22,6 +22,7 @@ use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
+use crate::outcome::RunFiles;
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::Note;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
@@ -48,12 +49,21 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
     write_page(folder, &figures, &page)
 }
 
-/// The page of a run whose files would hold these texts; writes nothing.
+/// Writes the page of a run that was walked now: [`write()`] without a look at its files.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
+    let (page, figures) = drawn(&RunFolder::of(folder, files)?);
+    write_page(folder, &figures, &page)
+}
+
+/// The page of a run whose files would have this content; writes nothing.
 ///
 /// # Errors
 /// As [`write()`], with the names that the files would have.
-pub fn run_page(texts: RunTexts) -> Result<String, ReportError> {
-    Ok(drawn(&RunFolder::of_texts(texts)?).0)
+pub fn run_page(files: RunFiles) -> Result<String, ReportError> {
+    Ok(drawn(&RunFolder::of(Path::new(""), files)?).0)
 }
 
 /// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
@@ -117,7 +127,7 @@ fn page(
 ) -> String {
     let outcome = &folder.outcome;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
-    let unit = first_page::units(folder);
+    let (unit, walks) = (first_page::units(folder), &folder.walks());
     let soil = |name: &str| clean(&shorten(soil_name(name), 60));
     let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
         true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
@@ -131,7 +141,7 @@ fn page(
         }
         (shell::contents())
         (notes(outcome, unit))
-        (walk(folder, verdict))
+        (walk(outcome, walks, verdict))
         (leaves_out(&outcome.model_leaves_out, &html! {
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
             p { "The model does not replace a filter test or a designer’s judgement." }
@@ -142,16 +152,16 @@ fn page(
             h2 { "Figures" }
             @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
             (missing(folder, figures))
-            (results(&folder.walks()))
-            (infiltration(outcome))
-            (by_connectivity(&folder.walks()))
-            (replicates(&folder.walks()))
+            (results(walks))
+            (infiltration(outcome, walks.unit))
+            (by_connectivity(walks))
+            (replicates(walks))
             (varied(outcome))
-            (inputs(outcome, folder.packing.as_ref()))
+            (inputs(outcome, folder.packing.as_ref(), walks.unit))
         }
         (appendix::of_run(outcome, unit))
         (sources(decision))
-        (provenance(folder))
+        (provenance(folder, unit))
     };
     let foot = first_page::foot_of(folder);
     page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
@@ -169,8 +179,7 @@ fn void_ratio(outcome: &Outcome) -> String {
 }
 
 /// What the walk found: its class, the mass eroded, and what leaves it open.
-fn walk(folder: &RunFolder, verdict: &Drawn) -> Markup {
-    let (outcome, walks) = (&folder.outcome, &folder.walks());
+fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     html! {
         h2 { "What the model found" }
         (shell::model())
@@ -240,11 +249,11 @@ fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     }
 }
 
-fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
+fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>, unit: SizeUnit) -> Markup {
     let inputs = &outcome.inputs;
     let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
-    let mm = |value: f64| length(value, SizeUnit::of(inputs.scale_free, false)).to_string();
+    let mm = |value: f64| length(value, unit).to_string();
     let kind = match (network.kind, network.nx, network.ny, network.nz) {
         (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
             format!(
@@ -329,7 +338,7 @@ fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>) -> Markup {
     }
 }
 
-fn provenance(folder: &RunFolder) -> Markup {
+fn provenance(folder: &RunFolder, unit: SizeUnit) -> Markup {
     let (outcome, manifest) = (&folder.outcome, &folder.manifest);
     let cut = folder.scene.chars().count() > SCENE;
     let scene: String = folder.scene.chars().take(SCENE).filter(|c| *c != '\r').map(visible).collect();
@@ -346,11 +355,7 @@ fn provenance(folder: &RunFolder) -> Markup {
         div.screen {
             @if !outcome.left_out.is_empty() {
                 table.facts { tbody {
-                    (fact("Not needed here",
-                        left_out_words(
-                            &outcome.left_out,
-                            SizeUnit::of(outcome.inputs.scale_free, false).short()
-                        )))
+                    (fact("Not needed here", left_out_words(&outcome.left_out, unit.short())))
                 } }
             }
             details {

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::quantity::{Quantity, SizeUnit, length, percent, significant, whole};
+use super::quantity::{Quantity, length, percent, significant, whole};
 use super::run_figures::run_name;
 use super::table::Table;
 use super::walks::Walks;
@@ -21,8 +21,7 @@ pub(super) fn run_heading(run: u64) -> Shown {
 /// Means over the replicates.
 pub(super) fn results(walks: &Walks) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Shown);
-    let unit = SizeUnit::of(walks.scale_free, false);
-    let eroded = |mm: Option<f64>| mm.map_or("nothing eroded".shown(), |mm| length(mm, unit).shown());
+    let eroded = |mm: Option<f64>| mm.map_or("nothing eroded".shown(), |mm| length(mm, walks.unit).shown());
     let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
         Some(of) => {
             let ends = of.low.zip(of.high);
@@ -70,7 +69,7 @@ pub(super) fn results(walks: &Walks) -> Markup {
 
 /// Each replicate, collapsed.
 pub(super) fn replicates(walks: &Walks) -> Markup {
-    let unit = SizeUnit::of(walks.scale_free, false).short();
+    let unit = walks.unit.short();
     let listed = walks.replicates.len().min(LISTED);
     let rows: Vec<(usize, &Replicate, &Run)> = (1..)
         .zip(walks.replicates.iter().take(LISTED))

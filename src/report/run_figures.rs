@@ -41,9 +41,9 @@ pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
 }
 
 /// A logarithmic axis around sizes.
-pub(super) fn size_axis(scale_free: bool, sizes: impl Iterator<Item = f64>) -> Axis {
+pub(super) fn size_axis(unit: SizeUnit, sizes: impl Iterator<Item = f64>) -> Axis {
     let (low, high) = positive_range(sizes);
-    Axis::log(if scale_free { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
+    Axis::log(if unit == SizeUnit::D0f { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
 /// The upper end of an interval, or the mean where there is none.
@@ -88,23 +88,22 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 pub(super) fn gradations(folder: &RunFolder, decision: &Decision) -> Drawn {
     let inputs = &folder.outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
-    let limits = boundaries(decision);
+    let (limits, unit) = (boundaries(decision), SizeUnit::of(inputs.scale_free, false));
     let sampled = base.as_sampled.as_ref();
     let sampled_rows = sampled.map_or(&[][..], |before| &before.gradation);
     let rows =
         filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
-    let x =
-        size_axis(inputs.scale_free, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
+    let x = size_axis(unit, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
     let x = if folder.about.sizes.coarse_left { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
         Some(of) => base_size(&of, SizeUnit::Mm),
-        None => format!("D85B is {}", length(base.d85_mm, SizeUnit::of(true, false))),
+        None => format!("D85B is {}", length(base.d85_mm, SizeUnit::D0f)),
     };
     let what = format!(
         "Percent finer against size for the filter (by mass), its constrictions (by number) and the base (by \
          mass). D15F is {}, {}.",
-        length(filter.d15_mm, SizeUnit::of(inputs.scale_free, false)),
+        length(filter.d15_mm, unit),
         d85b,
     );
     let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
@@ -272,7 +271,7 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
         caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
     }
     if let Some(thickness) = walks.thickness_mm {
-        let depth = length(thickness, SizeUnit::of(walks.scale_free, false));
+        let depth = length(thickness, walks.unit);
         caption.push_str(&format!(" All layers together are {depth} of filter."));
     }
     Some(Drawn::new("layers", figure, caption))
@@ -300,7 +299,7 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
         (0..count).map(|i| all[if count > 1 { i * (all.len() - 1) / (count - 1) } else { 0 }]).collect();
     let base = walks.base;
     let drawn = chosen.iter().map(|(_, rows)| *rows).chain(gone).flatten().map(|row| row.diameter_mm);
-    let x = size_axis(walks.scale_free, drawn.chain(base.iter().map(|row| row[0])));
+    let x = size_axis(walks.unit, drawn.chain(base.iter().map(|row| row[0])));
     let y = Axis::percent("Percent finer by mass (%)");
     let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
     let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y)

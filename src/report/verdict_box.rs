@@ -13,8 +13,7 @@ use super::walks::Walks;
 use crate::outcome::record::{ModelLimit, Note, RunSummary, Verdict};
 use crate::outcome::table::Columns;
 use crate::words::left_out::left_out_in_brief;
-use crate::words::meaning;
-use crate::words::sentence;
+use crate::words::{FirstLine, meaning, sentence};
 
 /// Eroded mass by run, with its interval.
 pub(super) fn eroded_table(walks: &Walks) -> Markup {
@@ -70,8 +69,8 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
 
 /// What a verdict in brief says beside its numbers.
 pub(super) struct Said<'a> {
-    /// The lines of practice and model, each with its name; of a network the model's alone.
-    pub lines: &'a [(&'static str, String)],
+    /// The lines of practice and model; of a network the model's alone.
+    pub lines: &'a [(FirstLine, String)],
     /// What the class means, in the sentence of the page.
     pub meaning: String,
     /// What a reader must know besides.
@@ -90,7 +89,7 @@ pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let columns = eroded_columns().number("blocked", "constrictions blocked", |run| run.blocked_fraction);
     html! {
         div {
-            @for (name, words) in said.lines { p { b { (name) } ": " (clean(words)) "." } }
+            @for (line, words) in said.lines { p { b { (line.name()) } ": " (clean(words)) "." } }
             p { (clean(&said.meaning)) }
             ul { @for note in said.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             img src={ "data:image/svg+xml;base64," (picture) }

@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 
 use super::error::ReportError;
 use super::files::rows;
+use super::quantity::SizeUnit;
 use crate::outcome::Recorded;
 use crate::outcome::record::{LayerRow, Replicate, RunSummary, SeriesRow, SizeRow, Verdict};
 
@@ -22,8 +23,8 @@ pub(super) struct Walks<'a> {
     pub inject_share: f64,
     /// Rows of (size, percent finer by mass) of the base.
     pub base: &'a [[f64; 2]],
-    /// Whether sizes are multiples of D0F instead of mm.
-    pub scale_free: bool,
+    /// The unit of sizes below the first sheet: mm alone, or D0F.
+    pub unit: SizeUnit,
     /// D15F (mm), where the filter is known.
     pub d15f_mm: Option<f64>,
     /// Modelled thickness of the filter, where it has one.

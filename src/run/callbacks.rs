@@ -7,6 +7,7 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
+use crate::outcome::RunFiles;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{Note, Outcome};
 use crate::packing::CompressionProgress;
@@ -110,16 +111,20 @@ pub struct Callbacks<'a> {
     pub stop: &'a AtomicBool,
     /// Told what a user must know.
     pub warn: &'a (dyn Fn(&str) + Sync),
-    /// Called when results of this kind are whole in this folder, before the work counts as done.
-    pub on_results: &'a (dyn Fn(FolderKind, &Path) -> Result<(), AnyError> + Sync),
+    /// Called when results of this kind are whole in this folder, before the work counts as done; of a run
+    /// that was walked now with the content of its files.
+    pub on_results: &'a TakeResults<'a>,
 }
+
+/// Takes results of a kind in a folder.
+type TakeResults<'a> = dyn Fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError> + Sync + 'a;
 
 /// The stop flag of who never stops.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Default for Callbacks<'_> {
     fn default() -> Self {
-        Self { on_event: &|_| {}, stop: &NEVER, warn: &|_| {}, on_results: &|_, _| Ok(()) }
+        Self { on_event: &|_| {}, stop: &NEVER, warn: &|_| {}, on_results: &|_, _, _| Ok(()) }
     }
 }
 
@@ -130,13 +135,18 @@ impl Callbacks<'_> {
     }
 
     /// Says that results are written.
-    pub(crate) fn results(&self, kind: FolderKind, folder: &Path) -> Result<(), RunError> {
-        (self.on_results)(kind, folder).map_err(RunError::Results)
+    pub(crate) fn results(
+        &self,
+        kind: FolderKind,
+        folder: &Path,
+        run: Option<RunFiles>,
+    ) -> Result<(), RunError> {
+        (self.on_results)(kind, folder, run).map_err(RunError::Results)
     }
 
     /// Says that results are written, and takes the mark of unfinished work away.
     pub(crate) fn finish(&self, kind: FolderKind, folder: &Folder) -> Result<(), RunError> {
-        self.results(kind, folder.path())?;
+        self.results(kind, folder.path(), None)?;
         Ok(unfinished::end(folder)?)
     }
 }

@@ -36,7 +36,7 @@ pub(crate) mod replicates;
 pub mod results;
 pub(crate) mod shared_networks;
 pub(crate) mod studies;
-mod summary;
+pub(crate) mod summary;
 pub(crate) mod unfinished;
 pub(crate) mod walk;
 

@@ -5,7 +5,7 @@ use super::curve_range::{begin_ends, curve_range};
 use super::error::RunError;
 use super::replicates::{ReplicateContext, ReplicateResult, replicates};
 use crate::case::Case;
-use crate::outcome::record::CurveRange;
+use crate::outcome::record::{CurveRange, Verdict};
 
 /// What was walked besides the case itself.
 #[derive(Default)]
@@ -29,5 +29,10 @@ impl OtherWalks {
         let (walked, begun) = (walked?, begun?);
         let other = Self { range: curve_range(case, &walked, begun, context)? };
         Ok((walked, other))
+    }
+
+    /// The class of a case whose own replicates have this one.
+    pub fn verdict(&self, own: Verdict) -> Verdict {
+        self.range.as_ref().map_or(own, CurveRange::whole)
     }
 }

@@ -20,17 +20,18 @@ use crate::outcome::record::{
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
-use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
-use crate::store::format::{self, Format};
+use crate::outcome::{Recorded, RunFiles, by_void, infiltration, leaves_out, rules, verdict};
+use crate::store::format::{self, Format, from_json};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
 use crate::verdict::{Decision, dispersion, ordered};
 use crate::walk::Shortcut;
 
-/// The outcome of a case that has been walked; with what was walked besides, and its studies, none so far
-/// where they are to come.
+/// The outcome of a case that has been walked, of which these notes were made before; with what was walked
+/// besides, and its studies, none so far where they are to come.
 pub fn outcome(
     case: &Case,
+    noted: &[Note],
     walked: &[ReplicateResult],
     other: &OtherWalks,
     studies: Studies,
@@ -38,8 +39,9 @@ pub fn outcome(
 ) -> Outcome {
     let (verdict, summary, stopping) = concluded(case, walked);
     let inputs = rule_inputs(case, walked);
-    let verdict = other.range.as_ref().map_or(verdict, CurveRange::whole);
-    let notes = notes_before_results(case, verdict, walked, (stopping.as_ref(), other.range.as_ref()));
+    let verdict = other.verdict(verdict);
+    let found = (stopping.as_ref(), other.range.as_ref());
+    let notes = notes_before_results(case, noted, verdict, walked, found);
     let inputs_record = case.record();
     let outcome = Outcome {
         headline: None,
@@ -108,6 +110,7 @@ fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs)
 /// What the walks, the case, the rule that stopped them and the range of its curve say of the verdict.
 fn notes_before_results(
     case: &Case,
+    noted: &[Note],
     verdict: Verdict,
     walked: &[ReplicateResult],
     (stopping, range): (Option<&Stopping>, Option<&CurveRange>),
@@ -117,7 +120,7 @@ fn notes_before_results(
     notes.extend(case.unchecked_clogging());
     let unsure = stopping.and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
     notes.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
-    notes.extend(case.notes());
+    notes.extend_from_slice(noted);
     notes.extend(range.map(|range| match range.agrees() {
         true => Note::CurveRange {},
         false => Note::CurveDecides { of_the_curve: range.verdict.words().into() },
@@ -193,25 +196,34 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
     case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
-/// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.
+/// The content of the files of a run, but for its voids.
 ///
 /// # Errors
-/// What the folder says; no file is half written.
-pub fn write(
-    folder: &Folder,
+/// A record of its packing that cannot be read.
+pub fn files(
     case: &Case,
-    outcome: &Outcome,
+    outcome: Outcome,
     walked: &[ReplicateResult],
-    manifest: &Manifest,
-) -> Result<(), RunError> {
-    // First, so that a folder is not taken for whole while its files are being replaced.
-    for name in ["manifest.json", "outcome.json"] {
-        folder.remove(name)?;
-    }
+    manifest: Manifest,
+) -> Result<RunFiles, RunError> {
+    let packing = case.packing_record().map(|input| from_json(&input.bytes)).transpose()?;
     let mut recorded = Recorded::default();
     for walked in walked {
         recorded.append(walked.recorded.clone());
     }
+    Ok(RunFiles { outcome, manifest, scene: case.resolved().to_toml(), packing, recorded })
+}
+
+/// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.
+///
+/// # Errors
+/// What the folder says; no file is half written.
+pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
+    // First, so that a folder is not taken for whole while its files are being replaced.
+    for name in ["manifest.json", "outcome.json"] {
+        folder.remove(name)?;
+    }
+    let recorded = &run.recorded;
     let mut files = Together::in_folder(folder.path());
     files.add("series.csv", &csv_of(&recorded.series))?;
     files.add("layers.csv", &csv_of(&recorded.layers))?;
@@ -221,12 +233,12 @@ pub fn write(
         files.add("flow.csv", &csv_of(&recorded.flow))?;
     }
     if case.scene.record.voids.is_some() {
-        add_voids(&mut files, case, &recorded)?;
+        add_voids(&mut files, case, recorded)?;
     }
-    files.add("outcome.json", &json(format::OUTCOME, outcome)?)?;
+    files.add("outcome.json", &json(format::OUTCOME, &run.outcome)?)?;
     files.finish()?;
     // Last, so that a folder with a manifest is whole.
-    folder.write("manifest.json", &json(format::MANIFEST, manifest)?)?;
+    folder.write("manifest.json", &json(format::MANIFEST, &run.manifest)?)?;
     Ok(())
 }
 

@@ -21,7 +21,7 @@ use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
-use crate::outcome::record::Outcome;
+use crate::outcome::record::{Note, Outcome};
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 use crate::store::format::from_json;
@@ -159,16 +159,16 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
 /// As [`walk_case`].
 pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
     let walk = || {
-        let begun = Instant::now();
+        let (begun, notes) = (Instant::now(), case.notes());
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let (walked, other) = OtherWalks::with_case(case, &context)?;
-        let first = results::outcome(case, &walked, &other, Studies::default(), seconds(begun));
+        let first = results::outcome(case, &notes, &walked, &other, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
             (callbacks.on_event)(Event::VerdictStands(&first));
         }
         let studies = Studies::walk(case, &walked, first.model.class, &context)?;
-        let outcome = results::outcome(case, &walked, &other, studies, seconds(begun));
+        let outcome = results::outcome(case, &notes, &walked, &other, studies, seconds(begun));
         let mut recorded = Recorded::default();
         walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
@@ -190,7 +190,8 @@ fn walk_here(
     let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
     let unit = SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches());
-    (callbacks.on_event)(Event::Noted { notes: &ordered(case.notes()), unit });
+    let notes = ordered(case.notes());
+    (callbacks.on_event)(Event::Noted { notes: &notes, unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
     if resumed {
@@ -200,7 +201,7 @@ fn walk_here(
     if begun.is_none() {
         clear_for(&folder, &files, resumed)?;
     } else if let Some(outcome) = without_page(&folder, &case)? {
-        callbacks.results(FolderKind::Run, folder.path())?;
+        callbacks.results(FolderKind::Run, folder.path(), None)?;
         checkpoints::discard(folder.path())?;
         unfinished::end(&folder)?;
         return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, unit });
@@ -215,12 +216,13 @@ fn walk_here(
     mark.begin(&folder)?;
     results::write_scene(&folder, &case)?;
     let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
-    let run = CaseRun { case: &case, folder: &folder, checkpoints: &checkpoints, callbacks };
+    let run = CaseRun { case: &case, notes: &notes, folder: &folder, checkpoints: &checkpoints, callbacks };
     let outcome = run.walk(|outcome, walked| {
         let threads = rayon::current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
-        results::write(&folder, &case, outcome, walked, &manifest)?;
-        callbacks.results(FolderKind::Run, folder.path())
+        let files = results::files(&case, outcome.clone(), walked, manifest)?;
+        results::write(&folder, &case, &files)?;
+        callbacks.results(FolderKind::Run, folder.path(), Some(files))
     })?;
     checkpoints.clear()?;
     unfinished::end(&folder)?;
@@ -314,6 +316,7 @@ fn seconds(begun: Instant) -> f64 {
 /// A case that is walked into a folder.
 struct CaseRun<'a> {
     case: &'a Case,
+    notes: &'a [Note],
     folder: &'a Folder,
     checkpoints: &'a Checkpoints,
     callbacks: &'a Callbacks<'a>,
@@ -332,8 +335,9 @@ impl CaseRun<'_> {
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let (walked, other) =
             OtherWalks::with_case(self.case, &context).map_err(|error| self.ended(error))?;
-        let outcome =
-            |studies: Studies| results::outcome(self.case, &walked, &other, studies, seconds(begun));
+        let outcome = |studies: Studies| {
+            results::outcome(self.case, self.notes, &walked, &other, studies, seconds(begun))
+        };
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }

@@ -9,14 +9,37 @@ use crate::verdict::Decision;
 /// The most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
 pub const FOREMOST: usize = 3;
 
-/// The lines that every face begins with, each under its name: without two sieve curves in mm the model's
-/// alone.
-pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(&'static str, String)> {
-    let line = ("Model (research)", model(&outcome.model));
-    match decision.headline {
-        Some(_) => {
-            vec![("Practice", practice_line(decision, unit)), line, ("Next", next(outcome, decision, unit))]
+/// A line that every face begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstLine {
+    /// The answer of practice.
+    Practice,
+    /// The class of the walk.
+    Model,
+    /// A step to take next.
+    Next,
+}
+
+impl FirstLine {
+    /// The name under which it stands.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Practice => "Practice",
+            Self::Model => "Model (research)",
+            Self::Next => "Next",
         }
+    }
+}
+
+/// The lines that every face begins with: without two sieve curves in mm the model's alone.
+pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(FirstLine, String)> {
+    let line = (FirstLine::Model, model(&outcome.model));
+    match decision.headline {
+        Some(_) => vec![
+            (FirstLine::Practice, practice_line(decision, unit)),
+            line,
+            (FirstLine::Next, next(outcome, decision, unit)),
+        ],
         None => vec![line],
     }
 }

@@ -24,7 +24,7 @@ pub mod rule_note;
 mod so_far;
 pub mod specification;
 
-pub use answer::{FOREMOST, first_lines, foremost, model};
+pub use answer::{FOREMOST, FirstLine, first_lines, foremost, model};
 pub use base_size::{base_size, grading};
 pub use class::{capital, meaning, undecided_by};
 pub use dispersion::{beside_dispersive, dispersive_limit, test};

@@ -193,6 +193,9 @@ fn a_folder_of_another_kind_is_left_alone() {
     let before = fs::read(at.join("a-run/report.html")).unwrap();
     refused(&call(&at, &["pack", "filter.toml", "--out", "a-run"]), "holds a run");
     assert_eq!(before, fs::read(at.join("a-run/report.html")).unwrap());
+    // The page that was made of values is the one of the files.
+    done(&call(&at, &["report", "a-run"]));
+    assert_eq!(before, fs::read(at.join("a-run/report.html")).unwrap());
     done(&call(&at, &["pack", "filter.toml", "--out", "a-packing"]));
     refused(&call(&at, &["run", "filter.toml", "--out", "a-packing"]), "holds a packing");
     // Its page can be written again.

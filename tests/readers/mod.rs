@@ -379,7 +379,7 @@ fn page() -> String {
         port: 0,
         folder: Some(folder),
         prepare: PrepareOptions::default(),
-        on_results: |_, _| Ok(()),
+        on_results: |_, _, _| Ok(()),
         command: "voidwalk serve".into(),
     };
     let server = Server::open(options).unwrap();

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use voidwalk::constrictions::find;
-use voidwalk::outcome::Recorded;
-use voidwalk::report::files::rows;
-use voidwalk::report::{self, RunTexts, network_walk_brief, network_walk_page, run_brief, run_page};
+use voidwalk::outcome::{Recorded, RunFiles};
+use voidwalk::report::files::{json_of, rows};
+use voidwalk::report::{self, network_walk_brief, network_walk_page, run_brief, run_page};
 use voidwalk::run::{Callbacks, NetworkWalk, walk_networks};
 use voidwalk::{Gradation, Network};
 
@@ -33,10 +33,10 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
     Plan::usual().write(folder.path());
     let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (outcome, manifest, scene) = (text("outcome.json"), text("manifest.json"), text("scene.toml"));
-    let texts = |recorded| RunTexts {
-        outcome: &outcome,
-        manifest: &manifest,
-        scene: &scene,
+    let texts = |recorded| RunFiles {
+        outcome: json_of(Path::new("outcome.json"), &outcome).unwrap(),
+        manifest: json_of(Path::new("manifest.json"), &manifest).unwrap(),
+        scene: scene.clone(),
         packing: None,
         recorded,
     };

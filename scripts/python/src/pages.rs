@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voidwalk::report::{self as reports, ReportError, RunTexts};
+use voidwalk::outcome::RunFiles;
+use voidwalk::report::files::json_of;
+use voidwalk::report::{self as reports, ReportError};
 use voidwalk::run::folder::claim;
 use voidwalk::run::{FolderKind, RunError};
 
@@ -21,7 +23,7 @@ pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
             return Err(RunError::Refused(format!("{}: {problem}", folder.display())));
         };
         let claimed = claim(folder, kind, true)?;
-        page(kind, claimed.path()).map_err(RunError::Failed)
+        page(kind, claimed.path(), None).map_err(RunError::Failed)
     };
     py.detach(|| write(&folder)).map_err(|error| of_run(&error))
 }
@@ -41,8 +43,10 @@ pub fn run_page(
 ) -> PyResult<String> {
     let (recorded, (manifest, scene, packing)) = (to_recorded(tables)?, texts);
     text(py, || {
-        let (manifest, scene, packing) = (manifest.as_str(), scene.as_str(), packing.as_deref());
-        reports::run_page(RunTexts { outcome, manifest, scene, packing, recorded })
+        let packing = packing.map(|text| json_of(Path::new("inputs/packing.json"), &text)).transpose()?;
+        let outcome = json_of(Path::new("outcome.json"), outcome)?;
+        let manifest = json_of(Path::new("manifest.json"), &manifest)?;
+        reports::run_page(RunFiles { outcome, manifest, scene, packing, recorded })
     })
 }
 

@@ -6,7 +6,6 @@ use std::time::SystemTime;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::Outcome;
-use voidwalk::case::{Case, RECORD};
 use voidwalk::cases::{self as campaigns, CaseOptions, CasePart, CasePlan};
 use voidwalk::outcome::quantity::SizeUnit;
 use voidwalk::run::machine::threads as pool;
@@ -168,16 +167,11 @@ pub fn run_in_memory<'py>(
         let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
         let threads = pool.current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
-        let texts = (serde_json::to_string(&manifest)?, case.resolved().to_toml(), packing_record(&case));
+        let packing = case.packing_record().and_then(|kept| String::from_utf8(kept.bytes.clone()).ok());
+        let texts = (serde_json::to_string(&manifest)?, case.resolved().to_toml(), packing);
         Ok((outcome, recorded, texts))
     })?;
     Ok((json(&outcome)?, of_recorded(py, &recorded)?, texts))
-}
-
-/// The record of the filter's packing, where it was packed.
-fn packing_record(case: &Case) -> Option<String> {
-    let kept = case.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))?;
-    String::from_utf8(kept.bytes.clone()).ok()
 }
 
 /// Continues a run that was stopped.

@@ -14,6 +14,7 @@ use std::time::Duration;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use voidwalk::cases::{CaseCallbacks, CaseEvent};
+use voidwalk::outcome::RunFiles;
 use voidwalk::report;
 use voidwalk::run::error::AnyError;
 use voidwalk::run::{Callbacks, Event, Exit, FolderKind, RunError};
@@ -125,11 +126,14 @@ impl<T> Desk<T> {
     }
 }
 
-/// Writes the page of results that are whole, and gives its path; a set of constrictions and a server's folder
-/// have none, and give their own.
-pub fn page(kind: FolderKind, folder: &Path) -> Result<PathBuf, AnyError> {
+/// Writes the page of results that are whole, of a run from the content of its files where that is at hand,
+/// and gives its path; a set of constrictions and a server's folder have none, and give their own.
+pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, AnyError> {
     let written = match kind {
-        FolderKind::Run => report::write(folder)?,
+        FolderKind::Run => match run {
+            Some(files) => report::write_walked(folder, files)?,
+            None => report::write(folder)?,
+        },
         FolderKind::Packing => report::write_packing(folder)?,
         FolderKind::Campaign => report::write_campaign(folder)?,
         FolderKind::Percolation => report::write_percolation(folder)?,
@@ -166,7 +170,7 @@ pub fn at_work<T: Send>(
                 on_event: &|event| desk.tell(event),
                 stop: &desk.stop,
                 warn: &|warning| desk.warn(warning),
-                on_results: &|kind, folder| page(kind, folder).map(drop),
+                on_results: &|kind, folder, run| page(kind, folder, run).map(drop),
             };
             let callbacks = CaseCallbacks {
                 run,

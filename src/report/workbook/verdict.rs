@@ -32,8 +32,8 @@ fn unit(outcome: &Outcome) -> &'static str {
 
 fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
     let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
-    for (name, said) in first_lines(outcome, decision, SizeUnit::Mm) {
-        sheet.item(name, said, "");
+    for (line, said) in first_lines(outcome, decision, SizeUnit::Mm) {
+        sheet.item(line.name(), said, "");
     }
     let practice = outcome.practice.as_ref();
     sheet.item("Practice", decision.headline.map(Headline::words), "");

@@ -3,7 +3,7 @@ use serde_json::json;
 use super::*;
 
 fn queue(root: &Path) -> JobQueue {
-    JobQueue::new(root, PrepareOptions::default(), String::new(), |_, _| Ok(()))
+    JobQueue::new(root, PrepareOptions::default(), String::new(), |_, _, _| Ok(()))
 }
 
 fn file() -> JobFile {

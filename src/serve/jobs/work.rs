@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::cases::{BatchPlan, batch};
 use crate::cases::{CaseCallbacks, CaseEvent, CaseOptions, CasePart};
+use crate::outcome::RunFiles;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
@@ -22,7 +23,7 @@ use crate::verdict::Decision;
 use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
-pub type OnResults = fn(FolderKind, &Path) -> Result<(), AnyError>;
+pub type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
 
 /// What a job does.
 #[derive(Clone)]
@@ -83,7 +84,7 @@ impl WorkContext {
             },
             stop,
             warn: &|warning| live().warn(warning),
-            on_results: &|kind, folder| (self.on_results)(kind, folder),
+            on_results: &self.on_results,
         };
         let options = RunOptions {
             out: Some(folder.to_owned()),
@@ -142,8 +143,9 @@ fn often() -> CheckpointInterval {
 /// What the page shows of an outcome.
 pub fn of_run(outcome: &Outcome) -> Value {
     let unit = SizeUnit::of(outcome.inputs.scale_free, false);
+    let lines = first_lines(outcome, &Decision::recorded(outcome), unit);
     json!({
-        "lines": first_lines(outcome, &Decision::recorded(outcome), unit),
+        "lines": lines.iter().map(|(line, words)| (line.name(), words)).collect::<Vec<_>>(),
         "model": outcome.model.class.words(),
         "colour": colour_of(outcome),
         "notes": outcome.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>(),
