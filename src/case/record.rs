@@ -170,6 +170,8 @@ impl Case {
         let CaseNetwork { voids, constrictions, start_nodes: inlets, layers, .. } = self.network;
         let tolerance = self.scene.exits.flow_tolerance.unwrap_or(FLOW_TOLERANCE);
         let flow_tolerance = rule.needs_flow().then_some(tolerance);
+        let is_measured =
+            rule == ExitRule::Flux && self.scene.law().is_none() && !self.scene.leaves_openings();
         let k0_m2 = k0_mm2.filter(|_| !self.is_scale_free()).map(|k| k * 1e-6);
         Some(record::NetworkSummary {
             kind: match &self.network.fixed {
@@ -188,7 +190,7 @@ impl Case {
             k0_m2,
             k0_m_per_s: k0_m2.map(|k| k * GRAVITY / KINEMATIC_VISCOSITY),
             flow_tolerance,
-            flow_error_pp: flow_tolerance.and_then(flow_error_pp),
+            flow_error_pp: flow_tolerance.filter(|_| is_measured).and_then(flow_error_pp),
         })
     }
 

@@ -9,7 +9,7 @@
 //! [[factor]]                         # one setting, many values
 //! name = "cu_b"
 //! setting = "base.cu"
-//! values = [1.5, 3, 4.5]
+//! values = [1.5, 3, 4.5]             # or range = { from = 1.5, to = 4.5, count = 3 }
 //! [[factor]]                         # or named levels, each with settings
 //! name = "filter"
 //! [factor.levels]
@@ -97,8 +97,37 @@ struct Factor {
     setting: Option<String>,
     #[serde(default)]
     values: Vec<toml::Value>,
+    range: Option<Range>,
     #[serde(default)]
     levels: toml::Table,
+}
+
+/// Evenly spaced values of a setting, both ends among them.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Range {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+impl Range {
+    fn values(&self) -> Result<Vec<toml::Value>, String> {
+        let Self { from, to, count } = *self;
+        if !(from.is_finite() && to.is_finite() && (2..=1000).contains(&count)) {
+            return Err("a range has two numbers, `from` and `to`, and a `count` from 2 to 1000".into());
+        }
+        let value = |index: usize| {
+            let exact = from + (to - from) * index as f64 / (count - 1) as f64;
+            // Thirds and tenths without what rounding adds.
+            let value: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
+            match value.fract() == 0.0 && value.abs() < 1e15 {
+                true => toml::Value::Integer(value as i64),
+                false => toml::Value::Float(value),
+            }
+        };
+        Ok((0..count).map(value).collect())
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -319,9 +348,15 @@ fn check_name(what: &str, name: &str) -> Result<(), String> {
 
 fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
     let name = &factor.name;
-    let levels: Vec<Level> = match (&factor.setting, factor.values.is_empty(), factor.levels.is_empty()) {
+    let of_range = factor.range.as_ref().map(Range::values).transpose();
+    let of_range = of_range.map_err(|problem| format!("factor `{name}`: {problem}"))?;
+    let values = match (of_range, factor.values.is_empty()) {
+        (Some(_), false) => return Err(format!("factor `{name}` needs either `values` or `range`")),
+        (range, _) => range.unwrap_or_else(|| factor.values.clone()),
+    };
+    let levels: Vec<Level> = match (&factor.setting, values.is_empty(), factor.levels.is_empty()) {
         (Some(setting), false, true) => {
-            factor.values.iter().map(|value| (word(value), vec![format!("{setting}={value}")])).collect()
+            values.iter().map(|value| (word(value), vec![format!("{setting}={value}")])).collect()
         }
         (None, true, false) => {
             let one = |(level, set): (&String, &toml::Value)| match set {
@@ -330,7 +365,11 @@ fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
             };
             factor.levels.iter().map(one).collect::<Result<_, _>>()?
         }
-        _ => return Err(format!("factor `{name}` needs either `setting` and `values`, or `levels`")),
+        _ => {
+            return Err(format!(
+                "factor `{name}` needs either `setting` and `values` (or `range`), or `levels`"
+            ));
+        }
     };
     for (index, (level, _)) in levels.iter().enumerate() {
         check_name("level", level)?;
@@ -434,6 +473,27 @@ mod tests {
         assert_eq!(names, ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
         let mm = plan.cases.iter().map(|case| case.scene.network.thickness_mm);
         assert_eq!(mm.collect::<Vec<_>>(), [Some(609.6), Some(500.0), Some(500.0)]);
+    }
+
+    #[test]
+    fn a_range_is_even_and_has_both_ends() {
+        let of = |range: &str| {
+            let text = format!("[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\nrange = {range}\n");
+            plan(&text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect::<Vec<_>>())
+        };
+        let names = of("{ from = 2.1, to = 3, count = 4 }").unwrap();
+        assert_eq!(names, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
+        assert_eq!(of("{ from = 6, to = 2, count = 3 }").unwrap(), ["cu=6", "cu=4", "cu=2"]);
+        for (range, message) in [
+            ("{ from = 2, to = 3, count = 1 }", "a `count` from 2 to 1000"),
+            ("{ from = 2, to = inf, count = 3 }", "has two numbers"),
+            ("{ from = 2, to = 3 }", "missing field `count`"),
+            ("{ from = 2, to = 2, count = 3 }", "level `2` twice"),
+            ("{ from = 2, to = 3, count = 2 }\nvalues = [4]", "either `values` or `range`"),
+        ] {
+            let error = of(range).unwrap_err().to_string();
+            assert!(error.contains(message), "{range}: {error}");
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::print::{plain, shown, to_stderr};
 use super::report::page;
 use crate::case::PackingPlan;
-use crate::outcome::quantity::{SizeUnit, whole};
+use crate::outcome::quantity::whole;
 use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
@@ -155,8 +155,7 @@ impl Display {
             Event::Noted { notes, unit } => {
                 notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, unit)))));
             }
-            Event::VerdictStands(outcome) => {
-                let unit = SizeUnit::of(outcome.inputs.scale_free, false);
+            Event::VerdictStands { outcome, unit } => {
                 for (line, words) in first_lines(outcome, &Decision::recorded(outcome), unit) {
                     self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }

@@ -24,15 +24,13 @@ use super::twins::NO_TWIN;
 use super::{END, Network};
 use exact::Eliminated;
 use system::{Kept, System};
-use thresholds::{CLEAR, CLOSELY, CLOSEST, CONVERGED, ELIMINATED, KNOWN, NO_FLUX, RESOLVED, ROUNDING};
+use thresholds::{
+    CLEAR, CLOSELY, CLOSEST, CONVERGED, ELIMINATED, KEPT_UNTIL, KNOWN, NO_FLUX, RESOLVED, ROUNDING,
+};
 use together::Together;
 
 pub use error::FlowError;
 pub use permeability::permeability_mm2;
-
-/// A factor is kept until more than one in so many exits have closed: so it serves where little closes from
-/// one solution to the next, and costs fewer rounds then than making another would.
-const KEPT_UNTIL: usize = 100;
 
 /// How well a network conducts.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,7 +14,7 @@ use super::{END, Network, NetworkError};
 pub const FLOW_TOLERANCE: f64 = 0.03;
 
 /// Up to a tolerance, the percentage points of eroded mass by which its walks differ at most from those of
-/// tolerance 0: twenty means of ten filters from open to sealed, on a lattice (`src/docs/graph.md`) and on
+/// tolerance 0: both runs of eleven filters from open to sealed, on a lattice (`src/docs/graph.md`) and on
 /// the voids of a packing (`results/graph.md`), rounded up.
 const FLOW_ERRORS: [(f64, f64); 4] = [(0.0, 0.0), (FLOW_TOLERANCE, 0.3), (0.1, 0.5), (1.0, 11.0)];
 

@@ -75,7 +75,12 @@ pub enum Event<'a> {
         readings: bool,
     },
     /// The verdict stands, and what else is walked are studies beside it.
-    VerdictStands(&'a Outcome),
+    VerdictStands {
+        /// The outcome, its studies to come.
+        outcome: &'a Outcome,
+        /// In what the case gives sizes.
+        unit: SizeUnit,
+    },
     /// More runs are needed than was known.
     MoreRuns {
         /// How many.

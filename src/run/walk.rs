@@ -165,7 +165,7 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         let (walked, other) = OtherWalks::with_case(case, &context)?;
         let first = results::outcome(case, &notes, &walked, &other, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
-            (callbacks.on_event)(Event::VerdictStands(&first));
+            (callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(case) });
         }
         let studies = Studies::walk(case, &walked, first.model.class, &context)?;
         let outcome = results::outcome(case, &notes, &walked, &other, studies, seconds(begun));
@@ -189,7 +189,7 @@ fn walk_here(
     let at = options.out.as_deref().unwrap_or(Path::new("."));
     let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    let unit = SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches());
+    let unit = unit_of(&case);
     let notes = ordered(case.notes());
     (callbacks.on_event)(Event::Noted { notes: &notes, unit });
     let started = SystemTime::now();
@@ -309,6 +309,11 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
+/// The unit in which a case gives sizes.
+fn unit_of(case: &Case) -> SizeUnit {
+    SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches())
+}
+
 fn seconds(begun: Instant) -> f64 {
     begun.elapsed().as_secs_f64()
 }
@@ -350,7 +355,7 @@ impl CaseRun<'_> {
         self.checkpoints.flush()?;
         first.studies_to_come = true;
         write(&first, &walked)?;
-        (self.callbacks.on_event)(Event::VerdictStands(&first));
+        (self.callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(self.case) });
         let studies = Studies::walk(self.case, &walked, first.model.class, &context)
             .map_err(|error| self.ended(error))?;
         let whole = outcome(studies);

@@ -74,7 +74,7 @@ impl Live {
                 self.lines.drain(..self.lines.len().saturating_sub(LINES));
             }
             Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, unit))),
-            Event::VerdictNeeds { .. } | Event::VerdictStands(_) | Event::Increment { .. } => {}
+            Event::VerdictNeeds { .. } | Event::VerdictStands { .. } | Event::Increment { .. } => {}
         }
     }
 

@@ -95,7 +95,7 @@ fn studies_that_are_interrupted_end_as_if_they_were_not() {
     let told = |event: Event| {
         let start = starts.load(Ordering::Relaxed);
         match event {
-            Event::VerdictStands(outcome) => {
+            Event::VerdictStands { outcome, .. } => {
                 assert!(outcome.sensitivity.is_empty() && outcome.thickness.is_empty());
                 studied.store(1, Ordering::Relaxed);
                 stop.store(start == 0, Ordering::Relaxed);

@@ -101,6 +101,21 @@ fn a_flow_that_rounding_hides_is_found_by_elimination() {
     }
 }
 
+/// Throats side by side and one behind the other, of any contrast.
+#[test]
+fn throats_of_any_contrast_are_solved() {
+    use LinkEnd::Void;
+    for contrast in [1e12, 1e14, 1e30] {
+        let narrow = 1.0 / contrast;
+        let beside =
+            [link(OUTSIDE, Void(0), 1.0), link(Void(0), OUTSIDE, 1.0), link(Void(0), OUTSIDE, narrow)];
+        assert!((conductance(&linked(1, &beside)) / 0.5 - 1.0).abs() < 1e-6, "{contrast}");
+        let behind =
+            [link(OUTSIDE, Void(0), 1.0), link(Void(0), Void(1), narrow), link(Void(1), OUTSIDE, 1.0)];
+        assert!((conductance(&linked(2, &behind)) / narrow - 1.0).abs() < 1e-6, "{contrast}");
+    }
+}
+
 /// A way in that carries enough to count, behind which water parts so that neither way does: the wider one leads on,
 /// and the void retains nothing.
 #[test]

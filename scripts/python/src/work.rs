@@ -109,7 +109,7 @@ impl<T> Desk<T> {
             | Event::PackingEnded
             | Event::Studying(_)
             | Event::VerdictNeeds { .. }
-            | Event::VerdictStands(_)
+            | Event::VerdictStands { .. }
             | Event::RunWalked { .. } => {}
         }
     }

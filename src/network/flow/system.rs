@@ -6,14 +6,7 @@ use std::ops::Range;
 
 use super::elimination::Factor;
 use super::rest::Link;
-use super::thresholds::{BEST_OF_ROUNDING, ROUNDING};
-
-/// Rounds after which a system that has not converged is given up, for each layer and a hundred besides.
-const ROUNDS: usize = 100;
-
-/// The most rounds with a factor of another system: so many, or so many times those that its own system took,
-/// whichever is more.
-const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
+use super::thresholds::{BEST_OF_ROUNDING, ROUNDING, ROUNDS, ROUNDS_OF_ANOTHER};
 
 /// Sums that are made side by side: fixed, so that instructions change nothing.
 const SIDE_BY_SIDE: usize = 8;

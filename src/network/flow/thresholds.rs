@@ -36,5 +36,17 @@ pub(super) const NO_FLUX: f64 = 1e-8;
 /// Flow that a flux found by elimination may be wrong by, over what passes.
 pub(super) const ELIMINATED: f64 = 1e-12;
 
+/// Rounds of conjugate gradients, for each layer and a hundred besides, after which the flow is refused or
+/// found by elimination. Protects from a search without end.
+pub(super) const ROUNDS: usize = 100;
+
+/// The most rounds with a factor of another system: so many, or so many times those that its own system took,
+/// whichever is more. Protects from a factor that no longer fits.
+pub(super) const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
+
+/// A factor is kept until more than one in so many exits have closed: so it serves where little closes from
+/// one solution to the next, and costs fewer rounds then than making another would.
+pub(super) const KEPT_UNTIL: usize = 100;
+
 /// Pairs of neighbours that an elimination looks at before it is given up: some seconds.
 pub(super) const PAIRS: usize = 50_000_000;

@@ -183,7 +183,8 @@ pub struct NetworkSummary {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_tolerance: Option<f64>,
     /// Percentage points of eroded mass by which such walks differed at most from walks of tolerance 0, on
-    /// ten filters (graph.md); `None` where no water flows, and for tolerances that were not measured.
+    /// eleven filters (graph.md); `None` where that was not measured: with arches, with openings, with exits
+    /// by area, and for tolerances above 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_error_pp: Option<f64>,
 }
