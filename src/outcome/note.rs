@@ -353,8 +353,8 @@ notes! {
     /// Constrictions from the library.
     LibraryOfDensity { density: String, error_percent: f64, grains_percent: f64 }
         "not packed" "uncertainty.md"
-        "Similar packings ({density}) give the constrictions within {error_percent} and grains per void \
-         within {grains_percent}; both ends are walked, the coarse one with the fewest grains."
+        "Similar packings ({density}) give constrictions within {error_percent}, grains per void within \
+         {grains_percent}; both ends are walked, the coarser with fewest grains."
         "filter.density packs this very filter.";
     /// A gradation outside the library.
     LikeNoneOfTheLibrary {} "constrictions" "uncertainty.md"
