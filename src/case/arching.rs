@@ -47,7 +47,7 @@ impl Case {
     /// The setting that is missing.
     pub(super) fn check_clogging(&self) -> Result<(), CaseError> {
         let scene = &self.scene;
-        if scene.leaves_openings() && self.base.as_given.pan_fraction() > 0.0 {
+        if scene.leaves_openings() && self.base.as_given().pan_fraction() > 0.0 {
             let problem = "walk.blocked = \"open\" needs the sizes of the whole base, as openings may stop a \
                            particle of any size: add base.d0_mm, or finer sieves down to 0 %";
             return Err(scene.clash(problem).into());

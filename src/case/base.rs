@@ -5,17 +5,16 @@ use super::error::CaseError;
 use super::files::Files;
 use super::filter::CaseFilter;
 use crate::gradation::Gradation;
-use crate::outcome::rules::BaseSoil;
 use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene};
 use crate::verdict::Mistake;
 
 /// A base, worked out.
 #[derive(Clone, Debug)]
 pub struct CaseBase {
-    /// Its gradation as it was given, before any regrading.
-    pub as_given: Gradation,
-    /// The base as practice describes it, where it is walked so.
-    pub by_practice: Option<BaseSoil>,
+    /// Its gradation, as it is walked.
+    pub gradation: Gradation,
+    /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
+    pub regraded_from: Option<(Gradation, f64)>,
 }
 
 impl CaseBase {
@@ -26,7 +25,7 @@ impl CaseBase {
     pub(super) fn read(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Self, CaseError> {
         let given = given(scene, filter, files)?;
         if scene.base.regrade != Some(Regrade::Practice) {
-            return Ok(Self { as_given: given, by_practice: None });
+            return Ok(Self { gradation: given, regraded_from: None });
         }
         let is_of_d0f = match scene.base.gradation() {
             BaseGradation::Sieve(..) | BaseGradation::Linear { d85: D85::Mm(_), .. } => false,
@@ -37,25 +36,23 @@ impl CaseBase {
                            give base.sieve or base.d85_mm, or leave it out";
             return Err(scene.clash(problem).into());
         }
-        let by_practice = Some(BaseSoil::of(&given, false));
-        Ok(Self { as_given: given, by_practice })
+        let regraded = given.regraded();
+        Ok(match regraded.at_mm {
+            Some(at) => Self { gradation: regraded.gradation, regraded_from: Some((given, at)) },
+            None => Self { gradation: given, regraded_from: None },
+        })
     }
 
-    /// Its gradation, as it is walked.
-    pub fn gradation(&self) -> &Gradation {
-        self.by_practice.as_ref().map_or(&self.as_given, |soil| &soil.gradation)
-    }
-
-    /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
-    pub fn regraded_from(&self) -> Option<(&Gradation, f64)> {
-        Some((&self.as_given, self.by_practice.as_ref()?.regraded_at_mm?))
+    /// Its gradation as it was given, before any regrading.
+    pub fn as_given(&self) -> &Gradation {
+        self.regraded_from.as_ref().map_or(&self.gradation, |(given, _)| given)
     }
 
     /// What is wrong with its table: a sieve table alone can be in another unit, or the filter's. Tables that
     /// a user named are looked at before ([`crate::scene::refuse_exchanged`]).
     pub(super) fn mistake(&self, scene: &Scene, filter: &CaseFilter) -> Option<Mistake> {
         match scene.base.gradation() {
-            BaseGradation::Sieve(..) => Mistake::find(&self.as_given, &filter.gradation, false),
+            BaseGradation::Sieve(..) => Mistake::find(self.as_given(), &filter.gradation, false),
             _ => None,
         }
     }

@@ -69,7 +69,7 @@ use std::sync::Arc;
 /// use voidwalk::{Case, Scene};
 /// let case = Case::new(Scene::built_in(&["base.cu=3".to_owned()])?)?;
 /// // D85 of the base is the Dc5 of the filter, and Eq. (2) says how many particles there are.
-/// assert!((case.base.gradation().d(85.0).unwrap() / case.filter.curve.dc(5.0).unwrap() - 1.0).abs() < 1e-9);
+/// assert!((case.base.gradation.d(85.0).unwrap() / case.filter.curve.dc(5.0).unwrap() - 1.0).abs() < 1e-9);
 /// assert_eq!(Some(case.supply.n_base), case.supply.n_base_eq2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -129,11 +129,11 @@ impl Case {
         let network = CaseNetwork::new(&scene, &filter, fixed)?;
         let is_packed = filter.packed.as_ref().is_some_and(|packed| packed.files.is_some());
         let against = Against { scene: &scene, filter: &filter, voids: network.voids, is_packed };
-        let supply = against.supply(base.gradation()).map_err(|error| match mistake {
+        let supply = against.supply(&base.gradation).map_err(|error| match mistake {
             Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
             None => error,
         })?;
-        for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", base.gradation(), 85.0)] {
+        for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", &base.gradation, 85.0)] {
             if soil.d(percent).is_none() {
                 let problem = format!(
                     "the {name}'s D{percent} lies in the pan fraction (finer than the finest sieve): add \
@@ -150,12 +150,12 @@ impl Case {
 
     /// Share of the base's mass that is passive and counted by mass only.
     pub fn pan_by_mass_only(&self) -> f64 {
-        if self.supply.pan_is_walked { 0.0 } else { self.base.gradation().pan_fraction() }
+        if self.supply.pan_is_walked { 0.0 } else { self.base.gradation.pan_fraction() }
     }
 
     /// The base with all particles that are walked.
     pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
-        let (base, finest_mm) = (self.base.gradation(), self.filter.finest_mm);
+        let (base, finest_mm) = (&self.base.gradation, self.filter.finest_mm);
         match self.supply.pan_is_walked {
             true => Cow::Owned(pan::as_passive(base, finest_mm, &self.scene).expect("it was sampled")),
             false => Cow::Borrowed(base),
@@ -209,7 +209,7 @@ impl Case {
     /// D15F over D85B and D95B.
     pub fn ratios(&self) -> Ratios {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
-        let (d15f, base) = (d(&self.filter.gradation, 15.0), self.base.gradation());
+        let (d15f, base) = (d(&self.filter.gradation, 15.0), &self.base.gradation);
         Ratios { d15f_over_d85b: d15f / d(base, 85.0), d15f_over_d95b: d15f / d(base, 95.0) }
     }
 }

@@ -65,8 +65,8 @@ impl Case {
     fn planned_walk(&self) -> PlannedWalk<'_> {
         let (source, replicates) = (self.scene.network.source(), self.scene.walk.replicates);
         PlannedWalk {
-            base: self.base.gradation(),
-            regraded_from: self.base.regraded_from().map(|(given, _)| given),
+            base: &self.base.gradation,
+            regraded_from: self.base.regraded_from.as_ref().map(|(given, _)| given),
             finest_constriction_mm: self.filter.finest_mm,
             filter: Some(&self.filter.gradation),
             filter_is_measured: self.filter_is_measured(),
@@ -144,12 +144,12 @@ impl Case {
 
     /// A base that is walked regraded, or that was to be.
     fn regrading(&self) -> Option<Note> {
-        match (self.base.regraded_from(), self.scene.base.regrade) {
+        match (&self.base.regraded_from, self.scene.base.regrade) {
             (Some((given, at)), _) => {
-                Some(Note::Regraded { part_percent: given.percent_finer_by_mass(at), sieve_mm: at })
+                Some(Note::Regraded { part_percent: given.percent_finer_by_mass(*at), sieve_mm: *at })
             }
             // Of a base without gravel nobody expects it.
-            (None, Some(Regrade::Practice)) if self.base.gradation().largest_mm() > GRAVEL_MM => {
+            (None, Some(Regrade::Practice)) if self.base.gradation.largest_mm() > GRAVEL_MM => {
                 Some(Note::RegradingNotNeeded {})
             }
             _ => None,

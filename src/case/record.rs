@@ -37,14 +37,14 @@ impl Case {
         record::Inputs {
             filter: self.filter_record(),
             base: record::BaseRecord {
-                regraded_at_mm: self.base.regraded_from().map(|(_, at)| at),
-                as_sampled: self.base.regraded_from().map(|(given, _)| record::SampledBase {
+                regraded_at_mm: self.base.regraded_from.as_ref().map(|(_, at)| *at),
+                as_sampled: self.base.regraded_from.as_ref().map(|(given, _)| record::SampledBase {
                     d85_mm: given.d(85.0),
                     d95_mm: given.d(95.0),
                     d100_mm: given.largest_mm(),
                     gradation: rows(given.points()),
                 }),
-                ..base_record(self.base_name(), self.base.gradation())
+                ..base_record(self.base_name(), &self.base.gradation)
             },
             network: self.network_record(),
             mass_ratio: self.supply.mass_ratio,

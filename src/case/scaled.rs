@@ -60,7 +60,7 @@ impl Case {
         let against =
             Against { scene: &case.scene, filter: &case.filter, voids: case.network.voids, is_packed: false };
         case.supply = against.supply(&base)?;
-        case.base = CaseBase { as_given: base, by_practice: None };
+        case.base = CaseBase { gradation: base, regraded_from: None };
         // No other number or thickness is studied.
         case.scene.record.sensitivity.clear();
         case.scene.record.thickness = Some(Vec::new());
@@ -105,9 +105,9 @@ mod tests {
         for ratio in [4.0, 6.5] {
             let stated = built_in(&["base.cu=3", &format!("base.d15f_over_d85b={ratio}")]);
             let wanted = Case::new(stated.clone()).unwrap();
-            let base = case.base_of(&stated).unwrap().base.gradation().clone();
+            let base = case.base_of(&stated).unwrap().base.gradation;
             let made = case.with_base(base, None).unwrap();
-            assert_eq!(made.base.gradation(), wanted.base.gradation());
+            assert_eq!(made.base.gradation, wanted.base.gradation);
             let made_of = |case: &Case| (case.supply.n_base, case.network.voids, case.network.layers);
             assert_eq!(made_of(&made), made_of(&wanted));
         }
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn more_layers_take_more_base() {
         let case = Case::new(built_in(&[])).unwrap();
-        let thick = case.with_base(case.base.gradation().clone(), Some(120)).unwrap();
+        let thick = case.with_base(case.base.gradation.clone(), Some(120)).unwrap();
         assert_eq!(thick.network.layers, 120);
         assert!(thick.supply.n_base.abs_diff(2 * case.supply.n_base) <= 1);
         let kept = case.network(7).unwrap();

@@ -154,7 +154,7 @@ mod tests {
         let plan = NetworkWalk {
             increments: case.increments(),
             filter: Some(filter),
-            ..NetworkWalk::new(case.base.gradation().clone(), case.supply.n_base)
+            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
         };
         let shared = |notes: Vec<Note>, own: &[&str]| {
             let shared = notes.into_iter().filter(|note| !own.contains(&&*note.id()));

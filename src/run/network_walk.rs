@@ -351,7 +351,7 @@ mod tests {
                     is_measured: false,
                     grains_per_void: None,
                 }),
-                ..NetworkWalk::new(case.base.gradation().clone(), 30_000)
+                ..NetworkWalk::new(case.base.gradation.clone(), 30_000)
             };
             let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
             assert_eq!((found.verdict, &found.summary), (expected.model.class, &expected.summary));

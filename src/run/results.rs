@@ -74,7 +74,7 @@ pub fn outcome(
         infiltration: case
             .scene
             .is_lattice_by_area()
-            .then(|| infiltration(&case.filter.curve, case.base.gradation(), case.network.layers)),
+            .then(|| infiltration(&case.filter.curve, &case.base.gradation, case.network.layers)),
         curve_range: other.range.clone(),
         arching: case.arching_record(),
         sensitivity: studies.sensitivity,
@@ -176,14 +176,13 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
 fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a> {
     let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
-    let (scale_free, by_practice) = (case.is_scale_free(), case.base.by_practice.clone());
     RuleInputs {
         filter: &case.filter.gradation,
         filter_is_measured: case.filter_is_measured(),
-        base: &case.base.as_given,
-        walked_base: case.base.gradation(),
-        base_soil: by_practice.unwrap_or_else(|| BaseSoil::of(&case.base.as_given, scale_free)),
-        scale_free,
+        base: case.base.as_given(),
+        walked_base: &case.base.gradation,
+        base_soil: BaseSoil::of(case.base.as_given(), case.is_scale_free()),
+        scale_free: case.is_scale_free(),
         filter_curves: Vec::new(),
         dispersive: case.scene.base.dispersive == Some(true),
         joint_mm: case.scene.filter.joint_mm,

@@ -44,15 +44,15 @@ impl Judged {
     pub fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
         let (has_size, d85) = (row.d85_mm.is_some(), row.d85_mm.unwrap_or(1.0));
         let scaled = |stated: &StatedBase| -> Result<StatedBase, RunError> {
-            let factor = d85 / row.stated.base.gradation().d(85.0).unwrap_or(d85);
+            let factor = d85 / row.stated.base.gradation.d(85.0).unwrap_or(d85);
             let sizes = |gradation: &crate::gradation::Gradation| {
                 gradation.scaled(factor).map_err(crate::case::CaseError::from)
             };
-            let mut base = CaseBase { as_given: sizes(&stated.base.as_given)?, ..stated.base.clone() };
-            if let Some(soil) = &mut base.by_practice {
-                soil.gradation = sizes(&soil.gradation)?;
-                soil.regraded_at_mm = soil.regraded_at_mm.map(|at| at * factor);
-            }
+            let regraded_from = match &stated.base.regraded_from {
+                Some((given, at)) => Some((sizes(given)?, at * factor)),
+                None => None,
+            };
+            let base = CaseBase { gradation: sizes(&stated.base.gradation)?, regraded_from };
             Ok(StatedBase { base, ..stated.clone() })
         };
         let stated = if has_size { row.stated.clone() } else { scaled(&row.stated)? };

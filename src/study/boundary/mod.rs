@@ -109,7 +109,7 @@ impl DraftedRow {
         let stated = case.base_of(&wanted.scene)?;
         let refuse =
             |problem: String| Err(RunError::from(crate::case::CaseError::from(wanted.scene.clash(problem))));
-        let Some(d85) = stated.base.gradation().d(85.0) else {
+        let Some(d85) = stated.base.gradation.d(85.0) else {
             return refuse(
                 "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
                  base.d0_mm"
@@ -132,7 +132,7 @@ impl DraftedRow {
                     .into(),
             );
         }
-        let base = stated.base.gradation().scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
+        let base = stated.base.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
         case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
         have_networks(&case, &Callbacks::default())?;
         let row = Row {
@@ -189,7 +189,7 @@ fn limits(options: &BoundaryOptions) -> crate::case::ResourceLimits {
 /// Everything that the results follow from, in words.
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     let of_row = |row: &Row| {
-        let base = row.stated.base.gradation().points();
+        let base = row.stated.base.gradation.points();
         let base: Vec<_> = base.iter().map(|point| (point.size, point.percent)).collect();
         let (thickness, d85) = (row.wanted.thickness, row.d85_mm);
         format!("{} {thickness:?} {base:?} {d85:?} {}", row.case.fingerprint(), row.filter_has_size)

@@ -277,16 +277,16 @@ fn inputs(row: &Row) -> Vec<InputFile> {
 }
 
 fn base(row: &Row, name: &str) -> BaseStated {
-    let (walked, given) = (row.stated.base.gradation(), &row.stated.base.as_given);
+    let (walked, given) = (&row.stated.base.gradation, row.stated.base.as_given());
     // Of a base without a size nothing in mm is known.
-    let cut = row.stated.base.regraded_from().filter(|_| row.d85_mm.is_some());
+    let cut = row.stated.base.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
         name: name.into(),
         cu: walked.cu(),
         d15_mm: row.d85_mm.and(given.d(15.0)),
         d85_mm: row.d85_mm,
         d95_over_d85: row.base.d(95.0),
-        regraded_at_mm: cut.map(|(_, at)| at),
+        regraded_at_mm: cut.map(|(_, at)| *at),
         tail_mass_fraction: walked.pan_fraction(),
         d85_as_sampled_mm: cut.and_then(|(given, _)| given.d(85.0)),
     }
@@ -377,6 +377,6 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
 
 /// What is to be said where the base's pan fraction alone is enough to erode.
 fn of_pan(row: &Row) -> Option<Note> {
-    let pan = row.stated.base.gradation().pan_fraction();
+    let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
 }
