@@ -277,9 +277,6 @@ impl CaseRunner<'_> {
             }
             other => other?,
         };
-        for problem in checkpoints.passed_over() {
-            (self.callbacks.run.warn)(&format!("case {name}: {problem}; the checkpoint before it was taken"));
-        }
         if self.is_done(prepared) {
             checkpoints.clear()?;
             return Ok(false);
