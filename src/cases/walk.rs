@@ -23,17 +23,16 @@ use crate::case::Case;
 use crate::outcome::ledger::{LedgerLine, Made};
 use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::{Callbacks, Event};
+use crate::run::case_walks::CaseWalks;
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
 use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
 use crate::run::machine::on_each;
-use crate::run::other_walks::OtherWalks;
 use crate::run::planned;
 use crate::run::replicates::{self, ReplicateContext};
 use crate::run::results;
 use crate::run::shared_networks::SharedNetworks;
 use crate::run::studies::Studies;
-use crate::run::summary::concluded;
 use crate::store::format;
 use crate::store::{Folder, StoreError, make_folder};
 
@@ -257,14 +256,12 @@ impl CaseRunner<'_> {
         let counting = Callbacks { on_event: &count, stop, ..Callbacks::default() };
         let (callbacks, networks) = (&counting, self.networks.as_ref());
         let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
-        let walked = OtherWalks::with_case(case, &context).and_then(|(walked, other)| {
-            let verdict = other.verdict(concluded(case, &walked).0);
-            Ok((other, Studies::walk(case, &walked, verdict, &context)?, walked))
-        });
+        let walked = CaseWalks::walk(case, &context)
+            .and_then(|walks| Ok((Studies::walk(case, &walks, &context)?, walks)));
         for problem in checkpoints.passed_over() {
             self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
         }
-        let (other, studies, walked) = match walked {
+        let (studies, walks) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);
@@ -283,14 +280,14 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &case.notes(), &walked, &other, studies, seconds);
+        let outcome = results::outcome(case, &case.notes(), &walks, studies, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         let (host, started, job) = (manifest.host.clone(), manifest.started.clone(), self.job.clone());
         let made = Made { host, threads, job, started, seconds };
         let place = prepared.folder().display().to_string();
         let fingerprint = prepared.fingerprint.clone();
         let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &outcome, made);
-        let files = results::files(case, outcome, &walked, manifest)?;
+        let files = results::files(case, outcome, &walks.replicates, manifest)?;
         folder.remove(LINE)?;
         // Results of what the case was before the plan was changed; another process that walks this very case
         // has written this very scene, and its files stay.

@@ -4,10 +4,10 @@ use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_of_end;
 use super::replicates::{ReplicateContext, ReplicateResult, each, some_replicates, values_by_run};
-use super::summary::{classed, concluded};
+use super::summary::classed;
 use crate::case::{Case, OtherCurve};
 use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
-use crate::outcome::record::{Classed, CurveEnd, CurveRange, Verdict};
+use crate::outcome::record::{Classed, CurveEnd, CurveRange, RunSummary, Verdict};
 use crate::outcome::stopping::class_at;
 
 /// An end of the range of the curve, and those of its replicates that were walked.
@@ -44,17 +44,18 @@ fn fit(case: &Case) -> bool {
 }
 
 /// Walks each end of the range of the curve: one replicate where it is clear that the class stays, else as
-/// many as were walked with the curve itself. `None` where the curve is no range.
+/// many as were walked with the curve itself, of which class and statistics by run are known. `None` where
+/// the curve is no range.
 ///
 /// # Errors
 /// As [`super::replicates::replicates`].
 pub fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],
+    (verdict, summary): (Verdict, &[RunSummary]),
     begun: Vec<BegunEnd>,
     context: &ReplicateContext,
 ) -> Result<Option<CurveRange>, RunError> {
-    let (verdict, summaries, _) = concluded(case, walked);
     let one = |begun: BegunEnd| of_end(case, begun, walked, verdict, context);
     let ends: Vec<(CurveEnd, Verdict)> = each(begun, fit(case), one)?;
     let (ends, mut allowed): (Vec<CurveEnd>, Vec<Verdict>) = ends.into_iter().unzip();
@@ -64,7 +65,7 @@ pub fn curve_range(
     });
     let worst = [Verdict::Continuing, Verdict::Some].into_iter().find(|class| allowed.contains(class));
     let could_be = case.scene.stop.decide_percent.map(|_| worst.unwrap_or(Verdict::None));
-    let runs: Vec<_> = summaries.iter().map(|s| s.eroded_mass_fraction).collect();
+    let runs: Vec<_> = summary.iter().map(|run| run.eroded_mass_fraction).collect();
     Ok(CurveRange::new(verdict, &runs, ends, case.filter.library.is_some(), could_be))
 }
 

@@ -13,6 +13,7 @@
 pub(crate) mod allocation;
 pub(crate) mod at_once;
 pub(crate) mod callbacks;
+pub(crate) mod case_walks;
 mod check;
 pub(crate) mod checkpoints;
 pub(crate) mod constrictions;
@@ -26,7 +27,6 @@ pub mod machine;
 mod network_answer;
 mod network_record;
 mod network_walk;
-pub(crate) mod other_walks;
 pub(crate) mod pack;
 mod packing_record;
 mod pilot;

@@ -4,19 +4,18 @@ use std::time::SystemTime;
 
 use serde::Serialize;
 
+use super::case_walks::CaseWalks;
 use super::error::RunError;
 use super::machine::Machine;
-use super::other_walks::OtherWalks;
 use super::replicates::{ReplicateResult, said_by_walks};
 use super::studies::Studies;
-use super::summary::{concluded, summarise};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::digest::digest;
 use crate::outcome::left_out::LeftOut;
 use crate::outcome::record::Note;
 use crate::outcome::record::{
-    ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, Stopping,
-    Verdict, VoidRow, commit,
+    ConstrictionsRecord, CurveRange, IfDispersive, Manifest, Model, Outcome, RunSummary, Statistic, VoidRow,
+    commit,
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
@@ -27,28 +26,19 @@ use crate::text::moment;
 use crate::verdict::{Decision, dispersion, ordered};
 use crate::walk::Shortcut;
 
-/// The outcome of a case that has been walked, of which these notes were made before; with what was walked
-/// besides, and its studies, none so far where they are to come.
-pub fn outcome(
-    case: &Case,
-    noted: &[Note],
-    walked: &[ReplicateResult],
-    other: &OtherWalks,
-    studies: Studies,
-    seconds: f64,
-) -> Outcome {
-    let (verdict, summary, stopping) = concluded(case, walked);
+/// The outcome of a case that has been walked, of which these notes were made before; with its studies, none
+/// so far where they are to come.
+pub fn outcome(case: &Case, noted: &[Note], walks: &CaseWalks, studies: Studies, seconds: f64) -> Outcome {
+    let CaseWalks { replicates: walked, summary, stopping, range, verdict, .. } = walks;
     let inputs = rule_inputs(case, walked);
-    let verdict = other.verdict(verdict);
-    let found = (stopping.as_ref(), other.range.as_ref());
-    let notes = notes_before_results(case, noted, verdict, walked, found);
+    let notes = notes_before_results(case, noted, walks);
     let inputs_record = case.record();
     let outcome = Outcome {
         headline: None,
         practice: None,
         model: Model {
-            class: verdict,
-            eroded_percent: eroded_percent(&summary, other.range.as_ref()),
+            class: *verdict,
+            eroded_percent: eroded_percent(summary, range.as_ref()),
             replicates: walked.len() as u64,
             network: inputs_record.network.kind,
         },
@@ -62,8 +52,8 @@ pub fn outcome(
         grains_per_void: case.filter.grains_per_void,
         engine: walked.first().map_or(case.scene.walk.engine, |w| w.engine).name().into(),
         replicates: walked.iter().map(|w| w.replicate.clone()).collect(),
-        summary,
-        stopping,
+        summary: summary.clone(),
+        stopping: stopping.clone(),
         threshold: verdict::THRESHOLD,
         left_out: left_out(case, walked.first().map_or(&[], |walked| &walked.left_out)),
         model_leaves_out: leaves_out(case.modelled()),
@@ -75,7 +65,7 @@ pub fn outcome(
             .scene
             .is_lattice_by_area()
             .then(|| infiltration(&case.filter.curve, &case.base.gradation, case.network.layers)),
-        curve_range: other.range.clone(),
+        curve_range: range.clone(),
         arching: case.arching_record(),
         sensitivity: studies.sensitivity,
         thickness: studies.thickness,
@@ -108,20 +98,14 @@ fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs)
 }
 
 /// What the walks, the case, the rule that stopped them and the range of its curve say of the verdict.
-fn notes_before_results(
-    case: &Case,
-    noted: &[Note],
-    verdict: Verdict,
-    walked: &[ReplicateResult],
-    (stopping, range): (Option<&Stopping>, Option<&CurveRange>),
-) -> Vec<Note> {
+fn notes_before_results(case: &Case, noted: &[Note], walks: &CaseWalks) -> Vec<Note> {
+    let CaseWalks { replicates: walked, range, verdict, low_level_percent, .. } = walks;
     let of_network = (case.network.layers, case.scene.leaves_openings());
-    let mut notes = said_by_walks(verdict, walked, &case.base_as_walked(), case.increments(), of_network);
+    let mut notes = said_by_walks(*verdict, walked, &case.base_as_walked(), case.increments(), of_network);
     notes.extend(case.unchecked_clogging());
-    let unsure = stopping.and_then(|stopping| stopping.less_than_usual(summarise(walked).0));
-    notes.extend(unsure.map(|level_percent| Note::DecidedBelow95 { level_percent }));
+    notes.extend(low_level_percent.map(|level_percent| Note::DecidedBelow95 { level_percent }));
     notes.extend_from_slice(noted);
-    notes.extend(range.map(|range| match range.agrees() {
+    notes.extend(range.as_ref().map(|range| match range.agrees() {
         true => Note::CurveRange {},
         false => Note::CurveDecides { of_the_curve: range.verdict.words().into() },
     }));
@@ -269,7 +253,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError
 mod tests {
     use super::*;
     use crate::outcome::quantity::SizeUnit;
-    use crate::outcome::record::Headline;
+    use crate::outcome::record::{Headline, Verdict};
     use crate::run::{Callbacks, walk_case};
     use crate::scene::Scene;
     use crate::words;

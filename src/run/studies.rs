@@ -12,6 +12,7 @@ use std::cmp::Reverse;
 use rayon::prelude::*;
 
 use super::callbacks::Event;
+use super::case_walks::CaseWalks;
 use super::error::RunError;
 use super::planned::replicates_at_least;
 use super::replicates::{ReplicateContext, ReplicateResult, values_by_run, walk_replicate};
@@ -68,18 +69,12 @@ fn points(case: &Case) -> Vec<Point<'_>> {
 }
 
 impl Studies {
-    /// Walks the studies of a case of which these replicates were walked, and which has this verdict, all
-    /// that was walked besides taken in.
+    /// Walks the studies of a case whose verdict has been walked for.
     ///
     /// # Errors
     /// As [`super::replicates::replicates`].
-    pub fn walk(
-        case: &Case,
-        own: &[ReplicateResult],
-        class: Verdict,
-        context: &ReplicateContext,
-    ) -> Result<Self, RunError> {
-        let points = points(case);
+    pub fn walk(case: &Case, walks: &CaseWalks, context: &ReplicateContext) -> Result<Self, RunError> {
+        let (own, class, points) = (&walks.replicates, walks.verdict, points(case));
         let own_values = values_by_run(own);
         let each = case.scene.record.sensitivity_replicates;
         let mut walked: Vec<Walked> = points.iter().map(|_| Walked::default()).collect();

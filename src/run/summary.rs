@@ -1,8 +1,7 @@
 //! What the replicates of a case are worth together.
 
-use super::replicates::{ReplicateResult, stopping};
-use crate::case::Case;
-use crate::outcome::record::{Classed, RunSummary, Statistic, Stopping, Verdict};
+use super::replicates::ReplicateResult;
+use crate::outcome::record::{Classed, RunSummary, Statistic, Verdict};
 use crate::outcome::verdict::{below_by_interval, classify};
 
 /// The verdict that the replicates support together, and their statistics by run.
@@ -15,15 +14,6 @@ pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
         below_by_interval(&summary.eroded_mass_fraction, &each)
     };
     (classify(below(0), below(1)), summaries)
-}
-
-/// The verdict of replicates, their statistics by run, and what a rule that adds replicates came to.
-pub fn concluded(case: &Case, walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>, Option<Stopping>) {
-    let (verdict, summary) = summarise(walked);
-    let stopping = stopping(case, walked);
-    // A verdict that was to be certain is one at the level asked for.
-    let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
-    (verdict, summary, stopping)
 }
 
 /// What the replicates are worth together, as a point of a study holds it.

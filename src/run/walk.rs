@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 use super::callbacks::{Callbacks, Event};
+use super::case_walks::CaseWalks;
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
 use super::error::{Exit, RunError};
 use super::folder::{
     FolderKind, claim, claim_first_free, clear, clear_but_scene, outlive_clear, own_packings, shown,
 };
 use super::machine::on_threads;
-use super::other_walks::OtherWalks;
 use super::planned::runs_to_walk;
 use super::prepare::{PrepareOptions, prepare_into};
 use super::replicates::{ReplicateContext, ReplicateResult};
@@ -162,15 +162,15 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         let (begun, notes) = (Instant::now(), case.notes());
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
-        let (walked, other) = OtherWalks::with_case(case, &context)?;
-        let first = results::outcome(case, &notes, &walked, &other, Studies::default(), seconds(begun));
+        let walks = CaseWalks::walk(case, &context)?;
+        let first = results::outcome(case, &notes, &walks, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
             (callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(case) });
         }
-        let studies = Studies::walk(case, &walked, first.model.class, &context)?;
-        let outcome = results::outcome(case, &notes, &walked, &other, studies, seconds(begun));
+        let studies = Studies::walk(case, &walks, &context)?;
+        let outcome = results::outcome(case, &notes, &walks, studies, seconds(begun));
         let mut recorded = Recorded::default();
-        walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
+        walks.replicates.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
     };
     match rayon::current_thread_index() {
@@ -338,28 +338,25 @@ impl CaseRun<'_> {
         let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
         let context = ReplicateContext { callbacks, checkpoints, networks: None };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
-        let (walked, other) =
-            OtherWalks::with_case(self.case, &context).map_err(|error| self.ended(error))?;
-        let outcome = |studies: Studies| {
-            results::outcome(self.case, self.notes, &walked, &other, studies, seconds(begun))
-        };
+        let walks = CaseWalks::walk(self.case, &context).map_err(|error| self.ended(error))?;
+        let outcome =
+            |studies: Studies| results::outcome(self.case, self.notes, &walks, studies, seconds(begun));
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
         let mut first = outcome(Studies::default());
         if Studies::are_none(self.case) {
-            write(&first, &walked)?;
+            write(&first, &walks.replicates)?;
             return Ok(first);
         }
         // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
         self.checkpoints.flush()?;
         first.studies_to_come = true;
-        write(&first, &walked)?;
+        write(&first, &walks.replicates)?;
         (self.callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(self.case) });
-        let studies = Studies::walk(self.case, &walked, first.model.class, &context)
-            .map_err(|error| self.ended(error))?;
+        let studies = Studies::walk(self.case, &walks, &context).map_err(|error| self.ended(error))?;
         let whole = outcome(studies);
-        write(&whole, &walked)?;
+        write(&whole, &walks.replicates)?;
         Ok(whole)
     }
 
