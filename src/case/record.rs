@@ -4,10 +4,15 @@ use super::{Case, CaseFilter, CaseNetwork, Input, RECORD};
 use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
-use crate::outcome::record::{self, InputFile};
+use crate::outcome::record::{self, AboutPage, InputFile};
 use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
 
 impl Case {
+    /// The page of its run.
+    pub fn about_page(&self) -> AboutPage {
+        self.scene.about.page(self.is_scale_free())
+    }
+
     /// Files that were read, with their checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
         self.inputs.iter().map(Input::file).collect()

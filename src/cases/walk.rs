@@ -280,14 +280,14 @@ impl CaseRunner<'_> {
         }
         let seconds = begun.elapsed().as_secs_f64();
         let threads = rayon::current_num_threads() as u64;
-        let outcome = results::outcome(case, &case.notes(), &walks, studies, seconds);
+        let answer = results::outcome(case, &case.notes(), &walks, studies, seconds);
         let manifest = results::manifest(case, threads, started, self.command.clone());
         let (host, started, job) = (manifest.host.clone(), manifest.started.clone(), self.job.clone());
         let made = Made { host, threads, job, started, seconds };
         let place = prepared.folder().display().to_string();
         let fingerprint = prepared.fingerprint.clone();
-        let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &outcome, made);
-        let files = results::files(case, outcome, &walks.replicates, manifest)?;
+        let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &answer.0, made);
+        let files = results::files(case, answer, &walks.replicates, manifest)?;
         folder.remove(LINE)?;
         // Results of what the case was before the plan was changed; another process that walks this very case
         // has written this very scene, and its files stay.

@@ -16,7 +16,6 @@ use crate::outcome::so_far::SoFar;
 use crate::packing::{CompressionProgress, Stage};
 use crate::run::{Callbacks, Event, RunError};
 use crate::store::platform::signals::{end_at_once, stop_on_request};
-use crate::verdict::Decision;
 use crate::words::{first_lines, sentence, so_far};
 
 /// Plain lines come at most this often.
@@ -155,8 +154,8 @@ impl Display {
             Event::Noted { notes, unit } => {
                 notes.iter().for_each(|note| self.line(&format!("note: {}\n", plain(&sentence(note, unit)))));
             }
-            Event::VerdictStands { outcome, unit } => {
-                for (line, words) in first_lines(outcome, &Decision::recorded(outcome), unit) {
+            Event::VerdictStands { outcome, decision, unit } => {
+                for (line, words) in first_lines(outcome, decision, unit) {
                     self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }
             }

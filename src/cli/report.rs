@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::print::{shown, to_stdout};
-use crate::outcome::RunFiles;
 use crate::report::{self, ReportError};
 use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
+use crate::verdict::RunFiles;
 
 /// Writes the report of a finished folder again.
 pub fn report(folder: &Path) -> Result<(), RunError> {

@@ -16,7 +16,6 @@ use crate::run::folder::claim;
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::store::format;
 use crate::text::shell_word;
-use crate::verdict::Decision;
 use crate::words::first_lines;
 use crate::words::left_out::{NOT_COVERED, left_out_line};
 
@@ -30,8 +29,8 @@ pub fn run(args: &RunArgs) -> Result<(), RunError> {
 
 impl AcceptArgs {
     /// Ends a command by the verdict of its run.
-    fn judged(&self, run: &FinishedRun, decision: &Decision) -> Result<(), RunError> {
-        let answer = JudgedAnswer { model: run.outcome.model.class, practice: decision.counts_as };
+    fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
+        let answer = JudgedAnswer { model: run.outcome.model.class, practice: run.decision.counts_as };
         accept(self.fail_on, [("", answer)])
     }
 }
@@ -50,10 +49,9 @@ impl ResultArgs {
 
     /// Prints what came of a run, writes its workbook where it is asked for, and ends by its verdict.
     pub fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
-        let decision = Decision::recorded(&run.outcome);
-        show(run, &decision, as_json, self.walk.quiet)?;
+        show(run, as_json, self.walk.quiet)?;
         self.workbook(run)?;
-        self.accept.judged(run, &decision)
+        self.accept.judged(run)
     }
 
     /// Writes the workbook of a finished run, where it is asked for.
@@ -79,9 +77,8 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
         ..RunOptions::default()
     };
     let run = followed(walk.quiet, |callbacks| run::resume(&args.folder, &options, callbacks))?;
-    let decision = Decision::recorded(&run.outcome);
-    show(&run, &decision, args.json, walk.quiet)?;
-    args.accept.judged(&run, &decision)
+    show(&run, args.json, walk.quiet)?;
+    args.accept.judged(&run)
 }
 
 /// The command line in words, whatever bytes it is made of.
@@ -91,11 +88,11 @@ pub fn command_line() -> String {
 }
 
 /// Prints what came of a run.
-fn show(run: &FinishedRun, decision: &Decision, as_json: bool, quiet: bool) -> Result<(), RunError> {
+fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
         as_it_is(&json(format::OUTCOME, &run.outcome)?);
     } else if !quiet {
-        to_stdout(&summary(run, decision));
+        to_stdout(&summary(run));
     }
     Ok(())
 }
@@ -104,8 +101,8 @@ fn show(run: &FinishedRun, decision: &Decision, as_json: bool, quiet: bool) -> R
 const LABELS: usize = 4;
 
 /// What a user wants to know first.
-fn summary(run: &FinishedRun, decision: &Decision) -> String {
-    let outcome = &run.outcome;
+fn summary(run: &FinishedRun) -> String {
+    let FinishedRun { outcome, decision, .. } = run;
     let mut text = String::new();
     // Writing to a string cannot fail.
     let mut line = |s: String| {

@@ -2,7 +2,6 @@
 //!
 //! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
 //! - [`Recorder`] records of a running walk what was asked for.
-//! - [`RunFiles`] is the content of the files of a run folder, as values.
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
 //! - `by_void` is what happened in each void and constriction, for pictures.
@@ -48,7 +47,6 @@ pub mod record;
 mod recorder;
 mod rule_note;
 pub mod rules;
-mod run_files;
 pub mod so_far;
 pub(crate) mod soil_sizes;
 mod statistic;
@@ -65,7 +63,6 @@ pub(crate) use least_squares::Straight;
 pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
 pub use model_limit::{Modelled, leaves_out, leaves_out_of_all};
 pub use recorder::{Recorder, Wanted};
-pub use run_files::RunFiles;
 
 use crate::network::ExitRule;
 use note::Note;

@@ -8,44 +8,33 @@ use serde::de::DeserializeOwned;
 use super::cover::LINE;
 use super::error::ReportError;
 use super::figures::shorten;
-use crate::outcome::record::SheetCover;
-
-/// The table `about` of a scene.
-pub(super) struct About {
-    /// The cover of the page.
-    pub cover: SheetCover,
-    /// The way in which sizes are shown.
-    pub sizes: ShownSizes,
-}
+use super::quantity::SizeUnit;
+use crate::outcome::record::{AboutPage, Outcome};
 
 /// The way in which sizes are shown.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-pub(super) struct ShownSizes {
-    /// Gradations are drawn with coarse sizes on the left.
-    pub coarse_left: bool,
-    /// The units of sizes; mm where nothing is stated.
-    pub units: Option<SheetUnits>,
+struct ShownSizes {
+    coarse_left: bool,
+    units: Option<SheetUnits>,
 }
 
 /// The units of sizes.
-#[derive(Clone, Copy, Deserialize, PartialEq)]
+#[derive(Deserialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum SheetUnits {
-    /// mm alone.
+enum SheetUnits {
     Metric,
-    /// Inches beside mm.
     Us,
 }
 
-impl About {
-    /// Reads the text of a scene, which `path` names in errors.
-    ///
-    /// # Errors
-    /// A value that cannot be read, with its line: a page without it may go to a client.
-    pub(super) fn read(path: &Path, scene: &str) -> Result<Self, ReportError> {
-        Ok(Self { cover: about(path, scene)?, sizes: about(path, scene)? })
-    }
+/// The page that the text of a run's scene asks for; `path` names the text in errors.
+///
+/// # Errors
+/// A value that cannot be read, with its line: a page without it may go to a client.
+pub fn about_page(path: &Path, scene: &str, outcome: &Outcome) -> Result<AboutPage, ReportError> {
+    let (cover, sizes): (_, ShownSizes) = (about(path, scene)?, about(path, scene)?);
+    let unit = SizeUnit::of(outcome.inputs.scale_free, sizes.units == Some(SheetUnits::Us));
+    Ok(AboutPage { cover, coarse_left: sizes.coarse_left, unit })
 }
 
 /// The settings of one kind in the table `about`; nothing else of the scene is looked at. Each kind is read

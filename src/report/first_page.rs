@@ -3,7 +3,6 @@
 
 use maud::{Markup, html};
 
-use super::about::SheetUnits;
 use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
@@ -20,11 +19,6 @@ use crate::verdict::{Decision, ListedRule};
 use crate::words::left_out::left_out_line;
 use crate::words::rule::{self, limit_begins, limit_ends, value_and_limit, value_begins};
 use crate::words::{FirstLine, first_lines, grading, judged_alone};
-
-/// What sizes on the first sheet are shown in.
-pub(super) fn units(folder: &RunFolder) -> SizeUnit {
-    SizeUnit::of(folder.outcome.inputs.scale_free, folder.about.sizes.units == Some(SheetUnits::Us))
-}
 
 /// The two soils, and what belongs to a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {

@@ -2,25 +2,27 @@
 
 use std::path::Path;
 
-use super::about::About;
+use super::about::about_page;
 use super::error::ReportError;
 use super::files::{json, text};
 use super::quantity::SizeUnit;
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
-use crate::outcome::RunFiles;
 use crate::outcome::packing::PackingRecord;
-use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
+use crate::outcome::record::{AboutPage, Classed, Manifest, Outcome, Sensitivity};
+use crate::verdict::{Decision, RunFiles};
 
 /// Everything that a finished run folder says.
 pub(super) struct RunFolder {
     pub outcome: Outcome,
+    /// The decision of practice on its pair.
+    pub decision: Decision,
     pub manifest: Manifest,
     /// The packing of the filter, if the program made it.
     pub packing: Option<PackingRecord>,
     /// `scene.toml`, verbatim.
     pub scene: String,
     /// Its settings of the page.
-    pub about: About,
+    pub about: AboutPage,
     /// The rows of its CSV files.
     pub rows: RunRows,
 }
@@ -33,18 +35,18 @@ impl RunFolder {
         let manifest: Manifest = json(&folder.join(MANIFEST))?;
         let path = folder.join(SCENE);
         let scene = text(&path)?;
-        let about = About::read(&path, &scene)?;
+        let about = about_page(&path, &scene, &outcome)?;
         let packing = packing(&folder.join(PACKING), &manifest)?;
-        Ok(RunFolder { packing, outcome, manifest, scene, about, rows })
+        let decision = Decision::recorded(&outcome);
+        Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
     /// That of a run whose files have this content; errors name a file of `folder`.
     pub(super) fn of(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
-        let RunFiles { outcome, manifest, scene, packing, recorded } = files;
+        let RunFiles { outcome, decision, manifest, scene, about, packing, recorded } = files;
         let outcome = checked(&folder.join(OUTCOME), outcome)?;
         let rows = rows_of(&outcome, folder, RowSource::Memory(recorded))?;
-        let about = About::read(&folder.join(SCENE), &scene)?;
-        Ok(RunFolder { packing, outcome, manifest, scene, about, rows })
+        Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
     /// What its figures and tables of walks show.

@@ -74,6 +74,7 @@ mod workbook;
 mod written;
 
 pub use crate::outcome::quantity;
+pub use about::about_page;
 pub use batch::write_batch;
 pub use boundary::write_boundary;
 pub use campaign::{campaign_page, write_campaign};

@@ -22,13 +22,12 @@ use super::verdict_box::{self, Said};
 use super::walks::{RunRows, Walks};
 use super::written::{Written, write_page};
 use super::{appendix, packing, shell::leaves_out};
-use crate::outcome::RunFiles;
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::Note;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
 use crate::outcome::undecided::UndecidedBy;
 use crate::text::visible;
-use crate::verdict::Decision;
+use crate::verdict::{Decision, RunFiles};
 use crate::words::capital;
 use crate::words::grading;
 use crate::words::left_out::left_out_words;
@@ -101,9 +100,9 @@ fn replicate(outcome: &Outcome) -> [&'static str; 2] {
 
 /// The page of a run and all its figures.
 fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
-    let (walks, decision) = (run.walks(), Decision::recorded(&run.outcome));
+    let walks = run.walks();
     let verdict = run_figures::verdict(&walks);
-    let gradations = run_figures::gradations(run, &decision);
+    let gradations = run_figures::gradations(run);
     let figures: Vec<Drawn> = [
         run_figures::eroded(&walks),
         run_figures::layers(&walks),
@@ -114,20 +113,15 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     .flatten()
     .collect();
 
-    let page = page(run, &decision, [&verdict, &gradations], &figures);
+    let page = page(run, [&verdict, &gradations], &figures);
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
 /// The page as text. `gradations` stands on its first sheet, `verdict` and `figures` below it.
-fn page(
-    folder: &RunFolder,
-    decision: &Decision,
-    [verdict, gradations]: [&Drawn; 2],
-    figures: &[Drawn],
-) -> String {
-    let outcome = &folder.outcome;
+fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn]) -> String {
+    let RunFolder { outcome, decision, .. } = folder;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
-    let (unit, walks) = (first_page::units(folder), &folder.walks());
+    let (unit, walks) = (folder.about.unit, &folder.walks());
     let soil = |name: &str| clean(&shorten(soil_name(name), 60));
     let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
         true => format!("{} on {}", soil(&base.name), soil(&filter.name)),

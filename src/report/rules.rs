@@ -63,13 +63,13 @@ pub(super) fn sources(decision: &Decision) -> Markup {
 }
 
 /// The rules of practice, and those that check the walk.
-fn of_practice_and_walk<'a>(rules: &'a [ListedRule<'a>]) -> [Vec<&'a ListedRule<'a>>; 2] {
+fn of_practice_and_walk(rules: &[ListedRule]) -> [Vec<&ListedRule>; 2] {
     let (walk, practice) = rules.iter().partition(|rule| rule.role == RuleRole::Walk);
     [practice, walk]
 }
 
 /// Each source once, those of practice first.
-fn distinct_sources<'a>(rules: &'a [ListedRule<'a>]) -> Vec<&'a str> {
+fn distinct_sources(rules: &[ListedRule]) -> Vec<&str> {
     let mut sources: Vec<&str> = Vec::new();
     for rule in of_practice_and_walk(rules).into_iter().flatten() {
         if !rule.source.is_empty() && !sources.contains(&&*rule.source) {

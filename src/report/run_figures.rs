@@ -13,7 +13,6 @@ use super::quantity::{SizeUnit, interval, interval_in_percent, length, percent, 
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
-use crate::verdict::Decision;
 use crate::words::capital;
 use crate::words::{base_size, grading};
 
@@ -85,8 +84,8 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
 }
 
 /// Filter, base and constrictions on semi-logarithmic axes.
-pub(super) fn gradations(folder: &RunFolder, decision: &Decision) -> Drawn {
-    let inputs = &folder.outcome.inputs;
+pub(super) fn gradations(folder: &RunFolder) -> Drawn {
+    let (inputs, decision) = (&folder.outcome.inputs, &folder.decision);
     let (filter, base) = (&inputs.filter, &inputs.base);
     let (limits, unit) = (boundaries(decision), SizeUnit::of(inputs.scale_free, false));
     let sampled = base.as_sampled.as_ref();
@@ -94,7 +93,7 @@ pub(super) fn gradations(folder: &RunFolder, decision: &Decision) -> Drawn {
     let rows =
         filter.gradation.iter().chain(&filter.constrictions).chain(&base.gradation).chain(sampled_rows);
     let x = size_axis(unit, rows.map(|row| row[0]).chain(limits.iter().map(|(_, limit)| *limit)));
-    let x = if folder.about.sizes.coarse_left { x.downward() } else { x };
+    let x = if folder.about.coarse_left { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
         Some(of) => base_size(&of, SizeUnit::Mm),

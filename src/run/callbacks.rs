@@ -7,11 +7,11 @@ use super::error::{AnyError, RunError};
 use super::folder::FolderKind;
 use super::unfinished;
 use crate::case::PackingPlan;
-use crate::outcome::RunFiles;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{Note, Outcome};
 use crate::packing::CompressionProgress;
 use crate::store::Folder;
+use crate::verdict::{Decision, RunFiles};
 
 /// What happens while a filter is packed and a case is walked.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +78,8 @@ pub enum Event<'a> {
     VerdictStands {
         /// The outcome, its studies to come.
         outcome: &'a Outcome,
+        /// The decision of practice.
+        decision: &'a Decision,
         /// In what the case gives sizes.
         unit: SizeUnit,
     },

@@ -19,16 +19,22 @@ use crate::outcome::record::{
 };
 use crate::outcome::rules::{BaseSoil, RuleInputs};
 use crate::outcome::table::csv_of;
-use crate::outcome::{Recorded, RunFiles, by_void, infiltration, leaves_out, rules, verdict};
+use crate::outcome::{Recorded, by_void, infiltration, leaves_out, rules, verdict};
 use crate::store::format::{self, Format, from_json};
 use crate::store::{Folder, StoreError, Together};
 use crate::text::moment;
-use crate::verdict::{Decision, dispersion, ordered};
+use crate::verdict::{Decision, RunFiles, dispersion, ordered};
 use crate::walk::Shortcut;
 
-/// The outcome of a case that has been walked, of which these notes were made before; with its studies, none
-/// so far where they are to come.
-pub fn outcome(case: &Case, noted: &[Note], walks: &CaseWalks, studies: Studies, seconds: f64) -> Outcome {
+/// The outcome of a case that has been walked, of which these notes were made before, and the decision of
+/// practice on its pair; with its studies, none so far where they are to come.
+pub fn outcome(
+    case: &Case,
+    noted: &[Note],
+    walks: &CaseWalks,
+    studies: Studies,
+    seconds: f64,
+) -> (Outcome, Decision) {
     let CaseWalks { replicates: walked, summary, stopping, range, verdict, .. } = walks;
     let inputs = rule_inputs(case, walked);
     let notes = notes_before_results(case, noted, walks);
@@ -77,24 +83,26 @@ pub fn outcome(case: &Case, noted: &[Note], walks: &CaseWalks, studies: Studies,
 }
 
 /// The outcome with what follows from its results: what practice decides, notes, the digest.
-fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> Outcome {
+fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> (Outcome, Decision) {
     let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
     }
     let d15f_mm = Some(outcome.inputs.filter.d15_mm);
-    let decision = Decision::new(&outcome.rules, outcome.if_dispersive, d15f_mm);
+    let mut decision = Decision::new(&outcome.rules, outcome.if_dispersive, d15f_mm);
     let mut notes: Vec<Note> = decision.notes().collect();
     // Multiples of D0F are the sizes of a study, not of two soils.
-    if !case.is_scale_free() {
-        (outcome.headline, outcome.practice) = (decision.headline, decision.record(range_of_tests_mm));
+    match case.is_scale_free() {
+        true => decision.headline = None,
+        false => outcome.practice = decision.record(range_of_tests_mm),
     }
+    outcome.headline = decision.headline;
     notes.append(&mut outcome.notes);
     notes.extend(outcome.notes_of_results());
     notes.extend(outcome.if_dispersive.map(dispersion::note));
     outcome.notes = ordered(notes);
     outcome.digest = digest(&outcome).expect("an outcome is JSON");
-    outcome
+    (outcome, decision)
 }
 
 /// What the walks, the case, the rule that stopped them and the range of its curve say of the verdict.
@@ -185,7 +193,7 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
 /// A record of its packing that cannot be read.
 pub fn files(
     case: &Case,
-    outcome: Outcome,
+    (outcome, decision): (Outcome, Decision),
     walked: &[ReplicateResult],
     manifest: Manifest,
 ) -> Result<RunFiles, RunError> {
@@ -194,7 +202,8 @@ pub fn files(
     for walked in walked {
         recorded.append(walked.recorded.clone());
     }
-    Ok(RunFiles { outcome, manifest, scene: case.resolved().to_toml(), packing, recorded })
+    let (scene, about) = (case.resolved().to_toml(), case.about_page());
+    Ok(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
 }
 
 /// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.

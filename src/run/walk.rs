@@ -1,6 +1,5 @@
 //! Walks a scene into a folder, continues a run that was stopped, and walks a case in memory.
 
-use crate::outcome::quantity::SizeUnit;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
@@ -21,12 +20,13 @@ use super::unfinished::{self, Unfinished};
 use crate::case::Case;
 use crate::gradation::file_and_soil;
 use crate::outcome::Recorded;
+use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::{Note, Outcome};
 use crate::scene::{CurveSource, Scene};
 use crate::store::Folder;
 use crate::store::format::from_json;
 use crate::text::{plain, shell_word};
-use crate::verdict::ordered;
+use crate::verdict::{Decision, ordered};
 
 /// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
 ///
@@ -56,6 +56,8 @@ pub struct FinishedRun {
     pub folder: PathBuf,
     /// What came of it, as `outcome.json` says.
     pub outcome: Outcome,
+    /// The decision of practice on its pair.
+    pub decision: Decision,
     /// The unit of sizes that its scene asks for (`about.units`).
     pub unit: SizeUnit,
 }
@@ -163,12 +165,13 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walks = CaseWalks::walk(case, &context)?;
-        let first = results::outcome(case, &notes, &walks, Studies::default(), seconds(begun));
+        let (first, decision) = results::outcome(case, &notes, &walks, Studies::default(), seconds(begun));
         if !Studies::are_none(case) {
-            (callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(case) });
+            let unit = case.about_page().unit;
+            (callbacks.on_event)(Event::VerdictStands { outcome: &first, decision: &decision, unit });
         }
         let studies = Studies::walk(case, &walks, &context)?;
-        let outcome = results::outcome(case, &notes, &walks, studies, seconds(begun));
+        let (outcome, _) = results::outcome(case, &notes, &walks, studies, seconds(begun));
         let mut recorded = Recorded::default();
         walks.replicates.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
@@ -189,7 +192,7 @@ fn walk_here(
     let at = options.out.as_deref().unwrap_or(Path::new("."));
     let claim = || claim_for(options, &files);
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
-    let unit = unit_of(&case);
+    let unit = case.about_page().unit;
     let notes = ordered(case.notes());
     (callbacks.on_event)(Event::Noted { notes: &notes, unit });
     let started = SystemTime::now();
@@ -204,7 +207,8 @@ fn walk_here(
         callbacks.results(FolderKind::Run, folder.path(), None)?;
         checkpoints::discard(folder.path())?;
         unfinished::end(&folder)?;
-        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, unit });
+        let decision = Decision::recorded(&outcome);
+        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit });
     }
     let told = || begun?.checkpoint_every?.parse().ok();
     let every = options.checkpoint_interval.or_else(told).unwrap_or_default();
@@ -216,17 +220,18 @@ fn walk_here(
     mark.begin(&folder)?;
     results::write_scene(&folder, &case)?;
     let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
-    let run = CaseRun { case: &case, notes: &notes, folder: &folder, checkpoints: &checkpoints, callbacks };
-    let outcome = run.walk(|outcome, walked| {
+    let run =
+        CaseRun { case: &case, notes: &notes, unit, folder: &folder, checkpoints: &checkpoints, callbacks };
+    let (outcome, decision) = run.walk(|answer, walked| {
         let threads = rayon::current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
-        let files = results::files(&case, outcome.clone(), walked, manifest)?;
+        let files = results::files(&case, answer.clone(), walked, manifest)?;
         results::write(&folder, &case, &files)?;
         callbacks.results(FolderKind::Run, folder.path(), Some(files))
     })?;
     checkpoints.clear()?;
     unfinished::end(&folder)?;
-    Ok(FinishedRun { folder: folder.path().to_owned(), outcome, unit })
+    Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
 }
 
 /// Claims the folder of a run of a scene of these files, which must not go with what it replaces.
@@ -309,11 +314,6 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
-/// The unit in which a case gives sizes.
-fn unit_of(case: &Case) -> SizeUnit {
-    SizeUnit::of(case.is_scale_free(), case.scene.about.shows_inches())
-}
-
 fn seconds(begun: Instant) -> f64 {
     begun.elapsed().as_secs_f64()
 }
@@ -322,6 +322,7 @@ fn seconds(begun: Instant) -> f64 {
 struct CaseRun<'a> {
     case: &'a Case,
     notes: &'a [Note],
+    unit: SizeUnit,
     folder: &'a Folder,
     checkpoints: &'a Checkpoints,
     callbacks: &'a Callbacks<'a>,
@@ -332,30 +333,31 @@ impl CaseRun<'_> {
     /// them, then adds the studies and writes the whole.
     fn walk(
         &self,
-        write: impl Fn(&Outcome, &[ReplicateResult]) -> Result<(), RunError>,
-    ) -> Result<Outcome, RunError> {
+        write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
+    ) -> Result<(Outcome, Decision), RunError> {
         let begun = Instant::now();
         let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
         let context = ReplicateContext { callbacks, checkpoints, networks: None };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walks = CaseWalks::walk(self.case, &context).map_err(|error| self.ended(error))?;
-        let outcome =
+        let answer =
             |studies: Studies| results::outcome(self.case, self.notes, &walks, studies, seconds(begun));
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }
-        let mut first = outcome(Studies::default());
+        let mut first = answer(Studies::default());
         if Studies::are_none(self.case) {
             write(&first, &walks.replicates)?;
             return Ok(first);
         }
         // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
         self.checkpoints.flush()?;
-        first.studies_to_come = true;
+        first.0.studies_to_come = true;
         write(&first, &walks.replicates)?;
-        (self.callbacks.on_event)(Event::VerdictStands { outcome: &first, unit: unit_of(self.case) });
+        let (outcome, decision) = &first;
+        (self.callbacks.on_event)(Event::VerdictStands { outcome, decision, unit: self.unit });
         let studies = Studies::walk(self.case, &walks, &context).map_err(|error| self.ended(error))?;
-        let whole = outcome(studies);
+        let whole = answer(studies);
         write(&whole, &walks.replicates)?;
         Ok(whole)
     }

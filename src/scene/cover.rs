@@ -1,7 +1,8 @@
 //! What a scene says of the sheet that is handed in.
 
 use super::About;
-use crate::outcome::record::SheetCover;
+use crate::outcome::quantity::SizeUnit;
+use crate::outcome::record::{AboutPage, SheetCover};
 
 /// Settings of the sheet that are one of a few words, or of the figure: they are not on the cover.
 const NO_COVER: [&str; 2] = ["coarse_left", "units"];
@@ -11,6 +12,12 @@ impl About {
     pub fn texts() -> Vec<String> {
         let of_cover = Self::keys().into_iter().filter(|key| !NO_COVER.contains(&key.name));
         of_cover.map(|key| key.full_name()).collect()
+    }
+
+    /// The page of a run, whose sizes may be multiples of D0F.
+    pub fn page(&self, scale_free: bool) -> AboutPage {
+        let unit = SizeUnit::of(scale_free, self.shows_inches());
+        AboutPage { cover: self.cover(), coarse_left: self.coarse_left == Some(true), unit }
     }
 
     /// The cover of the sheet, without a date where none is stated.

@@ -1,6 +1,5 @@
 //! Rules of practice in the rows of a table.
 
-use std::borrow::Cow;
 use std::ops::Deref;
 
 use super::rule_result::{RuleResult, result_of, without_margin};
@@ -9,13 +8,13 @@ use crate::outcome::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_E
 
 /// A rule in a row of a table, with its result.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ListedRule<'r> {
-    rule: Cow<'r, AppliedRule>,
+pub struct ListedRule {
+    rule: AppliedRule,
     /// Its result.
     pub result: RuleResult,
 }
 
-impl Deref for ListedRule<'_> {
+impl Deref for ListedRule {
     type Target = AppliedRule;
 
     fn deref(&self) -> &AppliedRule {
@@ -25,7 +24,7 @@ impl Deref for ListedRule<'_> {
 
 /// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
 /// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
-pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule<'_>> {
+pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
             |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
@@ -33,9 +32,9 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule<'_>> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    let row = |rule| ListedRule {
+    let row = |rule: &AppliedRule| ListedRule {
         result: result_of(rule),
-        rule: if is_one && rule.id == DESIGN { Cow::Owned(of_dispersive(rule)) } else { Cow::Borrowed(rule) },
+        rule: if is_one && rule.id == DESIGN { of_dispersive(rule) } else { rule.clone() },
     };
     once.map(row).collect()
 }

@@ -11,6 +11,7 @@
 //!   [`ordered()`] brings notes into the order of their table.
 //! - [`PairRules`] are two soils as practice sees them, `batch` many samples, a row each; [`BatchTable`]
 //!   reads them, and [`WalkedBatch`] is them with their walks.
+//! - [`RunFiles`] is the content of the files of a run folder, as values.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made here.
 
 mod answer;
@@ -28,6 +29,7 @@ mod pair;
 mod planned_walk;
 pub mod practice;
 pub mod rule_result;
+mod run_files;
 mod specification;
 mod tested;
 mod walked_batch;
@@ -45,5 +47,6 @@ pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;
 pub use practice::Decision;
+pub use run_files::RunFiles;
 pub use specification::{SpecificationOptions, least_of_band, no_band_between};
 pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};

@@ -208,7 +208,7 @@ impl PairRules {
     }
 
     /// The decision of practice on the pair.
-    pub fn decision(&self) -> Decision<'_> {
+    pub fn decision(&self) -> Decision {
         Decision::new(&self.rules, self.if_dispersive, self.filter.d15_mm)
     }
 }

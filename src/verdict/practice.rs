@@ -14,15 +14,15 @@ use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_ERO
 
 /// Everything that practice decides of a pair by its rules.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Decision<'r> {
+pub struct Decision {
     /// Every rule.
-    pub rules: &'r [AppliedRule],
+    pub rules: Vec<AppliedRule>,
     /// The result of every rule, in their order.
     pub results: Vec<RuleResult>,
     /// Rules as a sheet lists them.
-    pub listed: Vec<ListedRule<'r>>,
+    pub listed: Vec<ListedRule>,
     /// Rules that were made for these soils and are not kept; of retention those by which practice goes.
-    broken: Vec<&'r AppliedRule>,
+    broken: Vec<AppliedRule>,
     /// Where the filter stands.
     pub standing: Standing,
     /// The answer, which is on the condition that the base is not dispersive where the filter would not hold
@@ -39,13 +39,13 @@ pub struct Decision<'r> {
     pub is_beyond_unclear: bool,
     /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
     /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
-    pub boundary: Option<&'r AppliedRule>,
+    pub boundary: Option<AppliedRule>,
     /// What is left of a filter that is too coarse without its finer part.
-    pub washout: Option<Washout<'r>>,
+    pub washout: Option<Washout>,
     /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
-    pub without_margin: Option<&'r AppliedRule>,
+    pub without_margin: Option<AppliedRule>,
     /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
-    pub strictest: Option<(&'r AppliedRule, f64)>,
+    pub strictest: Option<(AppliedRule, f64)>,
     /// Whether the strictest limit may be lower than that and is not known.
     pub is_strictest_open: bool,
     /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
@@ -91,16 +91,16 @@ impl Standing {
     }
 }
 
-impl<'r> Decision<'r> {
+impl Decision {
     /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
     /// `None` where D15F lies in the filter's finest part.
-    pub fn new(rules: &'r [AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
+    pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
         let others = rules.iter().filter(|rule| rule.role != RuleRole::Retention);
         let facts = Self {
-            rules,
+            rules: rules.to_vec(),
             results: rules.iter().map(result_of).collect(),
             listed: listed(rules),
-            broken: retaining(rules).chain(others).filter(|rule| rule.is_broken()).collect(),
+            broken: retaining(rules).chain(others).filter(|rule| rule.is_broken()).cloned().collect(),
             standing: Standing::NoRules,
             headline: None,
             counts_as: None,
@@ -109,9 +109,9 @@ impl<'r> Decision<'r> {
             is_beyond_unclear: is_beyond_unclear(rules),
             boundary: None,
             washout: washout(rules),
-            without_margin: without_margin(rules),
+            without_margin: without_margin(rules).cloned(),
             // A D15F that lies in a finest tail has the limits in mm all the same.
-            strictest: retention(rules, d15f_mm.unwrap_or(1.0)),
+            strictest: retention(rules, d15f_mm.unwrap_or(1.0)).map(|(rule, limit)| (rule.clone(), limit)),
             is_strictest_open: open_retention(rules).is_some(),
             if_dispersive,
             beyond_dispersive: if_dispersive.and_then(|limit| limit.broken_by(rules, d15f_mm)),
@@ -120,7 +120,7 @@ impl<'r> Decision<'r> {
         };
         let facts = Self {
             standing: facts.stand(),
-            boundary: facts.telling_boundary(),
+            boundary: facts.telling_boundary().cloned(),
             is_drainage_unknown: facts.applied(PERMEABILITY).is_some_and(|rule| rule.met.is_none()),
             ..facts
         };
@@ -128,19 +128,19 @@ impl<'r> Decision<'r> {
     }
 
     /// The decision on a pair that was walked: without an answer where its record has none.
-    pub fn recorded(outcome: &'r Outcome) -> Self {
+    pub fn recorded(outcome: &Outcome) -> Self {
         let decided = Self::new(&outcome.rules, outcome.if_dispersive, Some(outcome.inputs.filter.d15_mm));
         Self { headline: outcome.headline.and(decided.headline), ..decided }
     }
 
     /// The rule of this name, where it was made for these soils.
-    pub fn applied(&self, id: &str) -> Option<&'r AppliedRule> {
+    pub fn applied(&self, id: &str) -> Option<&AppliedRule> {
         self.rules.iter().find(|rule| rule.id == id && rule.applies)
     }
 
     /// The rules of a role that were made for these soils and are not kept.
-    pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &'r AppliedRule> {
-        self.broken.iter().copied().filter(move |rule| rule.role == role)
+    pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &AppliedRule> {
+        self.broken.iter().filter(move |rule| rule.role == role)
     }
 
     /// Whether a rule of a role is not kept.
@@ -151,7 +151,7 @@ impl<'r> Decision<'r> {
     fn stand(&self) -> Standing {
         let Some(design) = self.applied(DESIGN) else { return Standing::NoRules };
         // Beyond the limit of design alone, of which Terzaghi's ratio is that of a sand.
-        let is_within_tests = met_of(self.rules, TESTS_NO_EROSION) == Some(true);
+        let is_within_tests = met_of(&self.rules, TESTS_NO_EROSION) == Some(true);
         let is_excused = |rule: &AppliedRule| is_within_tests && [DESIGN, "terzaghi"].contains(&&*rule.id);
         let fails = self.broken(RuleRole::Retention).any(|rule| !is_excused(rule));
         match (design.met, self.open_sieves) {
@@ -193,14 +193,14 @@ impl<'r> Decision<'r> {
             Standing::Met => Some(Verdict::None),
             Standing::Unknown(_) | Standing::Open(_) => Some(Verdict::Undecided),
             Standing::NoMargin | Standing::Unstable => Some(Verdict::Some),
-            Standing::WashedOut if self.washout.as_ref().is_some_and(Washout::continues) => {
+            Standing::WashedOut if self.washout.as_ref().is_some_and(|washout| washout.continues) => {
                 Some(Verdict::Continuing)
             }
             Standing::Fails | Standing::WashedOut => Some(coarse),
         }
     }
 
-    fn telling_boundary(&self) -> Option<&'r AppliedRule> {
+    fn telling_boundary(&self) -> Option<&AppliedRule> {
         let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
         let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
         match self.tests {
@@ -249,7 +249,7 @@ impl<'r> Decision<'r> {
     /// A limit of design (mm) that is not broken and has no margin.
     fn limit_without_margin(&self) -> Option<f64> {
         let design = self.applied(DESIGN)?;
-        design.limit.filter(|_| design.met != Some(false) && has_no_margin(self.rules))
+        design.limit.filter(|_| design.met != Some(false) && has_no_margin(&self.rules))
     }
 }
 

@@ -14,22 +14,22 @@ use crate::outcome::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUI
 
 /// A filter that without the finer part that it may lose is beyond a limit of retention.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Washout<'r> {
+pub struct Washout {
     /// What is left.
     pub left: WithoutFiner,
     /// The criterion by which it is the greatest part that fails.
-    pub by: &'r AppliedRule,
+    pub by: AppliedRule,
     /// The least limit of retention.
     pub least: f64,
     /// Unit of sizes.
     pub unit: RuleUnit,
-    /// The boundary of continuing erosion of tests, where it is beyond that, too.
-    continuing: Option<&'r AppliedRule>,
+    /// Beyond the boundary of continuing erosion of tests, too.
+    pub continues: bool,
 }
 
 /// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
 /// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
-pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
+pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
     let d15f = d15f.unwrap_or(1.0);
@@ -37,9 +37,9 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout<'_>> {
     let (by, left) = lost(&unstable, least)?;
     let boundary = rules.iter().find(|rule| rule.id == TESTS_CONTINUING && rule.applies);
     Some(Washout {
-        continuing: boundary.filter(|rule| rule.limit.is_some_and(|limit| is_beyond(&left, limit))),
+        continues: boundary.and_then(|rule| rule.limit).is_some_and(|limit| is_beyond(&left, limit)),
         left,
-        by,
+        by: by.clone(),
         least,
         unit: rules.iter().find(|rule| rule.id == DESIGN).map_or(RuleUnit::Mm, |rule| rule.unit),
     })
@@ -74,15 +74,10 @@ fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
     if is_unstable { unstable } else { Vec::new() }
 }
 
-impl Washout<'_> {
+impl Washout {
     /// Whether no more of the filter was looked at than may lie loose, so that more may go.
     pub fn is_capped(&self) -> bool {
         self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9)
-    }
-
-    /// Whether what is left is beyond the boundary of continuing erosion of tests.
-    pub fn continues(&self) -> bool {
-        self.continuing.is_some()
     }
 }
 
@@ -130,7 +125,7 @@ pub(crate) mod tests {
         let rules = rules(&GRAVEL_0_32, &REGRADED_TILL);
         let found = washout(&rules).unwrap();
         assert!((found.left.percent - 19.4).abs() < 0.05 && (found.left.d15f - 2.83).abs() < 0.01);
-        assert_eq!((found.by.id.as_str(), found.continues()), (KEZDI, false));
+        assert_eq!((found.by.id.as_str(), found.continues), (KEZDI, false));
         // A folder that is read back says the same.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
         assert_eq!(washout(&read).unwrap().left, found.left);
@@ -141,7 +136,7 @@ pub(crate) mod tests {
     fn the_boundary_of_continuing_erosion_is_said_where_what_is_left_is_beyond_it() {
         let gap = [(0.3, 0.0), (0.36, 15.0), (5.0, 15.0), (12.0, 100.0)];
         let rules = rules(&gap, &[(0.2, 0.0), (0.6, 100.0)]);
-        assert!(washout(&rules).unwrap().continues());
+        assert!(washout(&rules).unwrap().continues);
     }
 
     /// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at

@@ -5,10 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use voidwalk::constrictions::find;
-use voidwalk::outcome::{Recorded, RunFiles};
+use voidwalk::outcome::Recorded;
+use voidwalk::outcome::record::Outcome;
 use voidwalk::report::files::{json_of, rows};
-use voidwalk::report::{self, network_walk_brief, network_walk_page, run_brief, run_page};
+use voidwalk::report::{self, about_page, network_walk_brief, network_walk_page, run_brief, run_page};
 use voidwalk::run::{Callbacks, NetworkWalk, walk_networks};
+use voidwalk::verdict::{Decision, RunFiles};
 use voidwalk::{Gradation, Network};
 
 use crate::folder::Plan;
@@ -33,8 +35,11 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
     Plan::usual().write(folder.path());
     let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
     let (outcome, manifest, scene) = (text("outcome.json"), text("manifest.json"), text("scene.toml"));
+    let parsed: Outcome = json_of(Path::new("outcome.json"), &outcome).unwrap();
     let texts = |recorded| RunFiles {
-        outcome: json_of(Path::new("outcome.json"), &outcome).unwrap(),
+        decision: Decision::recorded(&parsed),
+        outcome: parsed.clone(),
+        about: about_page(Path::new("scene.toml"), &scene, &parsed).unwrap(),
         manifest: json_of(Path::new("manifest.json"), &manifest).unwrap(),
         scene: scene.clone(),
         packing: None,

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voidwalk::outcome::RunFiles;
+use voidwalk::outcome::record::Outcome;
 use voidwalk::report::files::json_of;
 use voidwalk::report::{self as reports, ReportError};
 use voidwalk::run::folder::claim;
 use voidwalk::run::{FolderKind, RunError};
+use voidwalk::verdict::{Decision, RunFiles};
 
 use crate::problem::{of_run, refused};
 use crate::tables::to_recorded;
@@ -44,9 +45,11 @@ pub fn run_page(
     let (recorded, (manifest, scene, packing)) = (to_recorded(tables)?, texts);
     text(py, || {
         let packing = packing.map(|text| json_of(Path::new("inputs/packing.json"), &text)).transpose()?;
-        let outcome = json_of(Path::new("outcome.json"), outcome)?;
+        let outcome: Outcome = json_of(Path::new("outcome.json"), outcome)?;
         let manifest = json_of(Path::new("manifest.json"), &manifest)?;
-        reports::run_page(RunFiles { outcome, manifest, scene, packing, recorded })
+        let about = reports::about_page(Path::new("scene.toml"), &scene, &outcome)?;
+        let decision = Decision::recorded(&outcome);
+        reports::run_page(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
     })
 }
 

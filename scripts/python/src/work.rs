@@ -14,10 +14,10 @@ use std::time::Duration;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use voidwalk::cases::{CaseCallbacks, CaseEvent};
-use voidwalk::outcome::RunFiles;
 use voidwalk::report;
 use voidwalk::run::error::AnyError;
 use voidwalk::run::{Callbacks, Event, Exit, FolderKind, RunError};
+use voidwalk::verdict::RunFiles;
 
 use crate::notes::with_setting;
 use crate::problem::of_run;

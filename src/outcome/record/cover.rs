@@ -2,6 +2,19 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::outcome::quantity::SizeUnit;
+
+/// The page of a run, as its author states it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AboutPage {
+    /// Its cover, without a date where none is stated.
+    pub cover: SheetCover,
+    /// Gradations are drawn with coarse sizes on the left.
+    pub coarse_left: bool,
+    /// The unit of sizes in words and on the first sheet.
+    pub unit: SizeUnit,
+}
+
 /// The cover of a sheet, as its author states it.
 ///
 /// ```

@@ -25,7 +25,7 @@ mod voids;
 use serde::{Deserialize, Serialize};
 
 pub use answer::{Model, ShortOf, Statistic, Stopping, Verdict};
-pub use cover::SheetCover;
+pub use cover::{AboutPage, SheetCover};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,

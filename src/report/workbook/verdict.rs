@@ -13,12 +13,11 @@ use crate::words::{first_lines, sentence};
 
 /// Its sheets.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
-    let outcome = &of.outcome;
-    let decision = Decision::recorded(outcome);
+    let (outcome, decision) = (&of.outcome, &of.decision);
     vec![
-        verdict(outcome, &decision),
+        verdict(outcome, decision),
         inputs(outcome),
-        rules(&decision),
+        rules(decision),
         runs(outcome),
         gradations(outcome),
         provenance(of),

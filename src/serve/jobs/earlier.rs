@@ -12,7 +12,7 @@ use crate::serve::batches::of_batch;
 use crate::serve::job_file::JobFile;
 use crate::store::format::from_json;
 use crate::store::read_whole;
-use crate::verdict::WalkedBatch;
+use crate::verdict::{Decision, WalkedBatch};
 
 /// The last number of a job.
 pub const LAST: usize = 999_999;
@@ -59,7 +59,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let done = match FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false)) {
         Some(FolderKind::Run) => record(FolderKind::Run)
             .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
-            .map(|outcome| of_run(&outcome)),
+            .map(|outcome| of_run(&outcome, &Decision::recorded(&outcome))),
         // Without its page it is not whole, and the same call writes it.
         Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
             .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 
 use crate::cases::{BatchPlan, batch};
 use crate::cases::{CaseCallbacks, CaseEvent, CaseOptions, CasePart};
-use crate::outcome::RunFiles;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
@@ -19,7 +18,7 @@ use crate::run::{self, FolderKind, PrepareOptions, RunError, RunOptions};
 use crate::scene::Scene;
 use crate::serve::batches::of_batch;
 use crate::serve::live::Live;
-use crate::verdict::Decision;
+use crate::verdict::{Decision, RunFiles};
 use crate::words::{first_lines, sentence};
 
 /// What is done with results that are whole.
@@ -94,10 +93,11 @@ impl WorkContext {
             command: self.command.clone(),
         };
         match work {
-            Work::Judge(scene) => {
-                run::walk_scene((**scene).clone(), &options, &callbacks).map(|run| of_run(&run.outcome))
+            Work::Judge(scene) => run::walk_scene((**scene).clone(), &options, &callbacks)
+                .map(|run| of_run(&run.outcome, &run.decision)),
+            Work::Resume => {
+                run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome, &run.decision))
             }
-            Work::Resume => run::resume(folder, &options, &callbacks).map(|run| of_run(&run.outcome)),
             Work::Batch(plan) => {
                 // Outcomes are read before the page is kept waiting.
                 let rows = plan.so_far(folder);
@@ -141,9 +141,9 @@ fn often() -> CheckpointInterval {
 }
 
 /// What the page shows of an outcome.
-pub fn of_run(outcome: &Outcome) -> Value {
+pub fn of_run(outcome: &Outcome, decision: &Decision) -> Value {
     let unit = SizeUnit::of(outcome.inputs.scale_free, false);
-    let lines = first_lines(outcome, &Decision::recorded(outcome), unit);
+    let lines = first_lines(outcome, decision, unit);
     json!({
         "lines": lines.iter().map(|(line, words)| (line.name(), words)).collect::<Vec<_>>(),
         "model": outcome.model.class.words(),
