@@ -96,7 +96,12 @@ const SIEVES: [&str; 2] = ["base.sieve", "filter.sieve"];
 
 /// Reads the files of a scene, and remembers them.
 #[derive(Default)]
-pub struct Files(pub Vec<Input>);
+pub struct Files {
+    /// Files that were read, in their order.
+    pub inputs: Vec<Input>,
+    /// Files that were read before, for the same settings, and are not read again.
+    pub known: Vec<Input>,
+}
 
 impl Files {
     /// Reads a regular file once, and keeps what was read.
@@ -109,6 +114,11 @@ impl Files {
         scene: &str,
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
+        if let Some(at) = self.known.iter().position(|input| input.setting == setting) {
+            let known = self.known.swap_remove(at);
+            self.inputs.push(known);
+            return Ok((file, &self.inputs[self.inputs.len() - 1].bytes));
+        }
         // A soil of the built-in scene was named on the command line, as a rule without its setting.
         let is_plain = scene == BUILT_IN_NAME && SIEVES.contains(&setting);
         let by = if is_plain { String::new() } else { format!(", named by {setting}") };
@@ -119,7 +129,7 @@ impl Files {
             return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
         };
         self.keep(setting, path, kept_as, bytes)?;
-        Ok((file, &self.0[self.0.len() - 1].bytes))
+        Ok((file, &self.inputs[self.inputs.len() - 1].bytes))
     }
 
     fn keep(
@@ -131,7 +141,7 @@ impl Files {
     ) -> Result<(), CaseError> {
         debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
         let (name, kept_as) = (first_name(path, None)?, format!("{INPUTS}/{kept_as}"));
-        self.0.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
+        self.inputs.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
         Ok(())
     }
 
@@ -185,7 +195,7 @@ impl Files {
         let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE, scene)?;
         let read = Soil::one(&name, bytes, soil.as_deref())?;
         let gradation = read.gradation(d0_mm)?;
-        if let Some(input) = self.0.last_mut() {
+        if let Some(input) = self.inputs.last_mut() {
             input.name = first_name(&path, soil.as_deref())?;
             input.soil = soil;
             input.notes = read.notes().to_vec();
@@ -204,7 +214,7 @@ impl Files {
             self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
         let read = Packing::parse_as(&name, bytes, &scene.network.read_options());
         let (packing, notes) = read.map_err(PackedError::from)?;
-        if let Some(input) = self.0.last_mut() {
+        if let Some(input) = self.inputs.last_mut() {
             input.notes = notes;
         }
         Ok((name, packing))
@@ -212,7 +222,7 @@ impl Files {
 
     /// Says more of the file that was read last.
     pub fn note(&mut self, note: String) {
-        if let Some(input) = self.0.last_mut() {
+        if let Some(input) = self.inputs.last_mut() {
             input.notes.push(note);
         }
     }

@@ -99,15 +99,19 @@ impl Case {
     /// # Errors
     /// A file that is refused, or numbers that clash.
     pub fn new(scene: Scene) -> Result<Self, CaseError> {
-        Self::with_packed(scene, None)
+        Self::with_graph(scene, None, None, Vec::new())
     }
 
-    /// The same for a scene whose filter has been packed.
+    /// The same for a scene whose filter has been packed, and of which these files were read before.
     ///
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
-    pub fn with_packed(scene: Scene, packed: Option<PackedFilter>) -> Result<Self, CaseError> {
-        Self::with_graph(scene, packed, None)
+    pub fn with_packed(
+        scene: Scene,
+        packed: Option<PackedFilter>,
+        known: Vec<Input>,
+    ) -> Result<Self, CaseError> {
+        Self::with_graph(scene, packed, None, known)
     }
 
     /// The same with the voids of its packing, where they have been measured.
@@ -115,8 +119,9 @@ impl Case {
         mut scene: Scene,
         packed: Option<PackedFilter>,
         measured: Option<Arc<GraphPacking>>,
+        known: Vec<Input>,
     ) -> Result<Self, CaseError> {
-        let mut files = Files::default();
+        let mut files = Files { known, ..Files::default() };
         let stated = StatedFilter::read(&scene, packed, measured, &mut files)?;
         let fixed = FixedNetwork::read(&scene, &stated, &mut files)?;
         set_layers_of_thickness(&mut scene, &stated.gradation)?;
@@ -142,7 +147,7 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
-        let (inputs, memory, placement) = (files.0, u64::MAX, Placement::Memory);
+        let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
         let case = Self { scene, filter, base, network, supply, inputs, memory, placement };
         case.check_clogging()?;
         Ok(case)

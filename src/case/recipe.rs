@@ -55,7 +55,7 @@ impl PackingPlan {
             aspect: recipe.aspect,
             compression: recipe.compression.clone(),
             merge_overlap: recipe.merge_overlap,
-            inputs: files.0,
+            inputs: files.inputs,
             gradation,
         };
         plan.take_part(recipe)?;

@@ -41,7 +41,7 @@ impl Case {
     pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
         let base = CaseBase::read(scene, &self.filter, &mut files)?;
-        Ok(StatedBase { scene: scene.clone(), base, inputs: files.0 })
+        Ok(StatedBase { scene: scene.clone(), base, inputs: files.inputs })
     }
 
     /// The same filter and network against a base of this gradation, which is in this filter's own unit;

@@ -65,13 +65,9 @@ impl Case {
             None => scene.network.set_layers(parts),
         }
         let graph = self.network.packing().map(|packing| packing.graph.clone());
-        let mut other = Self::with_graph(scene, self.filter.packed.clone(), graph)?;
-        if self.network.packing().is_some() {
-            // What is not read again is kept all the same.
-            other.inputs = self.inputs.clone();
-        }
-        (other.memory, other.placement) = (self.memory, self.placement.clone());
-        Ok(other)
+        let (packed, inputs) = (self.filter.packed.clone(), self.inputs.clone());
+        let other = Self::with_graph(scene, packed, graph, inputs.clone())?;
+        Ok(Self { inputs, memory: self.memory, placement: self.placement.clone(), ..other })
     }
 }
 
@@ -105,6 +101,18 @@ mod tests {
         assert_eq!((given.supply.n_base, given.network.layers), (1000, 30));
         let capped = case(&["base.cap=5000"]).of_thickness(2.0).unwrap();
         assert_eq!((capped.supply.n_base, capped.supply.capped), (5000, true));
+    }
+
+    #[test]
+    fn another_thickness_reads_no_file_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let sheet = folder.path().join("base.csv");
+        std::fs::write(&sheet, "size_mm,percent\n0.1,0\n0.3,100\n").unwrap();
+        let case = case(&[&format!("base.sieve={}", sheet.display()), "filter.d0_mm=1.9"]);
+        std::fs::remove_file(&sheet).unwrap();
+        let thick = case.of_thickness(2.0).unwrap();
+        assert_eq!(thick.input_files(), case.input_files());
+        assert_eq!(thick.base.gradation, case.base.gradation);
     }
 
     #[test]

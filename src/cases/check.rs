@@ -88,15 +88,13 @@ pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, R
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
     let look = |planned: &PlannedCase| -> Result<(Case, Option<PackingPlan>), RunError> {
-        let (draft, guessed) = Draft::new(planned.scene.clone())?;
-        let made = match &draft.packing {
-            Some(packing) => options.packed(packing)?,
-            None => None,
-        };
-        let mut case = if made.is_some() { draft.case(made)? } else { guessed };
+        let draft = Draft::new(planned.scene.clone())?;
+        let packing = draft.packing.clone();
+        let made = packing.as_ref().map(|packing| options.packed(packing)).transpose()?.flatten();
+        let mut case = draft.finished(made)?;
         case.place(&limits, workers, &options.out)?;
         have_networks(&case, &Callbacks::default())?;
-        Ok((case, draft.packing))
+        Ok((case, packing))
     };
     let of = |planned: &PlannedCase| {
         let looked = look(planned);

@@ -116,7 +116,7 @@ impl<'a> Drafts<'a> {
     /// Works every case out, with guesses at filters that are to be packed.
     pub fn new(wanted: Vec<&'a PlannedCase>) -> Result<Self, RunError> {
         let draft = |planned: &'a PlannedCase| match Draft::new(planned.scene.clone()) {
-            Ok((draft, _)) => Ok((planned, draft)),
+            Ok(draft) => Ok((planned, draft)),
             Err(error) => Err(RunError::Refused(format!("case {}: {error}", planned.name))),
         };
         Ok(Self(wanted.into_iter().map(draft).collect::<Result<_, _>>()?))
@@ -138,7 +138,7 @@ impl<'a> Drafts<'a> {
     /// # Errors
     /// It was stopped.
     pub fn finish(
-        &self,
+        self,
         mut filter: impl FnMut(&PackingPlan) -> Result<PackedFilter, RunError>,
         mut place: impl FnMut(&mut Case) -> Result<(), RunError>,
     ) -> Result<(Vec<PreparedCase<'a>>, Vec<FailedCase>), RunError> {
@@ -153,9 +153,9 @@ impl<'a> Drafts<'a> {
             }
         }
         let (mut cases, mut failed) = (Vec::new(), Vec::new());
-        for (planned, draft) in &self.0 {
+        for (planned, draft) in self.0 {
             let filter = draft.packing.as_ref().map(|plan| filters[&key(plan)].clone()).transpose();
-            let case = filter.and_then(|filter| draft.case(filter).map_err(|e| e.to_string()));
+            let case = filter.and_then(|filter| draft.finished(filter).map_err(|e| e.to_string()));
             match case.and_then(|mut case| place(&mut case).map(|()| case).map_err(|e| e.to_string())) {
                 Ok(case) => cases.push(PreparedCase::new(planned, case)),
                 Err(problem) => failed.push(FailedCase { case: planned.name.clone(), problem }),

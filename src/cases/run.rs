@@ -167,7 +167,7 @@ pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>
             (has_no_room, FailedCase { case: planned.name.clone(), problem: problem.to_string() })
         };
         let mut case = match Draft::new(planned.scene.clone()) {
-            Ok((_, case)) => case,
+            Ok(draft) => draft.case,
             Err(problem) => return Some(failed(false, problem)),
         };
         match case.place(&limits, workers, &options.out) {
@@ -220,7 +220,7 @@ pub(crate) fn run_around<R>(
     let pool = threads(options.threads)?;
     let threads = pool.current_num_threads();
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
-    let (out, packings) = (folder.path(), options.packings()?);
+    let (out, packings, needs_none) = (folder.path(), options.packings()?, drafts.packings().is_empty());
     let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
     let (limits, shared) = rooms(prepare.limits(out), share_networks);
     let mut has_room = true;
@@ -238,7 +238,7 @@ pub(crate) fn run_around<R>(
         (false, false) => Err(RunError::Refused(named(&failed))),
     };
     let walk = Box::new(|| {
-        if cases.is_empty() && drafts.packings().is_empty() {
+        if cases.is_empty() && needs_none {
             return Err(RunError::Refused(named(&failed)));
         }
         let mut failed = failed;

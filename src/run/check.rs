@@ -96,19 +96,17 @@ pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> 
 }
 
 fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
-    let (draft, mut case) = Draft::new(scene)?;
-    let mut packing = None;
+    let draft = Draft::new(scene)?;
+    let (mut packing, mut filter) = (None, None);
     if let Some(plan) = &draft.packing {
         let mut folder = options.packings.join(plan.folder_name());
-        let made = PackedFilter::find(&options.packings, plan)?;
-        if let Some(other) = made.as_ref().and_then(|made| made.same_shape.as_ref()) {
+        filter = PackedFilter::find(&options.packings, plan)?;
+        if let Some(other) = filter.as_ref().and_then(|made| made.same_shape.as_ref()) {
             folder = other.folder.clone().into();
         }
-        packing = Some(PackingCheck::new(plan, folder, made.is_some()));
-        if made.is_some() {
-            case = draft.case(made)?;
-        }
+        packing = Some(PackingCheck::new(plan, folder, filter.is_some()));
     }
+    let mut case = draft.finished(filter)?;
     let here = Path::new(".");
     let threads = rayon::current_num_threads() as u64;
     let refusal = case.place(&options.limits(here), threads, here).err();

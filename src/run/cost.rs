@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn a_packing_takes_what_the_model_says_and_here_as_many_times_that_as_the_machine_is_slower() {
         let text = b"[filter]\ncu = 1.5\nfriction = 0.7\n[base]\ncu = 1.5\nd85_at_dc = 5\n";
-        let (draft, _) = Draft::new(Scene::parse(text, "s.toml", &[]).unwrap()).unwrap();
+        let draft = Draft::new(Scene::parse(text, "s.toml", &[]).unwrap()).unwrap();
         let plan = draft.packing.unwrap();
         let (seconds, grains) = (plan.core_seconds(), plan.compression.grains as f64);
         let expected = grains * (12_000.0 * 1.8 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);

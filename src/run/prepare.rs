@@ -44,28 +44,34 @@ impl PrepareOptions {
 pub struct Draft {
     /// The scene.
     scene: Scene,
+    /// The case, with a guess at a filter that is to be packed.
+    pub case: Case,
     /// What is to be packed for it.
     pub packing: Option<PackingPlan>,
 }
 
 impl Draft {
-    /// Works a scene out, with a guess at a filter that is to be packed; gives the case with that guess, too.
+    /// Works a scene out, with a guess at a filter that is to be packed.
     ///
     /// # Errors
     /// Everything that is wrong with the scene.
-    pub fn new(scene: Scene) -> Result<(Self, Case), RunError> {
+    pub fn new(scene: Scene) -> Result<Self, RunError> {
         let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
-        let case = Case::with_packed(scene.clone(), placeholder.map_err(CaseError::from)?)?;
-        Ok((Self { scene, packing }, case))
+        let known = packing.as_ref().map_or(Vec::new(), |packing| packing.inputs.clone());
+        let case = Case::with_packed(scene.clone(), placeholder.map_err(CaseError::from)?, known)?;
+        Ok(Self { scene, case, packing })
     }
 
-    /// The case, with the filter that its packing has become.
+    /// The case, with the filter that its packing has become, where it needs one; no file is read again.
     ///
     /// # Errors
     /// What the packing brought to light.
-    pub fn case(&self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
-        Ok(Case::with_packed(self.scene.clone(), filter)?)
+    pub fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
+        match filter {
+            Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
+            None => Ok(self.case),
+        }
     }
 }
 
@@ -108,14 +114,18 @@ fn in_order<F>(
     callbacks: &Callbacks,
 ) -> Result<(Case, F), RunError> {
     let (limits, threads) = (options.limits(wanted), rayon::current_num_threads() as u64);
-    let (draft, mut case) = Draft::new(scene)?;
-    case.place(&limits, threads, wanted)?;
-    have_networks(&case, callbacks)?;
+    let mut draft = Draft::new(scene)?;
+    draft.case.place(&limits, threads, wanted)?;
+    have_networks(&draft.case, callbacks)?;
     let (claimed, folder) = claim()?;
-    if let Some(packing) = &draft.packing {
-        case = draft.case(Some(provide(packing, &options.packings, callbacks)?))?;
+    let provided = |packing| provide(packing, &options.packings, callbacks);
+    let filter = draft.packing.as_ref().map(provided).transpose()?;
+    let is_packed = filter.is_some();
+    let mut case = draft.finished(filter)?;
+    match is_packed {
+        true => case.place(&limits, threads, &folder)?,
+        false => case.placement = case.placement.within(&folder),
     }
-    case.place(&limits, threads, &folder)?;
     Ok((case, claimed))
 }
 

@@ -23,6 +23,16 @@ pub enum Placement {
     Mapped(PathBuf),
 }
 
+impl Placement {
+    /// This placement, with `folder` for its files.
+    pub fn within(self, folder: &Path) -> Self {
+        match self {
+            Self::Memory => Self::Memory,
+            Self::Mapped(_) => Self::Mapped(folder.to_owned()),
+        }
+    }
+}
+
 /// A column of plain values that is used as a slice.
 ///
 /// The simulation sees slices only, so that a column lives in memory or in a mapped file without a

@@ -68,7 +68,8 @@ pub fn write_job_scripts(
     let out = claim(&options.out, FolderKind::Campaign, false)?;
     let processors = options.threads.map_or(PROCESSORS, |threads| threads as u64);
     let (packings, packing_needs) = packings(&drafts, options)?;
-    let cases = open_cases(&drafts, options, out.path())?;
+    let measuring_s = if drafts.packings().is_empty() { 0.0 } else { cost::MEASURING_S };
+    let cases = open_cases(drafts, options, out.path())?;
     let folder = out.path().join(FOLDER);
     let done = plan.cases.len() - cases.len();
     let nothing = TaskNeeds { seconds: 0.0, bytes: 0 };
@@ -87,7 +88,6 @@ pub fn write_job_scripts(
     let seconds: Vec<f64> = cases.iter().map(|case| cost::seconds_on(&case.case, processors)).collect();
     let ten_minutes = || (seconds.iter().sum::<f64>() / TASK_S).ceil() as usize;
     let bundles = tasks::bundle(&seconds, jobs.tasks.unwrap_or_else(ten_minutes));
-    let measuring_s = if drafts.packings().is_empty() { 0.0 } else { cost::MEASURING_S };
     for bundle in &bundles {
         let of_bundle: Vec<&Case> = bundle.iter().map(|case| &cases[*case].case).collect();
         written.walk = written.walk.or_more(TaskNeeds {
@@ -135,7 +135,7 @@ fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds)
 
 /// The cases that are not done, with guesses at filters that are still to be packed.
 fn open_cases<'a>(
-    drafts: &Drafts<'a>,
+    drafts: Drafts<'a>,
     options: &CaseOptions,
     out: &Path,
 ) -> Result<Vec<PreparedCase<'a>>, RunError> {

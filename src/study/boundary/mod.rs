@@ -105,7 +105,8 @@ fn drafts(options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Vec<DraftedRow
 
 impl DraftedRow {
     fn new(wanted: Wanted, options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Self, RunError> {
-        let (draft, mut case) = Draft::new(wanted.of_filter.clone())?;
+        let mut draft = Draft::new(wanted.of_filter.clone())?;
+        let case = &mut draft.case;
         let stated = case.base_of(&wanted.scene)?;
         let refuse =
             |problem: String| Err(RunError::from(crate::case::CaseError::from(wanted.scene.clash(problem))));
@@ -134,9 +135,9 @@ impl DraftedRow {
         }
         let base = stated.base.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
         case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
-        have_networks(&case, &Callbacks::default())?;
+        have_networks(case, &Callbacks::default())?;
         let row = Row {
-            case,
+            case: case.clone(),
             wanted,
             stated,
             base,
@@ -160,7 +161,7 @@ impl DraftedRow {
             Some(plan) => Some(provide(plan, &options.prepare.packings, callbacks)?),
             None => None,
         };
-        Ok(Row { case: self.draft.case(packed)?, ..self.row })
+        Ok(Row { case: self.draft.finished(packed)?, ..self.row })
     }
 }
 
