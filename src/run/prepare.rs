@@ -14,7 +14,7 @@ use super::pack::{provide, with_time};
 use super::replicates::have_networks;
 use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
 use crate::scene::Scene;
-use crate::store::{Folder, write_whole};
+use crate::store::write_whole;
 
 /// How a scene is prepared; no setting changes a result.
 #[derive(Clone, Debug)]
@@ -83,50 +83,33 @@ impl Draft {
 /// What is wrong with the scene, before any work; later what happens to the packing.
 pub fn prepare(scene: Scene, options: &PrepareOptions, callbacks: &Callbacks) -> Result<Case, RunError> {
     let here = Path::new(".");
-    let claim = || Ok(((), here.to_owned()));
-    on_threads(options.threads, || Ok(in_order(scene, options, here, claim, callbacks)?.0))
+    on_threads(options.threads, || Ok(prepare_into(scene, options, here, || Ok(here), callbacks)?.0))
 }
 
 /// Prepares a scene for a folder that is claimed as soon as the scene is found sound, before any work:
 /// `claim` does it, and `wanted` is where the folder is going to be. To be called on the threads that are to
 /// walk.
-pub(crate) fn prepare_into(
+pub(crate) fn prepare_into<F: AsRef<Path>>(
     scene: Scene,
     options: &PrepareOptions,
     wanted: &Path,
-    claim: impl FnOnce() -> Result<Folder, RunError>,
-    callbacks: &Callbacks,
-) -> Result<(Case, Folder), RunError> {
-    let claim = || {
-        let folder = claim()?;
-        let path = folder.path().to_owned();
-        Ok((folder, path))
-    };
-    in_order(scene, options, wanted, claim, callbacks)
-}
-
-/// The one sequence.
-fn in_order<F>(
-    scene: Scene,
-    options: &PrepareOptions,
-    wanted: &Path,
-    claim: impl FnOnce() -> Result<(F, PathBuf), RunError>,
+    claim: impl FnOnce() -> Result<F, RunError>,
     callbacks: &Callbacks,
 ) -> Result<(Case, F), RunError> {
     let (limits, threads) = (options.limits(wanted), rayon::current_num_threads() as u64);
     let mut draft = Draft::new(scene)?;
     draft.case.place(&limits, threads, wanted)?;
     have_networks(&draft.case, callbacks)?;
-    let (claimed, folder) = claim()?;
+    let folder = claim()?;
     let provided = |packing| provide(packing, &options.packings, callbacks);
     let filter = draft.packing.as_ref().map(provided).transpose()?;
     let is_packed = filter.is_some();
     let mut case = draft.finished(filter)?;
     match is_packed {
-        true => case.place(&limits, threads, &folder)?,
-        false => case.placement = case.placement.within(&folder),
+        true => case.place(&limits, threads, folder.as_ref())?,
+        false => case.placement = case.placement.within(folder.as_ref()),
     }
-    Ok((case, claimed))
+    Ok((case, folder))
 }
 
 /// Writes the built-in scene, commented, as a start for another.

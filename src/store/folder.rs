@@ -36,6 +36,12 @@ pub struct Folder {
     _lock: Lock,
 }
 
+impl AsRef<Path> for Folder {
+    fn as_ref(&self) -> &Path {
+        self.path()
+    }
+}
+
 impl Folder {
     /// Makes the folder where it is missing, and locks it.
     ///
