@@ -5,8 +5,8 @@ use super::error::CaseError;
 use super::files::Files;
 use super::filter::CaseFilter;
 use crate::gradation::Gradation;
-use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene};
-use crate::verdict::Mistake;
+use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene, SceneError};
+use crate::verdict::{Mistake, MistakeKind};
 
 /// A base, worked out.
 #[derive(Clone, Debug)]
@@ -48,12 +48,27 @@ impl CaseBase {
         self.regraded_from.as_ref().map_or(&self.gradation, |(given, _)| given)
     }
 
-    /// What is wrong with its table: a sieve table alone can be in another unit, or the filter's. Tables that
-    /// a user named are looked at before ([`crate::scene::refuse_exchanged`]).
-    pub(super) fn mistake(&self, scene: &Scene, filter: &CaseFilter) -> Option<Mistake> {
-        match scene.base.gradation() {
-            BaseGradation::Sieve(..) => Mistake::find(self.as_given(), &filter.gradation, false),
-            _ => None,
+    /// The mistake that two soils look like and are not refused for. A sieve table is refused whose sizes
+    /// must be in another unit; of a pair that is guarded also one that must be exchanged.
+    ///
+    /// # Errors
+    /// The two are refused.
+    pub(super) fn mistake(
+        &self,
+        scene: &Scene,
+        filter: &Gradation,
+        scale_free: bool,
+    ) -> Result<Option<Mistake>, CaseError> {
+        let found = Mistake::find(self.as_given(), filter, scale_free);
+        match (found, &scene.base.sieve, &scene.filter.sieve) {
+            (Some(mistake), Some(base), Some(filter)) if scene.is_guarded && mistake.is_refused() => {
+                let file = format!("base {}, filter {}", base.display(), filter.display());
+                Err(SceneError::Clash { file, problem: mistake.refusal() }.into())
+            }
+            (Some(mistake), Some(_), _) if mistake.kind == MistakeKind::Unit => {
+                Err(scene.clash(mistake.sentence).into())
+            }
+            (found, ..) => Ok(found),
         }
     }
 }
@@ -83,4 +98,37 @@ fn given(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Gradat
         }
     };
     Ok(Gradation::linear_from_dx(85.0, d85_mm, cu)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::case::Case;
+    use crate::scene::{Scene, TableOptions};
+
+    #[test]
+    fn two_tables_that_are_exchanged_are_refused_unless_they_are_as_given() {
+        let root = tempfile::tempdir().unwrap();
+        let table = |name: &str, rows: &str| {
+            let path = root.path().join(name);
+            std::fs::write(&path, format!("size_mm,percent\n{rows}")).unwrap();
+            path
+        };
+        let base = table("base.csv", "0.1,0\n0.3,100\n");
+        let filter = table("filter.csv", "0.5,0\n2,100\n");
+        let mistake = |base: &Path, filter: &Path, as_given| {
+            let changes = vec!["base.n_base=1000".to_owned()];
+            let options = TableOptions { as_given, changes, ..TableOptions::default() };
+            let case = Case::new(Scene::of_tables(base, filter, &options).unwrap());
+            case.map(|case| case.mistake.map(|note| note.id())).map_err(|error| error.to_string())
+        };
+        assert_eq!(mistake(&base, &filter, false), Ok(None));
+        assert_eq!(mistake(&filter, &base, true), Ok(Some("files_exchanged".into())));
+        let said = mistake(&filter, &base, false).unwrap_err();
+        for words in ["filter.csv, filter ", "are the two files exchanged?", "exchange the two", "--as-given"]
+        {
+            assert!(said.contains(words), "{said}");
+        }
+    }
 }

@@ -8,7 +8,7 @@ use super::packed_filter::{GUESSED_GRAINS_PER_VOID, PackedFilter};
 use super::stated_filter::StatedFilter;
 use crate::constrictions::{Curve, CurveUnit, ShippedFilter};
 use crate::gradation::Gradation;
-use crate::scene::{Amount, Scene};
+use crate::scene::{Amount, BaseGradation, D85, FilterGradation, Scene};
 
 /// A filter, worked out.
 #[derive(Clone)]
@@ -88,6 +88,17 @@ impl CaseFilter {
             library,
             guessed_density,
         })
+    }
+
+    /// True where lengths of a scene are in units of the smallest filter grain, if no network has a size.
+    pub(super) fn is_scale_free(&self, scene: &Scene) -> bool {
+        let is_without_packing = self.library.is_some() || self.guessed_density.is_some();
+        matches!(scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
+            && (self.shipped.is_some() || self.packed.is_some() || is_without_packing)
+            && matches!(
+                scene.base.gradation(),
+                BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
+            )
     }
 
     /// The same filter with all sizes `factor` times as large, and its own curve alone.

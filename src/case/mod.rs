@@ -56,10 +56,9 @@ use void_graph::GraphPacking;
 
 use crate::gradation::Gradation;
 use crate::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError};
-use crate::outcome::record::Ratios;
+use crate::outcome::record::{Note, Ratios};
 use crate::scene::{NetworkSource, Scene};
 use crate::store::Placement;
-use crate::verdict::MistakeKind;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -81,6 +80,8 @@ pub struct Case {
     pub filter: CaseFilter,
     /// The base.
     pub base: CaseBase,
+    /// The note that base and filter look exchanged, or are in different units.
+    pub mistake: Option<Note>,
     /// The network that the filter makes.
     pub network: CaseNetwork,
     /// The particles that the base is walked as.
@@ -102,7 +103,7 @@ impl Case {
         Self::with_graph(scene, None, None, Vec::new())
     }
 
-    /// The same for a scene whose filter has been packed, and of which these files were read before.
+    /// The case of a scene whose filter has been packed, and of which these files were read before.
     ///
     /// # Errors
     /// As [`Case::new`]; the scene's filter is to be packed and has not been.
@@ -127,16 +128,14 @@ impl Case {
         set_layers_of_thickness(&mut scene, &stated.gradation)?;
         let filter = CaseFilter::new(&scene, stated, fixed.as_ref())?;
         let base = CaseBase::read(&scene, &filter, &mut files)?;
-        let mistake = base.mistake(&scene, &filter);
-        if let Some(mistake) = mistake.as_ref().filter(|mistake| mistake.kind == MistakeKind::Unit) {
-            return Err(scene.clash(&mistake.sentence).into());
-        }
+        let scale_free = fixed.is_none() && filter.is_scale_free(&scene);
+        let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;
         let network = CaseNetwork::new(&scene, &filter, fixed)?;
         let is_packed = filter.packed.as_ref().is_some_and(|packed| packed.files.is_some());
         let against = Against { scene: &scene, filter: &filter, voids: network.voids, is_packed };
-        let supply = against.supply(&base.gradation).map_err(|error| match mistake {
-            Some(mistake) => CaseError::from(scene.clash(mistake.sentence)),
-            None => error,
+        let supply = against.supply(&base.gradation).map_err(|error| match &mistake {
+            Some(mistake) if scene.base.sieve.is_some() => scene.clash(&mistake.sentence).into(),
+            _ => error,
         })?;
         for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", &base.gradation, 85.0)] {
             if soil.d(percent).is_none() {
@@ -148,7 +147,8 @@ impl Case {
             }
         }
         let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
-        let case = Self { scene, filter, base, network, supply, inputs, memory, placement };
+        let mistake = mistake.map(|mistake| mistake.note);
+        let case = Self { scene, filter, base, mistake, network, supply, inputs, memory, placement };
         case.check_clogging()?;
         Ok(case)
     }

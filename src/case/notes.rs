@@ -28,6 +28,7 @@ impl Case {
     /// Notes before the walk, but for what the walk itself will find.
     pub fn notes(&self) -> Vec<Note> {
         let mut all = self.planned_walk().notes();
+        all.extend(self.mistake.clone());
         all.extend((self.scene.base.dispersive == Some(true)).then_some(Note::DispersiveBase {}));
         all.extend(self.scene.filter.joint_mm.map(|width_mm| Note::OpenJoint { width_mm }));
         all.extend(self.too_thick());

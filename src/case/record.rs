@@ -5,7 +5,7 @@ use crate::constrictions::ShippedFilter;
 use crate::gradation::{CurvePoint, Gradation};
 use crate::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
 use crate::outcome::record::{self, AboutPage, InputFile};
-use crate::scene::{BaseGradation, CurveSource, D85, FilterGradation, NetworkSource};
+use crate::scene::{BaseGradation, CurveSource, FilterGradation, NetworkSource};
 
 impl Case {
     /// The page of its run.
@@ -231,20 +231,9 @@ impl Case {
         self.filter.shipped.filter(|_| self.network.fixed.is_none())
     }
 
-    /// Whether the curve is from the library, or a guess.
-    fn is_without_packing(&self) -> bool {
-        self.filter.library.is_some() || self.filter.guessed_density.is_some()
-    }
-
     /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
-        matches!(self.scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
-            && (self.filter.shipped.is_some() || self.filter.packed.is_some() || self.is_without_packing())
-            && self.network.fixed.is_none()
-            && matches!(
-                self.scene.base.gradation(),
-                BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } | BaseGradation::Single(_)
-            )
+        self.network.fixed.is_none() && self.filter.is_scale_free(&self.scene)
     }
 }
 

@@ -41,6 +41,9 @@ impl Case {
     pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
         let base = CaseBase::read(scene, &self.filter, &mut files)?;
+        if scene.is_guarded && scene.filter.sieve.is_some() {
+            base.mistake(scene, &self.filter.gradation, false)?;
+        }
         Ok(StatedBase { scene: scene.clone(), base, inputs: files.inputs })
     }
 

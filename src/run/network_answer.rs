@@ -9,7 +9,7 @@ use crate::network::Network;
 use crate::outcome::record::Note;
 use crate::outcome::record::Statistic;
 use crate::outcome::rules::{self, RuleInputs};
-use crate::verdict::{Decision, PlannedWalk, ordered};
+use crate::verdict::{Decision, Mistake, PlannedWalk, ordered};
 
 impl NetworkOutcome {
     /// Notes on the class, on so many networks of which this is the first.
@@ -52,7 +52,9 @@ impl NetworkWalk {
             increments: self.increments,
             replicates,
         };
-        planned.notes().into_iter().chain(self.amount(network)).collect()
+        let mistake = filter.and_then(|filter| Mistake::find(&self.base, &filter.gradation, false));
+        let mistake = mistake.map(|mistake| mistake.note);
+        planned.notes().into_iter().chain(mistake).chain(self.amount(network)).collect()
     }
 
     /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody

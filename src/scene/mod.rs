@@ -29,7 +29,7 @@ pub use meaning::{
 };
 pub use packing_keys::PackingKeys;
 pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
-pub use tables::{TableOptions, keep_soils, quoted, refuse_exchanged};
+pub use tables::{TableOptions, keep_soils, quoted};
 pub use values::{CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits};
 
 use crate::network::ExitRule;
@@ -54,6 +54,9 @@ pub struct Scene {
     /// What errors call it.
     #[serde(skip)]
     pub name: String,
+    /// Base and filter were named as a pair, and are refused where they look exchanged.
+    #[serde(skip)]
+    pub is_guarded: bool,
     /// Seed, engine, replicates and the like: the settings without a section.
     #[serde(flatten)]
     pub walk: WalkKeys,
@@ -155,6 +158,7 @@ impl Scene {
         s.check_groups(groups::GROUPS)?;
         let mut scene = Self {
             name: s.file().to_owned(),
+            is_guarded: false,
             walk: WalkKeys::read(s)?,
             stop: StopRule::read(s)?,
             filter: Filter::read(s)?,

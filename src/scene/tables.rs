@@ -4,9 +4,8 @@ use std::path::Path;
 
 use super::values::{Density, LibraryDensity};
 use super::{Origin, Scene, SceneError};
-use crate::gradation::curves_in_file;
 use crate::schema::setting_name;
-use crate::verdict::{Mistake, PairOptions};
+use crate::verdict::PairOptions;
 
 /// What a scene of two tables is given besides them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -122,11 +121,10 @@ impl TableOptions {
 
 impl Scene {
     /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); the
-    /// rest is that of the built-in scene.
+    /// rest is that of the built-in scene. It reads no file.
     ///
     /// # Errors
-    /// As [`Scene::built_in`]; a change would replace one of the two; a name is not UTF-8; or the two look
-    /// exchanged.
+    /// As [`Scene::built_in`]; a change would replace one of the two; a name is not UTF-8.
     pub fn of_tables(base: &Path, filter: &Path, options: &TableOptions) -> Result<Self, SceneError> {
         let [named_base, named_filter] = [base, filter].map(|path| path.display().to_string());
         keep_soils(&options.changes, Some(&named_base), Some(&named_filter))?;
@@ -150,9 +148,7 @@ impl Scene {
             settings.push("engine=\"expected\"".into());
             scene = Self::built_in(&[settings, changes].concat())?;
         }
-        if !options.as_given {
-            refuse_exchanged(base, filter)?;
-        }
+        scene.is_guarded = !options.as_given;
         Ok(scene)
     }
 
@@ -183,27 +179,6 @@ impl Scene {
             (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
             (None, None) => "The constrictions are those of the network that was given.".into(),
         }
-    }
-}
-
-/// Refuses two sieve tables that can hardly be a base and its filter, before any other work. A case does
-/// not know whether its tables were named as a pair, or are as given: it refuses only sizes so far apart
-/// that a unit must be wrong, and notes the rest. A table that cannot be read, or holds several soils,
-/// is left to whoever reads it.
-///
-/// # Errors
-/// [`SceneError::Clash`], with both files and their sizes.
-pub fn refuse_exchanged(base: &Path, filter: &Path) -> Result<(), SceneError> {
-    let [Ok(bases), Ok(filters)] = [base, filter].map(|path| curves_in_file(path, None)) else {
-        return Ok(());
-    };
-    let ([(_, of_base)], [(_, of_filter)]) = (&bases[..], &filters[..]) else { return Ok(()) };
-    match Mistake::find(of_base, of_filter, false).filter(Mistake::is_refused) {
-        Some(mistake) => Err(SceneError::Clash {
-            file: format!("base {}, filter {}", base.display(), filter.display()),
-            problem: mistake.refusal(),
-        }),
-        None => Ok(()),
     }
 }
 
@@ -292,27 +267,6 @@ mod tests {
         }
         // Of a scene's settings only what was asked for.
         assert!(with(&[]).settings().unwrap().is_empty());
-    }
-
-    #[test]
-    fn two_tables_that_are_exchanged_are_refused_unless_they_are_as_given() {
-        let root = tempfile::tempdir().unwrap();
-        let table = |name: &str, rows: &str| {
-            let path = root.path().join(name);
-            std::fs::write(&path, format!("size_mm,percent\n{rows}")).unwrap();
-            path
-        };
-        let base = table("base.csv", "0.1,0\n0.3,100\n");
-        let filter = table("filter.csv", "0.5,0\n2,100\n");
-        let scene = |base: &Path, filter: &Path, as_given| {
-            Scene::of_tables(base, filter, &TableOptions { as_given, ..TableOptions::default() })
-        };
-        assert!(scene(&base, &filter, false).is_ok() && scene(&filter, &base, true).is_ok());
-        let said = scene(&filter, &base, false).unwrap_err().to_string();
-        for words in ["filter.csv, filter ", "are the two files exchanged?", "exchange the two", "--as-given"]
-        {
-            assert!(said.contains(words), "{said}");
-        }
     }
 
     #[test]

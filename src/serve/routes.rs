@@ -25,6 +25,7 @@ use crate::gradation::{CurvePoint, Gradation, curves_in_file};
 use crate::outcome::quantity::SizeUnit;
 use crate::report;
 use crate::run::error::Exit;
+use crate::run::prepare::Draft;
 use crate::run::{self, PrepareOptions, RunError};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
 use crate::store::open_regular;
@@ -232,7 +233,9 @@ impl Routes {
             "judge" => {
                 let asked: Asked = read(request)?;
                 let title = format!("{} on {}", self.title(&asked.base), self.title(&asked.filter));
-                let work = Work::Judge(Box::new(self.scene(&asked)?));
+                let scene = self.scene(&asked)?;
+                Draft::new(scene.clone()).map_err(wrong)?;
+                let work = Work::Judge(Box::new(scene));
                 Ok(Planned { title, asked: asked.sheets(), work })
             }
             "batch" => {

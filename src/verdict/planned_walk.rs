@@ -1,7 +1,6 @@
 //! Notes on soils and network before they are walked, with a scene or without one.
 
 use super::base_cautions::broad_base;
-use super::mistake::Mistake;
 use crate::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
 use crate::outcome::record::Note;
 
@@ -49,7 +48,6 @@ impl PlannedWalk<'_> {
     /// What nobody has checked, or what is not known, in no order.
     pub fn notes(&self) -> Vec<Note> {
         let found = [
-            self.mistake(),
             self.fines(),
             self.broad_base(),
             self.cu_of_filter(),
@@ -64,12 +62,6 @@ impl PlannedWalk<'_> {
             self.few_replicates(),
         ];
         found.into_iter().flatten().collect()
-    }
-
-    /// Two tables that may be exchanged, or in another unit.
-    fn mistake(&self) -> Option<Note> {
-        let stated = self.regraded_from.unwrap_or(self.base);
-        Some(Mistake::find(stated, self.filter?, self.scale_free)?.note)
     }
 
     /// Fines of the base that may be cohesive, or that are not known.
@@ -235,8 +227,6 @@ mod tests {
             ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
             ["broad_base", "cu_unchecked", "unstable_base"]
         );
-        let exchanged = PlannedWalk { base: &filter, filter: Some(&sand), ..plan.clone() };
-        assert_eq!(ids(&exchanged), ["files_exchanged"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);

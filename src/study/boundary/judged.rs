@@ -5,7 +5,7 @@ use crate::case::{Case, CaseBase, CaseSupply, StatedBase};
 use crate::outcome::record::Note;
 use crate::run::error::RunError;
 use crate::scene::{Amount, BaseGradation, D85};
-use crate::verdict::ordered;
+use crate::verdict::{Mistake, ordered};
 
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
@@ -75,6 +75,8 @@ impl Judged {
             let of = &mut case.scene.base;
             (of.d85_mm, of.d85_at_dc, of.dc_curve, of.d15f_over_d85b) = (Some(d85), None, None, None);
         }
+        let (base, filter) = (case.base.as_given(), &case.filter.gradation);
+        case.mistake = Mistake::find(base, filter, case.is_scale_free()).map(|mistake| mistake.note);
         Ok(Self { case, d85_mm: row.d85_mm, base_name, real_thickness })
     }
 

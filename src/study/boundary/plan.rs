@@ -7,7 +7,7 @@ use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
 use crate::scene::{
     Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, keep_soils,
-    quoted, refuse_exchanged,
+    quoted,
 };
 use crate::schema::setting_name;
 use crate::walk::Engine;
@@ -144,9 +144,7 @@ fn one(
     let mut scene = Scene::built_in(&settings)?;
     refuse(&scene)?;
     regrade(&mut scene, options)?;
-    if let (Some(base), Some(filter), false) = (&scene.base.sieve, &scene.filter.sieve, options.as_given) {
-        refuse_exchanged(base, filter)?;
-    }
+    scene.is_guarded = !options.as_given;
     let thickness = thickness.or(match scene.network.extent() {
         Extent::Mm(mm) => Some(Thickness::Mm(mm)),
         Extent::D50F(multiple) => Some(Thickness::D50F(multiple)),
