@@ -229,7 +229,7 @@ impl CasePlan {
             factors.push((factor.name.clone(), levels(factor).map_err(clash)?));
         }
         let total = factors.iter().try_fold(1usize, |n, (_, levels)| n.checked_mul(levels.len()));
-        let total = total.filter(|n| n + written.case.len() <= MOST_CASES).ok_or_else(|| {
+        total.filter(|n| n + written.case.len() <= MOST_CASES).ok_or_else(|| {
             clash(format!("the factors make too many cases; at most {MOST_CASES} are allowed"))
         })?;
         for left_out in &written.leave_out {
@@ -242,32 +242,24 @@ impl CasePlan {
             cases: Vec::new(),
             file: file.clone(),
         };
-        let crossed = if factors.is_empty() { 0 } else { total };
         let base = written.scene.as_ref().map(|scene| path.parent().unwrap_or(Path::new("")).join(scene));
-        for index in 0..crossed {
-            let mut rest = index;
-            let mut chosen = Vec::new();
-            for (name, levels) in factors.iter().rev() {
-                chosen.push((name, &levels[rest % levels.len()]));
-                rest /= levels.len();
-            }
-            chosen.reverse();
+        let levels: Vec<&[Level]> = factors.iter().map(|(_, levels)| &levels[..]).collect();
+        let combinations = if factors.is_empty() { Vec::new() } else { crossed(&levels) };
+        for chosen in combinations {
+            let names = plan.factors.iter().zip(&chosen);
             let levels: Vec<(String, String)> =
-                chosen.iter().map(|(factor, level)| ((*factor).clone(), level.0.clone())).collect();
+                names.map(|(factor, (level, _))| (factor.clone(), level.clone())).collect();
             let is_left_out = |which: &BTreeMap<String, String>| {
                 which.iter().all(|(factor, level)| levels.iter().any(|(f, l)| f == factor && l == level))
             };
             if written.leave_out.iter().any(is_left_out) {
                 continue;
             }
-            let name = levels
-                .iter()
-                .map(|(factor, level)| format!("{factor}={level}"))
-                .collect::<Vec<_>>()
-                .join(",");
-            let levels_settings = chosen.iter().map(|(_, level)| level.1.clone());
-            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(levels_settings).collect();
-            plan.add(&written, base.as_deref(), name, levels, &settings)?;
+            let names: Vec<String> =
+                levels.iter().map(|(factor, level)| format!("{factor}={level}")).collect();
+            let chosen = chosen.into_iter().map(|(_, settings)| settings.clone());
+            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(chosen).collect();
+            plan.add(&written, base.as_deref(), names.join(","), levels, &settings)?;
         }
         for single in &written.case {
             check_name("case", &single.name).map_err(clash)?;
@@ -331,6 +323,15 @@ impl PlannedCase {
     pub fn folder_name(&self) -> String {
         folder_name(&self.name)
     }
+}
+
+/// Every combination of one level of each factor, the last factor running fastest.
+pub(crate) fn crossed<'a, T>(factors: &[&'a [T]]) -> Vec<Vec<&'a T>> {
+    factors.iter().fold(vec![Vec::new()], |begun, levels| {
+        let with_levels =
+            |chosen: Vec<&'a T>| levels.iter().map(move |level| [&chosen[..], &[level]].concat());
+        begun.into_iter().flat_map(with_levels).collect()
+    })
 }
 
 /// A name that can stand in a file name, a table and a page.

@@ -43,8 +43,8 @@ const CONSTRICTIONS: [&str; 7] = [
 /// Settings that say how many replicates are walked.
 const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
 
-/// The setting that says how the base is walked.
-const REGRADE: [&str; 1] = ["base.regrade"];
+/// Settings that say how the filter's own packing is made.
+const PACKED: [&str; 2] = ["filter.density", "filter.friction"];
 
 /// Settings that say what the base is.
 const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
@@ -56,32 +56,50 @@ const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
 const OF_RULES: [&str; 2] = ["base.dispersive", "filter.joint_mm"];
 
 impl TableOptions {
-    /// The settings that say all of this.
+    /// The setting by which a base is walked as it was sampled.
+    pub(crate) const AS_SAMPLED: &str = "base.regrade=\"no\"";
+
+    /// The settings that state all of this.
     ///
     /// # Errors
-    /// [`SceneError::Clash`]: a change says the density, too.
-    pub fn settings(&self) -> Result<Vec<String>, SceneError> {
+    /// [`SceneError::Clash`]: a change says the density, or how the base is walked, too.
+    fn settings(&self) -> Result<Vec<String>, SceneError> {
+        let clash = |problem: String| SceneError::Clash { file: Origin::CommandLine.to_string(), problem };
         if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
-            return Err(SceneError::Clash {
-                file: Origin::CommandLine.to_string(),
-                problem: format!(
-                    "density {} and filter.density or filter.library say the same thing twice: give one",
-                    density.name()
-                ),
-            });
+            return Err(clash(format!(
+                "density {} and filter.density or filter.library say the same thing twice: give one",
+                density.name()
+            )));
         }
-        let density = self.density.or(self.pack.then_some(Density::Loose));
-        let from = if self.pack { "density" } else { "library" };
-        let density = density.map(|density| format!("filter.{from}=\"{}\"", density.name()));
-        let mut settings: Vec<String> = density.into_iter().collect();
+        let mut settings: Vec<String> = self.density_setting().into_iter().collect();
         if self.quick && !self.is_set(&REPLICATES) {
             settings.push(format!("replicates={QUICK}"));
         }
-        if self.as_sampled {
-            settings.push(self.regrading()?);
+        match (self.as_sampled, self.is_set(&["base.regrade"])) {
+            (true, true) => {
+                let problem = "--as-sampled and base.regrade say the same thing twice: give one";
+                return Err(clash(problem.into()));
+            }
+            (true, false) => settings.push(Self::AS_SAMPLED.into()),
+            (false, false) => settings.push("base.regrade=\"practice\"".into()),
+            (false, true) => {}
         }
         settings.extend(self.changes.iter().cloned());
         Ok(settings)
+    }
+
+    /// The setting of the density: that of the filter's own packing, which is loose where nothing else is
+    /// stated, or that of the library, which is unknown where nothing states the constrictions.
+    pub(crate) fn density_setting(&self) -> Option<String> {
+        let (name, density, stated): (_, _, &[&str]) = match self.pack {
+            true => ("density", self.density.unwrap_or(Density::Loose).name(), &PACKED),
+            false => {
+                let density = self.density.map_or(LibraryDensity::Unknown, LibraryDensity::from);
+                ("library", density.name(), &CONSTRICTIONS)
+            }
+        };
+        let is_needed = self.density.is_some() || !self.is_set(stated);
+        is_needed.then(|| format!("filter.{name}=\"{density}\""))
     }
 
     /// The facts that the rules of practice are told besides the two tables.
@@ -97,21 +115,6 @@ impl TableOptions {
             joint_mm: scene.filter.joint_mm,
             as_given: self.as_given,
         })
-    }
-
-    /// How a base in a table is walked, as a setting.
-    ///
-    /// # Errors
-    /// [`SceneError::Clash`]: a change says it, too.
-    fn regrading(&self) -> Result<String, SceneError> {
-        if self.is_set(&REGRADE) {
-            return Err(SceneError::Clash {
-                file: Origin::CommandLine.to_string(),
-                problem: "--as-sampled and base.regrade say the same thing twice: give one".into(),
-            });
-        }
-        let how = if self.as_sampled { "no" } else { "practice" };
-        Ok(format!("base.regrade=\"{how}\""))
     }
 
     fn is_set(&self, names: &[&str]) -> bool {
@@ -131,12 +134,6 @@ impl Scene {
         let mut settings = Vec::new();
         for (name, path) in [("filter.sieve", filter), ("base.sieve", base)] {
             settings.push(format!("{name}={}", quoted(path)?));
-        }
-        if options.density.is_none() && !options.pack && !options.is_set(&CONSTRICTIONS) {
-            settings.push("filter.library=\"unknown\"".into());
-        }
-        if !options.as_sampled && !options.is_set(&REGRADE) {
-            settings.push(options.regrading()?);
         }
         // A pair is judged as it is given; other amounts and thicknesses are a researcher's question.
         settings.push("record.sensitivity=[]".into());
@@ -265,8 +262,6 @@ mod tests {
             let twice = TableOptions { as_sampled: true, ..with(&[set]) };
             assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
         }
-        // Of a scene's settings only what was asked for.
-        assert!(with(&[]).settings().unwrap().is_empty());
     }
 
     #[test]
@@ -278,6 +273,8 @@ mod tests {
         assert!(packed.packing.is_some() && packed.filter.density == Some(Density::Dense));
         let loose = scene(&TableOptions { pack: true, ..Default::default() }).unwrap();
         assert_eq!((loose.filter.density, loose.filter.library), (Some(Density::Loose), None));
+        let rough = scene(&TableOptions { pack: true, ..with(&["filter.friction=0.2"]) }).unwrap();
+        assert_eq!((rough.filter.density, rough.filter.friction), (None, Some(0.2)));
         let given = scene(&with(&["filter.curve=cu3-loose", "replicates=3"])).unwrap();
         assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
         let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };

@@ -36,6 +36,7 @@ pub use options::{BoundaryOptions, Thickness, ThicknessList};
 
 use super::specified::{NO_BASE_MM, no_base};
 use crate::cases::kept::{self, Kept};
+use crate::cases::plan::PlannedCase;
 use crate::outcome::boundary::Boundaries;
 use crate::run::callbacks::{Callbacks, Event};
 use crate::run::error::{Exit, RunError};
@@ -45,7 +46,8 @@ use crate::run::pack::provide;
 use crate::run::prepare::Draft;
 use crate::run::replicates::have_networks;
 use crate::scene::{BaseGradation, D85};
-use plan::{Wanted, wanted};
+use crate::schema::setting_name;
+use plan::{plan, with_any_base};
 use row::Row;
 use search::{Done, Found, Hint, METHOD};
 use spared::{clear_of, holding_less};
@@ -100,16 +102,18 @@ struct DraftedRow {
 
 /// Whatever is wrong, before any work.
 fn drafts(options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Vec<DraftedRow>, RunError> {
-    wanted(options)?.into_iter().map(|wanted| DraftedRow::new(wanted, options, bracket)).collect()
+    plan(options)?.cases.into_iter().map(|planned| DraftedRow::new(planned, options, bracket)).collect()
 }
 
 impl DraftedRow {
-    fn new(wanted: Wanted, options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Self, RunError> {
-        let mut draft = Draft::new(wanted.of_filter.clone())?;
+    fn new(planned: PlannedCase, options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Self, RunError> {
+        let PlannedCase { scene, mut levels, .. } = planned;
+        let (density, thickness) = (levels.remove(0).1, Thickness::of(&scene.network));
+        let mut draft = Draft::new(with_any_base(&scene))?;
         let case = &mut draft.case;
-        let stated = case.base_of(&wanted.scene)?;
+        let stated = case.base_of(&scene)?;
         let refuse =
-            |problem: String| Err(RunError::from(crate::case::CaseError::from(wanted.scene.clash(problem))));
+            |problem: String| Err(RunError::from(crate::case::CaseError::from(scene.clash(problem))));
         let Some(d85) = stated.base.gradation.d(85.0) else {
             return refuse(
                 "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
@@ -118,15 +122,16 @@ impl DraftedRow {
             );
         };
         // One millimetre where it is stated, else the unit.
-        let filter_has_size = wanted.states_d0 || !case.is_scale_free();
-        let has_size = match wanted.scene.base.gradation() {
+        let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
+        let filter_has_size = states_d0 || !case.is_scale_free();
+        let has_size = match scene.base.gradation() {
             BaseGradation::Sieve(..) | BaseGradation::Single(_) => true,
             BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
         };
         if has_size && d85 > NO_BASE_MM {
             return refuse(no_base(d85));
         }
-        if matches!(wanted.thickness, Thickness::Mm(_)) && !has_size {
+        if matches!(thickness, Thickness::Mm(_)) && !has_size {
             return refuse(
                 "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
                  multiples of D50F"
@@ -137,8 +142,9 @@ impl DraftedRow {
         case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
         have_networks(case, &Callbacks::default())?;
         let row = Row {
+            density,
+            thickness,
             case: case.clone(),
-            wanted,
             stated,
             base,
             d85_mm: has_size.then_some(d85),
@@ -169,12 +175,11 @@ impl DraftedRow {
 /// walks them: of a guess the densest and the loosest, of a filter whose finer part was packed the coarser
 /// curve. What was asked for as a row of its own is none again.
 fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
-    let same =
-        |a: &Row, b: &Row| a.wanted.density == b.wanted.density && a.wanted.thickness == b.wanted.thickness;
+    let same = |a: &Row, b: &Row| a.density == b.density && a.thickness == b.thickness;
     let mut all: Vec<Row> = Vec::new();
     for row in &rows {
         let ends = row.at_curve_ends();
-        let names = ends.iter().map(|end| end.wanted.density.clone()).collect();
+        let names = ends.iter().map(|end| end.density.clone()).collect();
         let asked_for = |end: &Row| rows.iter().chain(&all).any(|other| same(end, other));
         let ends: Vec<Row> = ends.into_iter().filter(|end| !asked_for(end)).collect();
         all.push(Row { ends: names, ..row.clone() });
@@ -192,7 +197,7 @@ fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     let of_row = |row: &Row| {
         let base = row.stated.base.gradation.points();
         let base: Vec<_> = base.iter().map(|point| (point.size, point.percent)).collect();
-        let (thickness, d85) = (row.wanted.thickness, row.d85_mm);
+        let (thickness, d85) = (row.thickness, row.d85_mm);
         format!("{} {thickness:?} {base:?} {d85:?} {}", row.case.fingerprint(), row.filter_has_size)
     };
     let rows: Vec<String> = rows.iter().map(of_row).collect();
@@ -327,8 +332,8 @@ impl Searching<'_> {
         };
         let text = format!(
             "{}, {}, network {network} of {}: {holds} ({} ratios walked)",
-            of.wanted.density,
-            of.wanted.thickness,
+            of.density,
+            of.thickness,
             of.networks(),
             found.walks.len()
         );

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::run::prepare::PrepareOptions;
+use crate::scene::{Extent, NetworkKeys, USUAL_LAYERS};
 use crate::schema::length::{LENGTHS, millimetres};
 
 /// What boundaries are asked for, and where it goes.
@@ -60,6 +61,26 @@ pub enum Thickness {
     Mm(f64),
     /// Multiples of D50F by mass.
     D50F(f64),
+}
+
+impl Thickness {
+    pub(super) fn of(network: &NetworkKeys) -> Self {
+        match network.extent() {
+            Extent::Mm(mm) => Self::Mm(mm),
+            Extent::D50F(multiple) => Self::D50F(multiple),
+            Extent::Copies(_) | Extent::Usual => {
+                Self::Layers(network.source().shape().map_or(USUAL_LAYERS, |[_, _, nz]| nz.into()))
+            }
+        }
+    }
+
+    pub(super) fn setting(self) -> String {
+        match self {
+            Self::Layers(layers) => format!("network.nz={layers}"),
+            Self::D50F(multiple) => format!("network.thickness_d50f={multiple:?}"),
+            Self::Mm(mm) => format!("network.thickness_mm={mm:?}"),
+        }
+    }
 }
 
 impl std::str::FromStr for Thickness {

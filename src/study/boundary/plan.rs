@@ -1,18 +1,18 @@
-//! What boundaries are asked for, as scenes: one for each density and thickness.
+//! The plan of the boundaries that are asked for: a case for each density and thickness.
 
 use std::path::{Path, PathBuf};
 
+use super::options::{BoundaryOptions, Thickness};
 use crate::case::end_of_guess;
+use crate::cases::plan::{CasePlan, PlannedCase, crossed};
 use crate::outcome::stopping::StopRule;
 use crate::run::error::RunError;
 use crate::scene::{
-    Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, keep_soils,
-    quoted,
+    Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, TableOptions,
+    USUAL_LAYERS, keep_soils, quoted,
 };
 use crate::schema::setting_name;
 use crate::walk::Engine;
-
-use super::options::{BoundaryOptions, Thickness};
 
 /// Voids across of a lattice whose width nobody states: as in the study of real soils.
 const ACROSS: u64 = 20;
@@ -20,67 +20,94 @@ const ACROSS: u64 = 20;
 /// Networks where nobody states how many replicates there are: the fewest that give percentiles.
 const NETWORKS: u64 = 5;
 
-/// One density and thickness.
-#[derive(Clone, Debug)]
-pub(super) struct Wanted {
-    /// The scene as it is stated, base and all.
-    pub scene: Scene,
-    /// The same with a base that any filter can be drafted with.
-    pub of_filter: Scene,
-    /// The density in words.
-    pub density: String,
-    /// The thickness.
-    pub thickness: Thickness,
-    /// Whether the finest filter grain is stated (mm).
-    pub states_d0: bool,
-}
+/// Settings that state how thick a filter is.
+const THICKNESSES: [&str; 4] =
+    ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
 
 /// Every density with every thickness.
 ///
 /// # Errors
 /// Settings that are refused.
-pub(super) fn wanted(options: &BoundaryOptions) -> Result<Vec<Wanted>, RunError> {
-    let thicknesses: Vec<Option<Thickness>> = match options.thicknesses.is_empty() {
-        true => vec![None],
-        false => options.thicknesses.iter().copied().map(Some).collect(),
+pub(super) fn plan(options: &BoundaryOptions) -> Result<CasePlan, RunError> {
+    let common = common(options)?;
+    let (densities, thicknesses) = (densities(options)?, thicknesses(options)?);
+    let mut plan = CasePlan {
+        file: "boundary".into(),
+        title: String::new(),
+        factors: vec!["density".into(), "thickness".into()],
+        cases: Vec::new(),
     };
-    let densities: Vec<Option<String>> = match (options.densities.is_empty(), default_density(options)) {
-        (true, default) => vec![default],
-        (false, _) => options.densities.iter().cloned().map(Some).collect(),
-    };
-    let mut all = Vec::new();
-    for density in &densities {
-        for &thickness in &thicknesses {
-            all.push(one(options, density.as_deref(), thickness)?);
+    for chosen in crossed(&[&densities[..], &thicknesses]) {
+        let settings: Vec<String> = common.iter().chain(chosen.into_iter().flatten()).cloned().collect();
+        let scene = scene(&settings, options.as_given)?;
+        let levels = [density_words(&scene), Thickness::of(&scene.network).to_string()];
+        let name = levels.join(", ");
+        if plan.case(&name).is_some() {
+            return Err(RunError::Refused(format!("{name}: asked for twice")));
         }
+        let levels = plan.factors.iter().cloned().zip(levels).collect();
+        plan.cases.push(PlannedCase { name, levels, scene });
     }
-    let same = |a: &Wanted, b: &Wanted| a.density == b.density && a.thickness == b.thickness;
-    for (index, wanted) in all.iter().enumerate() {
-        if all[..index].iter().any(|before| same(before, wanted)) {
-            let problem = format!("{}, {}: asked for twice", wanted.density, wanted.thickness);
-            return Err(RunError::Refused(problem));
-        }
+    Ok(plan)
+}
+
+/// The settings of every case.
+fn common(options: &BoundaryOptions) -> Result<Vec<String>, RunError> {
+    let BoundaryOptions { base, filter, settings, .. } = options;
+    let base_name = base.as_ref().map(|base| base.display().to_string());
+    keep_soils(settings, base_name.as_deref(), filter.as_deref())?;
+    let mut all = settings.clone();
+    if let Some(base) = base {
+        all.push(format!("base.sieve={}", quoted(base)?));
+    }
+    if let Some(shape) = filter {
+        all.push(stated(settings, "--filter", shape_setting(shape))?);
+    }
+    if options.as_sampled {
+        all.push(stated(settings, "--as-sampled", TableOptions::AS_SAMPLED.into())?);
     }
     Ok(all)
 }
 
-/// The density of a shape that has none of its own: any, from loose to dense; loose where it is to be packed.
-fn default_density(options: &BoundaryOptions) -> Option<String> {
-    let stated = |setting: &String| {
-        let names =
-            ["filter.density", "filter.friction", "filter.library", "filter.estimate", "filter.curve"];
-        names.contains(&setting_name(setting))
+fn densities(options: &BoundaryOptions) -> Result<Vec<Option<String>>, RunError> {
+    let BoundaryOptions { pack, settings, .. } = options;
+    if options.densities.is_empty() {
+        let changes = settings.iter().cloned().chain(options.filter.as_deref().map(shape_setting)).collect();
+        let tables = TableOptions { pack: *pack, changes, ..TableOptions::default() };
+        return Ok(vec![options.filter.as_ref().and_then(|_| tables.density_setting())]);
+    }
+    let setting = |density: &String| {
+        let setting = density_setting(density, *pack)?;
+        setting.map(|setting| stated(settings, "--density", setting)).transpose()
     };
-    let needs_one = options.filter.as_deref().is_some_and(|shape| !shape_setting(shape).0);
-    (needs_one && !options.settings.iter().any(stated)).then(|| match options.pack {
-        true => Density::Loose.name().to_owned(),
-        false => LibraryDensity::Unknown.name().to_owned(),
-    })
+    options.densities.iter().map(setting).collect()
 }
 
-/// Whether a shape has its constrictions, and the setting that says it: a Cu, a sieve table or a shipped
-/// name.
-fn shape_setting(shape: &str) -> (bool, String) {
+fn thicknesses(options: &BoundaryOptions) -> Result<Vec<Option<String>>, RunError> {
+    let setting =
+        |thickness: &Thickness| stated(&options.settings, "--thickness", thickness.setting()).map(Some);
+    match options.thicknesses.is_empty() {
+        true => Ok(vec![None]),
+        false => options.thicknesses.iter().map(setting).collect(),
+    }
+}
+
+/// The setting that an option states, unless `settings` state it again.
+fn stated(settings: &[String], option: &str, setting: String) -> Result<String, RunError> {
+    let is_again = |name: &str| match option {
+        "--thickness" => THICKNESSES.contains(&name),
+        _ => name == setting_name(&setting),
+    };
+    match settings.iter().find(|again| is_again(setting_name(again))) {
+        Some(again) => {
+            Err(RunError::Refused(format!("{option} and --set {again} say the same thing twice: give one")))
+        }
+        None => Ok(setting),
+    }
+}
+
+/// The setting that states a shape: a Cu, a sieve table or a shipped name.
+fn shape_setting(shape: &str) -> String {
     // Or a name that reads as a number, or as anything else that is no text, would not stay one.
     let text = |name: &str| toml::Value::String(name.to_owned()).to_string();
     let file = shape.split('#').next().unwrap_or(shape);
@@ -88,96 +115,73 @@ fn shape_setting(shape: &str) -> (bool, String) {
     let ending = Path::new(file).extension().and_then(|e| e.to_str()).map(str::to_lowercase);
     let is_table = ending.is_some_and(|e| ["csv", "txt", "tsv", "xlsx", "ods", "ags"].contains(&&*e));
     match shape.trim().parse::<f64>() {
-        Ok(_) => (false, format!("filter.cu={}", shape.trim())),
-        Err(_) if is_file || is_table => (false, format!("filter.sieve={}", text(shape))),
-        Err(_) => (true, format!("filter.curve={}", text(shape))),
+        Ok(_) => format!("filter.cu={}", shape.trim()),
+        Err(_) if is_file || is_table => format!("filter.sieve={}", text(shape)),
+        Err(_) => format!("filter.curve={}", text(shape)),
     }
 }
 
-/// The setting that says a density.
-fn density_setting(density: &str, pack: bool) -> Result<String, RunError> {
-    if let Some((name @ ("friction" | "estimate"), value)) = density.split_once('=') {
-        if pack && name == "estimate" {
-            return Err(RunError::refused(
-                "--pack and --density estimate say how the constrictions are found: keep one",
-            ));
+/// The setting that states a density.
+fn density_setting(density: &str, pack: bool) -> Result<Option<String>, RunError> {
+    let word = Density::named(density);
+    match density.split_once('=') {
+        Some(("estimate", _)) if pack => Err(RunError::refused(
+            "--pack and --density estimate say how the constrictions are found: keep one",
+        )),
+        Some((name @ ("friction" | "estimate"), value)) => Ok(Some(format!("filter.{name}={value}"))),
+        None if word.is_some() || (!pack && density == LibraryDensity::Unknown.name()) => {
+            Ok(TableOptions { density: word, pack, ..TableOptions::default() }.density_setting())
         }
-        return Ok(format!("filter.{name}={value}"));
+        _ => Err(RunError::Refused(format!(
+            "--density {density}: allowed: dense, medium (or intermediate) or loose, unknown (without \
+             --pack), friction=0.2 (0 to 10), or estimate=0.5 (a relative density from 0 to 1, without a \
+             packing)"
+        ))),
     }
-    match Density::named(density) {
-        Some(word) if pack => return Ok(format!("filter.density={}", word.name())),
-        Some(word) => return Ok(format!("filter.library={}", word.name())),
-        None if !pack && density == LibraryDensity::Unknown.name() => {
-            return Ok(format!("filter.library={density}"));
-        }
-        None => {}
-    }
-    Err(RunError::Refused(format!(
-        "--density {density}: allowed: dense, medium (or intermediate) or loose, unknown (without \
-         --pack), friction=0.2 (0 to 10), or estimate=0.5 (a relative density from 0 to 1, without a packing)"
-    )))
 }
 
-fn one(
-    options: &BoundaryOptions,
-    density: Option<&str>,
-    thickness: Option<Thickness>,
-) -> Result<Wanted, RunError> {
-    let mut settings = options.settings.clone();
-    let base = options.base.as_ref().map(|base| base.display().to_string());
-    keep_soils(&settings, base.as_deref(), options.filter.as_deref())?;
-    let of_base = options.base.as_deref().map(quoted).transpose()?.map(|base| format!("base.sieve={base}"));
-    let of_filter = options.filter.as_deref().map(|shape| shape_setting(shape).1);
-    let of_density = density.map(|density| density_setting(density, options.pack)).transpose()?;
-    let of_thickness = thickness.map(|thickness| match thickness {
-        Thickness::Layers(layers) => format!("network.nz={layers}"),
-        Thickness::D50F(multiple) => format!("network.thickness_d50f={multiple:?}"),
-        Thickness::Mm(mm) => format!("network.thickness_mm={mm:?}"),
-    });
-    for (whose, said) in [("BASE", of_base), ("--filter", of_filter), ("--thickness", of_thickness)] {
-        refuse_twice(options, whose, said.as_deref())?;
-        settings.extend(said);
-    }
-    // Without --density the default is none that was said.
-    refuse_twice(options, "--density", of_density.as_deref().filter(|_| !options.densities.is_empty()))?;
-    settings.extend(of_density);
-    let mut scene = Scene::built_in(&settings)?;
+fn scene(settings: &[String], as_given: bool) -> Result<Scene, RunError> {
+    let mut scene = Scene::built_in(settings)?;
     refuse(&scene)?;
-    regrade(&mut scene, options)?;
-    scene.is_guarded = !options.as_given;
-    let thickness = thickness.or(match scene.network.extent() {
-        Extent::Mm(mm) => Some(Thickness::Mm(mm)),
-        Extent::D50F(multiple) => Some(Thickness::D50F(multiple)),
-        Extent::Copies(_) | Extent::Usual => None,
-    });
+    let has_size = match scene.base.gradation() {
+        BaseGradation::Sieve(..) => true,
+        BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
+        BaseGradation::Single(_) => false,
+    };
+    if scene.base.regrade.is_none() && has_size {
+        scene.base.regrade = Some(Regrade::Practice);
+    }
+    scene.is_guarded = !as_given;
     let is_lattice = matches!(scene.network.source(), NetworkSource::Cubic(_));
-    if matches!(thickness, Some(Thickness::Mm(_))) && !is_lattice {
+    if matches!(scene.network.extent(), Extent::Mm(_)) && !is_lattice {
         return Err(RunError::refused(
             "a thickness in mm goes with a lattice: of a packing's own voids the filter's size says how many \
              copies there are, and it is searched for; give network.copies or a multiple of D50F",
         ));
     }
-    if matches!(thickness, Some(Thickness::Mm(_))) {
-        // How many layers that is hangs on the ratio.
-        scene.network.set_layers(crate::scene::USUAL_LAYERS);
-    }
-    let is_stated = |key: &str| {
-        options.settings.iter().any(|setting| setting_name(setting).split('.').next_back() == Some(key))
-    };
+    let is_stated =
+        |key: &str| settings.iter().any(|setting| setting_name(setting).split('.').next_back() == Some(key));
     if is_lattice && !["nx", "ny"].into_iter().any(is_stated) {
         scene.network.narrow_to(ACROSS);
     }
     if !is_stated("replicates") {
         scene.walk.replicates = NETWORKS;
     }
-    scene.walk.runs = 2;
     if scene.walk.engine == Engine::Auto && !scene.leaves_openings() {
         // Rows that move at once take less time, and a boundary is where the expectation crosses 7.5 %.
         scene.walk.engine = Engine::Expected;
     }
     scene.record.sensitivity.clear();
-    let mut of_filter = scene.clone();
-    of_filter.base = Base {
+    Ok(scene)
+}
+
+/// A scene with a base that any filter can be drafted with, and with layers where a ratio decides them.
+pub(super) fn with_any_base(scene: &Scene) -> Scene {
+    let mut drafted = scene.clone();
+    if matches!(scene.network.extent(), Extent::Mm(_)) {
+        drafted.network.set_layers(USUAL_LAYERS);
+    }
+    drafted.base = Base {
         cu: Some(1.5),
         d15f_over_d85b: Some(5.0),
         d85_at_dc: None,
@@ -189,50 +193,8 @@ fn one(
         regrade: None,
         ..scene.base.clone()
     };
-    let layers = scene.network.source().shape().map_or(crate::scene::USUAL_LAYERS, |[_, _, nz]| nz.into());
-    let density = density_words(&scene);
-    let thickness = thickness.unwrap_or(Thickness::Layers(layers));
-    let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
-    Ok(Wanted { scene, of_filter, density, thickness, states_d0 })
+    drafted
 }
-
-/// Has a base with a size of its own walked as practice regrades it, where nothing says otherwise.
-fn regrade(scene: &mut Scene, options: &BoundaryOptions) -> Result<(), RunError> {
-    if let (Some(said), true) = (scene.base.regrade, options.as_sampled) {
-        return Err(RunError::Refused(format!(
-            "--as-sampled and --set base.regrade={} say the same thing twice: give one",
-            format!("{said:?}").to_lowercase()
-        )));
-    }
-    let has_size = match scene.base.gradation() {
-        BaseGradation::Sieve(..) => true,
-        BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
-        BaseGradation::Single(_) => false,
-    };
-    if scene.base.regrade.is_none() && has_size && !options.as_sampled {
-        scene.base.regrade = Some(Regrade::Practice);
-    }
-    Ok(())
-}
-
-/// Refuses a setting that says again what an argument of its own has said.
-fn refuse_twice(options: &BoundaryOptions, whose: &str, said: Option<&str>) -> Result<(), RunError> {
-    let Some(said) = said else { return Ok(()) };
-    let alike = |key: &str| match whose {
-        "--thickness" => THICKNESSES.contains(&key),
-        _ => key == setting_name(said),
-    };
-    match options.settings.iter().find(|setting| alike(setting_name(setting))) {
-        Some(setting) => {
-            Err(RunError::Refused(format!("{whose} and --set {setting} say the same thing twice: give one")))
-        }
-        None => Ok(()),
-    }
-}
-
-/// Settings that say how thick a filter is.
-const THICKNESSES: [&str; 4] =
-    ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
 
 /// Refuses what a scene may say and a search of boundaries cannot do.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
@@ -284,10 +246,10 @@ mod tests {
 
     #[test]
     fn a_shape_is_a_cu_a_file_or_a_shipped_name() {
-        assert_eq!(shape_setting("3").1, "filter.cu=3");
-        assert_eq!(shape_setting("soils/f.csv").1, "filter.sieve=\"soils/f.csv\"");
-        assert_eq!(shape_setting("f.xlsx#Zone 2").1, "filter.sieve=\"f.xlsx#Zone 2\"");
-        assert_eq!(shape_setting("cu1.5-loose"), (true, "filter.curve=\"cu1.5-loose\"".into()));
+        assert_eq!(shape_setting("3"), "filter.cu=3");
+        assert_eq!(shape_setting("soils/f.csv"), "filter.sieve=\"soils/f.csv\"");
+        assert_eq!(shape_setting("f.xlsx#Zone 2"), "filter.sieve=\"f.xlsx#Zone 2\"");
+        assert_eq!(shape_setting("cu1.5-loose"), "filter.curve=\"cu1.5-loose\"");
     }
 
     #[test]
@@ -299,7 +261,7 @@ mod tests {
                 settings: vec![setting.into()],
                 ..BoundaryOptions::default()
             };
-            let error = wanted(&options).unwrap_err();
+            let error = plan(&options).unwrap_err();
             assert_eq!(error.exit().code(), 2);
             error.to_string()
         };
@@ -322,9 +284,9 @@ mod tests {
                 filter: Some(format!("./{name}")),
                 ..BoundaryOptions::default()
             };
-            let wanted = wanted(&options).unwrap().remove(0);
-            assert_eq!(wanted.scene.base.sieve.as_deref(), Some(Path::new(name)));
-            assert_eq!(wanted.scene.filter.sieve, Some(PathBuf::from(format!("./{name}"))));
+            let scene = plan(&options).unwrap().cases.remove(0).scene;
+            assert_eq!(scene.base.sieve.as_deref(), Some(Path::new(name)));
+            assert_eq!(scene.filter.sieve, Some(PathBuf::from(format!("./{name}"))));
         }
     }
 
@@ -336,31 +298,33 @@ mod tests {
             thicknesses: thicknesses.iter().map(|text| text.parse().unwrap()).collect(),
             ..BoundaryOptions::default()
         };
-        let all = wanted(&options(&["loose", "friction=0.1"], &["500mm", "30layers"])).unwrap();
-        let names: Vec<String> = all.iter().map(|w| format!("{}, {}", w.density, w.thickness)).collect();
+        let names = |densities: &[&str], thicknesses: &[&str]| -> Vec<String> {
+            let cases = plan(&options(densities, thicknesses)).unwrap().cases;
+            cases.into_iter().map(|case| case.name).collect()
+        };
         assert_eq!(
-            names,
+            names(&["loose", "friction=0.1"], &["500mm", "30layers"]),
             ["loose, 500 mm", "loose, 30 layers", "friction 0.1, 500 mm", "friction 0.1, 30 layers"]
         );
-        let plain = wanted(&options(&[], &[])).unwrap();
-        assert_eq!((plain[0].density.as_str(), plain[0].thickness), ("unknown", Thickness::Layers(60)));
+        assert_eq!(names(&[], &[]), ["unknown, 60 layers"]);
         for same in [["loose", "loose"], ["medium", "intermediate"]] {
-            let twice = wanted(&options(&same, &[])).unwrap_err();
+            let twice = plan(&options(&same, &[])).unwrap_err();
             assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
         }
         // As a scene reads it.
-        let medium = wanted(&options(&["medium"], &[])).unwrap();
+        let first = |options: &BoundaryOptions| plan(options).unwrap().cases.remove(0);
+        let medium = first(&options(&["medium"], &[]));
         let scene = Scene::built_in(&["filter.cu=3".into(), "filter.library=medium".into()]).unwrap();
-        assert_eq!(medium[0].density, "intermediate");
-        assert_eq!(medium[0].scene.filter.library, scene.filter.library);
+        assert_eq!(medium.levels[0], ("density".into(), "intermediate".into()));
+        assert_eq!(medium.scene.filter.library, scene.filter.library);
         let packed = BoundaryOptions { pack: true, ..options(&["medium"], &[]) };
-        assert_eq!(wanted(&packed).unwrap()[0].scene.filter.density, Some(Density::Intermediate));
+        assert_eq!(first(&packed).scene.filter.density, Some(Density::Intermediate));
         let voids = BoundaryOptions { settings: vec!["record.voids=[1]".into()], ..options(&[], &[]) };
-        let refused = wanted(&voids).unwrap_err();
+        let refused = plan(&voids).unwrap_err();
         assert!(refused.to_string().contains("record.voids does not go") && refused.exit().code() == 2);
-        let wrong = wanted(&options(&["2"], &[])).unwrap_err().to_string();
+        let wrong = plan(&options(&["2"], &[])).unwrap_err().to_string();
         assert!(wrong.contains("dense, medium (or intermediate) or loose"), "{wrong}");
-        let wrong = wanted(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();
+        let wrong = plan(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();
         assert!(wrong.contains("relative density from 0 (loose) to 1"), "{wrong}");
     }
 }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::options::Thickness;
-use super::plan::Wanted;
 use super::search::{Begun, Found, Hint, Start, Trial, USUAL_ACROSS, Walker, holding, search};
 use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
 use crate::gradation::Gradation;
@@ -24,8 +23,10 @@ const USUAL_RATIO: f64 = 5.0;
 /// One density and thickness with its filter packed.
 #[derive(Clone)]
 pub(super) struct Row {
-    /// What was asked for.
-    pub wanted: Wanted,
+    /// The density in words.
+    pub density: String,
+    /// The thickness.
+    pub thickness: Thickness,
     /// The filter and its network, with some base.
     pub case: Case,
     /// The base as it is stated.
@@ -52,13 +53,12 @@ impl Row {
         let of = |end: &OtherCurve| {
             let density = match names_itself {
                 true => end.name.replace(" = ", " "),
-                false => format!("{}, {}", self.wanted.density, end.name),
+                false => format!("{}, {}", self.density, end.name),
             };
-            let wanted = Wanted { density, ..self.wanted.clone() };
-            let end_of = Some(self.wanted.density.clone());
+            let end_of = Some(self.density.clone());
             let mut case = self.case.with_curve(end.curve.clone());
             case.filter.grains_per_void = case.filter.grains_per_void.map(|grains| grains * end.times_grains);
-            Self { case, wanted, end_of, ..self.clone() }
+            Self { case, density, end_of, ..self.clone() }
         };
         self.case.filter.curve_ends.iter().map(of).collect()
     }
@@ -88,7 +88,7 @@ impl Row {
 
     /// The thickness that was asked for and that of one layer (mm), where the layers hang on the ratio.
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
-        let Thickness::Mm(mm) = self.wanted.thickness else { return None };
+        let Thickness::Mm(mm) = self.thickness else { return None };
         let layer = self.case.filter.gradation.d_by_number(50.0).unwrap_or(self.case.filter.unit_mm);
         Some((mm, layer * self.factor(ratio)?))
     }
@@ -102,7 +102,7 @@ impl Row {
     /// The same as a note.
     pub fn thicker(&self, ratio: f64) -> Option<Note> {
         let layer_mm = self.thicker_than_asked(ratio)?;
-        Some(Note::LayerThicker { ratio, layer_mm, thickness: self.wanted.thickness.to_string() })
+        Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
     }
 
     /// The case at a ratio.
@@ -125,7 +125,7 @@ impl Row {
         match self.at(ratio) {
             Err(error) if !is_of_base(&error) => Err(RunError::Refused(format!(
                 "{}, {}, at D15F/D85B {ratio:.2}: {error}",
-                self.wanted.density, self.wanted.thickness
+                self.density, self.thickness
             ))),
             _ => Ok(()),
         }

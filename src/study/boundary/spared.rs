@@ -18,9 +18,8 @@ pub(super) fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     if row.end_of.is_none() {
         return Vec::new();
     }
-    let is_end_of = |parent: &Row, end: &Row| {
-        parent.wanted.thickness == end.wanted.thickness && parent.ends.contains(&end.wanted.density)
-    };
+    let is_end_of =
+        |parent: &Row, end: &Row| parent.thickness == end.thickness && parent.ends.contains(&end.density);
     let parents = || rows.iter().filter(|parent| is_end_of(parent, row));
     if parents().any(|parent| parent.networks() > 0) {
         return Vec::new();

@@ -57,14 +57,13 @@ pub(super) fn boundaries(
         let unbounded = unbounded(row, rows, &found);
         let spared = spared_ends(row, rows, &found);
         found[at].of.no_erosion_notes.extend(spared);
-        let name = format!("{}, {}", row.wanted.density, row.wanted.thickness);
+        let name = format!("{}, {}", row.density, row.thickness);
         judgements.push((name, judged(row, (&found[at], rows, &found), held[at], unbounded)?));
     }
     // The worst end of a row without networks is that row, unless another row has it as an end, too.
     let is_shown = |(of, row): &(&FoundRow, &Row)| {
-        let density = &row.wanted.density;
-        let has_it =
-            |other: &Row| other.wanted.thickness == row.wanted.thickness && other.ends.contains(density);
+        let density = &row.density;
+        let has_it = |other: &Row| other.thickness == row.thickness && other.ends.contains(density);
         let all: Vec<_> = found.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
         let only = if let [(only, _)] = all[..] { only.of.as_end.as_ref() } else { None };
         !of.is_spared() && (of.of.end_of.is_none() || only != Some(density))
@@ -132,7 +131,7 @@ impl FoundRow {
     /// The same of a row of which this is the end that holds least.
     fn named(&self, row: &Row) -> Self {
         let as_end = Some(self.of.density.clone());
-        let of = BoundaryRow { density: row.wanted.density.clone(), as_end, end_of: None, ..self.of.clone() };
+        let of = BoundaryRow { density: row.density.clone(), as_end, end_of: None, ..self.of.clone() };
         Self { of, ..self.clone() }
     }
 }
@@ -145,10 +144,10 @@ fn holds_less(a: &FoundRow, b: &FoundRow) -> Ordering {
 
 /// Whether another row is this one, where it was searched, or an end of its range.
 fn is_in_range(row: &Row, other: &Row) -> bool {
-    let density = &other.wanted.density;
+    let density = &other.density;
     other.networks() > 0
-        && other.wanted.thickness == row.wanted.thickness
-        && (*density == row.wanted.density || row.ends.contains(density))
+        && other.thickness == row.thickness
+        && (*density == row.density || row.ends.contains(density))
 }
 
 /// What was found of the row itself, where it was searched, and of the ends of its range.
@@ -237,11 +236,11 @@ fn judged(
 /// `boundary.csv`.
 pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
     let of_network = |done: &Done| {
-        let (wanted, network) = (&rows[done.row].wanted, done.network);
-        let d85b_of = base(&rows[done.row], "").size().map_or(String::new(), |size| grading(&size));
+        let (walked, network) = (&rows[done.row], done.network);
+        let d85b_of = base(walked, "").size().map_or(String::new(), |size| grading(&size));
         let row = |&(d15f_over_d85b, eroded_first, eroded_second): &(f64, f64, Option<f64>)| WalkRow {
-            density: wanted.density.clone(),
-            thickness: wanted.thickness.to_string(),
+            density: walked.density.clone(),
+            thickness: walked.thickness.to_string(),
             network,
             d15f_over_d85b,
             eroded_first,
@@ -331,10 +330,10 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
     let of = BoundaryRow {
-        density: row.wanted.density.clone(),
-        thickness: row.wanted.thickness.to_string(),
+        density: row.density.clone(),
+        thickness: row.thickness.to_string(),
         layers,
-        thickness_mm: match row.wanted.thickness {
+        thickness_mm: match row.thickness {
             Thickness::Mm(mm) => Some(row.thicker_than_asked(ratio).unwrap_or(mm)),
             _ => of_layers(),
         },
