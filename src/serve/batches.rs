@@ -25,17 +25,23 @@ pub struct AskedBatch {
     pub filters: Vec<String>,
     /// Which pairs are walked, and how: `governing`, `look`, `alone`, or `filters` for one base.
     pub walks: String,
-    #[serde(default)]
+    #[serde(flatten)]
+    pub tables: AskedTables,
+}
+
+/// What goes with two sheets.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct AskedTables {
+    /// A word, or none.
     pub density: String,
-    #[serde(default)]
+    /// This very filter is packed.
     pub pack: bool,
-    #[serde(default)]
     pub quick: bool,
-    #[serde(default)]
+    /// The base is walked as it was sampled, not as practice regrades it.
     pub as_sampled: bool,
-    #[serde(default)]
+    /// The two are taken as they are given, though they look exchanged.
     pub as_given: bool,
-    #[serde(default)]
     pub changes: Vec<String>,
 }
 

@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::archive::archive;
-use super::batches::{self, AskedBatch};
+use super::batches::{self, AskedBatch, AskedTables};
 use super::downloads::example;
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
@@ -54,21 +54,8 @@ const SETTINGS: (usize, usize) = (200, 2000);
 struct Asked {
     base: String,
     filter: String,
-    #[serde(default)]
-    density: String,
-    /// This very filter is packed.
-    #[serde(default)]
-    pack: bool,
-    #[serde(default)]
-    quick: bool,
-    /// The base is walked as it was sampled, not as practice regrades it.
-    #[serde(default)]
-    as_sampled: bool,
-    /// The two are taken as they are given, though they look exchanged.
-    #[serde(default)]
-    as_given: bool,
-    #[serde(default)]
-    changes: Vec<String>,
+    #[serde(flatten)]
+    tables: AskedTables,
 }
 
 impl Asked {
@@ -279,14 +266,11 @@ impl Routes {
 
     fn scene(&self, asked: &Asked) -> Result<Scene, Problem> {
         let (base, filter) = (self.path(&asked.base)?, self.path(&asked.filter)?);
-        Scene::of_tables(&base, &filter, &options(asked)?).map_err(wrong)
+        Scene::of_tables(&base, &filter, &table_options(&asked.tables)?).map_err(wrong)
     }
 
     fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
-        let AskedBatch { as_given, as_sampled, pack, quick, .. } = *asked;
-        bounded(&asked.changes)?;
-        let (density, changes) = (density(&asked.density)?, asked.changes.clone());
-        let tables = TableOptions { density, pack, quick, as_sampled, as_given, changes };
+        let tables = table_options(&asked.tables)?;
         let walks = asked.walks().map_err(wrong)?;
         let options = of_cases(&self.root, &self.prepare, "");
         BatchPlan::new(samples, filters, &tables, walks, &options).map_err(wrong)
@@ -405,25 +389,12 @@ fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
     serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
 }
 
-/// A density in a word; `None` where none is said.
-fn density(word: &str) -> Result<Option<Density>, Problem> {
-    let named = || Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)));
-    if word.is_empty() { Ok(None) } else { named().map(Some) }
-}
-
-/// What a scene of tables is given besides them.
-fn options(asked: &Asked) -> Result<TableOptions, Problem> {
-    let density = density(&asked.density)?;
+fn table_options(asked: &AskedTables) -> Result<TableOptions, Problem> {
+    let AskedTables { pack, quick, as_sampled, as_given, .. } = *asked;
+    let named = |word| Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)));
+    let density = Some(&*asked.density).filter(|word| !word.is_empty()).map(named).transpose()?;
     bounded(&asked.changes)?;
-    let Asked { quick, as_sampled, as_given, .. } = *asked;
-    Ok(TableOptions {
-        density,
-        pack: asked.pack,
-        quick,
-        as_sampled,
-        as_given,
-        changes: asked.changes.clone(),
-    })
+    Ok(TableOptions { density, pack, quick, as_sampled, as_given, changes: asked.changes.clone() })
 }
 
 fn bounded(changes: &[String]) -> Result<(), Problem> {

@@ -256,6 +256,11 @@ fn names_do_no_harm_and_mistakes_have_the_words_of_the_command_line() {
         );
     }
     assert_eq!(served.post("api/judge", b"{\"base\":1}").0, 400);
+    for request in
+        [&br#"{"base":"1","filter":"1","walks":"look"}"#[..], br#"{"base":"1","filter":"1","tight":true}"#]
+    {
+        assert_eq!(served.post("api/judge", request).0, 400, "{request:?}");
+    }
     let (status, said) = served.post("api/judge", br#"{"base":"1","filter":"1","density":"tight"}"#);
     assert_eq!((status, &said["problem"]), (422, &json!("density: dense, medium (or intermediate), loose")));
     assert_eq!(served.post("api/stop?id=7", b"").0, 409);
