@@ -31,6 +31,7 @@ use std::sync::{Mutex, MutexGuard};
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde_json::{Value, json};
 
 pub use options::{BoundaryOptions, Thickness, ThicknessList};
 
@@ -192,16 +193,16 @@ fn limits(options: &BoundaryOptions) -> crate::case::ResourceLimits {
     options.prepare.limits(&options.out)
 }
 
-/// Everything that the results follow from, in words.
+/// Hash of everything that the results follow from.
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
-    let of_row = |row: &Row| {
+    let work_of_row = |row: &Row| {
         let base = row.stated.base.gradation.points();
-        let base: Vec<_> = base.iter().map(|point| (point.size, point.percent)).collect();
-        let (thickness, d85) = (row.thickness, row.d85_mm);
-        format!("{} {thickness:?} {base:?} {d85:?} {}", row.case.fingerprint(), row.filter_has_size)
+        let base: Vec<[f64; 2]> = base.iter().map(|point| [point.size, point.percent]).collect();
+        let thickness = row.thickness.to_string();
+        json!([row.case.fingerprint(), thickness, base, row.d85_mm, row.filter_has_size])
     };
-    let rows: Vec<String> = rows.iter().map(of_row).collect();
-    kept::hash_of(&format!("{METHOD} {bracket:?} {rows:?}"))
+    let rows: Vec<Value> = rows.iter().map(work_of_row).collect();
+    kept::hash_of(&json!([METHOD, bracket, rows]).to_string())
 }
 
 /// Searches every network of every row that is not done, side by side, and keeps each as soon as it is done.
