@@ -13,7 +13,7 @@ mod work;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use serde_json::Value;
@@ -39,8 +39,8 @@ const LISTED: usize = 200;
 pub struct JobQueue {
     context: WorkContext,
     all: Mutex<Vec<Job>>,
-    /// Held while a request of a job is written, one after another; other requests do not wait for a disk.
-    writing: Mutex<()>,
+    /// The last number that a job was given.
+    last: AtomicUsize,
     wake: Condvar,
     /// Nothing more is begun.
     ends: AtomicBool,
@@ -49,18 +49,15 @@ pub struct JobQueue {
 impl JobQueue {
     /// The jobs in `root`: those of an earlier server there, and none else yet.
     pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
-        let all = Mutex::new(earlier(root, LISTED));
+        let all = earlier(root, LISTED);
+        let last = AtomicUsize::new(all.iter().map(|job| job.id).max().unwrap_or(0));
         let context = WorkContext { root: root.to_owned(), prepare, command, on_results };
-        let writing = Mutex::new(());
-        Self { context, all, writing, wake: Condvar::new(), ends: AtomicBool::new(false) }
+        let (all, ends) = (Mutex::new(all), AtomicBool::new(false));
+        Self { context, all, last, wake: Condvar::new(), ends }
     }
 
     fn locked(&self) -> MutexGuard<'_, Vec<Job>> {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn writing(&self) -> MutexGuard<'_, ()> {
-        self.writing.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether one job more may wait.
@@ -79,28 +76,27 @@ impl JobQueue {
     /// # Errors
     /// Too many wait, which is a refusal; its folder cannot be written.
     pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
-        let _writing = self.writing();
         let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
-        let first = {
-            let all = self.locked();
-            has_room(&all)?;
-            all.iter().map(|job| job.id).max().unwrap_or(0) + 1
-        };
+        has_room(&self.locked())?;
         let path = |id: &usize| self.context.root.join(format!("{}-{id}", work.name()));
         let is_free = |id: &usize| path(id).symlink_metadata().is_err();
-        let id = (first..=LAST).find(is_free);
+        let numbers = std::iter::repeat_with(|| self.last.fetch_add(1, Ordering::Relaxed) + 1);
+        let id = numbers.take_while(|id| *id <= LAST).find(is_free);
         let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
         let written = file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()));
         let mut all = self.locked();
-        // Meanwhile the server may have been told to end.
+        // Meanwhile others may have been added, or the server told to end.
         if let Err(error) = written.and_then(|()| has_room(&all)) {
+            drop(all);
             // It was free, so what is there is of this job, which is none.
             let _ = remove_folder(&path(&id));
+            let _ = self.last.compare_exchange(id, id - 1, Ordering::Relaxed, Ordering::Relaxed);
             return Err(error);
         }
         let folder = format!("{}-{id}", work.name());
         let JobFile { title, asked, .. } = file;
-        all.push(Job { asked, ..Job::new(id, title, folder, work, JobState::Waiting) });
+        let at = all.partition_point(|job| job.id < id);
+        all.insert(at, Job { asked, ..Job::new(id, title, folder, work, JobState::Waiting) });
         shorten(&mut all);
         self.wake.notify_all();
         Ok(id)
@@ -128,7 +124,11 @@ impl JobQueue {
     /// # Errors
     /// There is none of this number that could continue.
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
-        let (folder, resumes) = self.that_continues(id)?;
+        let (folder, resumes) = {
+            let mut all = self.locked();
+            let job = self.that_continues(&mut all, id)?;
+            (self.context.root.join(&job.folder), matches!(job.work, Work::Resume))
+        };
         match resumes {
             true => Ok(None),
             false => match JobFile::read(&folder) {
@@ -138,14 +138,9 @@ impl JobQueue {
         }
     }
 
-    /// The folder of a job that can continue, and whether that is to resume the run in it.
-    fn that_continues(&self, id: usize) -> Result<(PathBuf, bool), String> {
-        let all = self.locked();
-        let job = all.iter().find(|job| job.id == id).ok_or("there is no such job")?;
-        match job.can_continue(&self.context.root) {
-            true => Ok((self.context.root.join(&job.folder), matches!(job.work, Work::Resume))),
-            false => Err("this job cannot continue".into()),
-        }
+    fn that_continues<'a>(&self, all: &'a mut [Job], id: usize) -> Result<&'a mut Job, String> {
+        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
+        if job.can_continue(&self.context.root) { Ok(job) } else { Err("this job cannot continue".into()) }
     }
 
     /// Whether the folder of a job holds the scene of a run that has begun, from which it can be resumed.
@@ -159,18 +154,22 @@ impl JobQueue {
     /// # Errors
     /// There is none of this number that could continue; too many wait.
     pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
-        let _writing = self.writing();
-        self.has_room(&self.locked())?;
-        let (folder, _) = self.that_continues(id)?;
+        let folder = {
+            let mut all = self.locked();
+            self.has_room(&all)?;
+            let job = self.that_continues(&mut all, id)?;
+            // It begins once its work is set.
+            (job.work, job.state, job.message) = (Work::Nothing, JobState::Waiting, String::new());
+            job.stop.store(false, Ordering::Relaxed);
+            *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
+            self.context.root.join(&job.folder)
+        };
         // How it ended before is no longer so.
         if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
             let _ = JobFile { ended: None, ..file }.write(&folder);
         }
         let mut all = self.locked();
-        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
-        (job.work, job.state, job.message) = (work, JobState::Waiting, String::new());
-        job.stop.store(false, Ordering::Relaxed);
-        *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
+        all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?.work = work;
         self.wake.notify_all();
         Ok(())
     }
@@ -266,11 +265,11 @@ impl JobQueue {
     #[allow(clippy::type_complexity)]
     fn next(&self) -> Option<(usize, PathBuf, Work, Arc<Mutex<Live>>, Arc<AtomicBool>)> {
         let mut all = self.locked();
-        if !all.iter().any(|job| job.state == JobState::Waiting) {
+        if !all.iter().any(Job::can_begin) {
             let patience = std::time::Duration::from_millis(200);
             all = self.wake.wait_timeout(all, patience).unwrap_or_else(PoisonError::into_inner).0;
         }
-        let job = all.iter_mut().find(|job| job.state == JobState::Waiting)?;
+        let job = all.iter_mut().find(|job| job.can_begin())?;
         job.state = JobState::Running;
         let folder = self.context.root.join(&job.folder);
         Some((job.id, folder, job.work.clone(), Arc::clone(&job.live), Arc::clone(&job.stop)))

@@ -67,6 +67,11 @@ impl Job {
         Self { id, title, asked, folder, work, state, message, result, live, stop }
     }
 
+    /// Whether it waits, and its work is known.
+    pub fn can_begin(&self) -> bool {
+        self.state == JobState::Waiting && !matches!(self.work, Work::Nothing)
+    }
+
     /// Whether it can go on: wherever it ended early, as far as the command line would take its folder. What
     /// was refused before any work would be refused again.
     pub fn can_continue(&self, root: &Path) -> bool {

@@ -54,6 +54,24 @@ fn no_more_wait_than_may_however_they_came() {
 }
 
 #[test]
+fn jobs_that_come_at_once_are_numbered_and_listed_in_order() {
+    let root = tempfile::tempdir().unwrap();
+    let queue = queue(root.path());
+    std::thread::scope(|scope| {
+        (0..WAITING).for_each(|_| {
+            scope.spawn(|| queue.add(file(), Work::Kept).unwrap());
+        });
+    });
+    let ids: Vec<usize> = queue.locked().iter().map(|job| job.id).collect();
+    assert_eq!(ids, (1..=WAITING).collect::<Vec<_>>());
+    // What cannot be kept is no job, and leaves its number to the next.
+    queue.stop(1).unwrap();
+    let large = JobFile { request: "x".repeat(5 << 20).into(), ..file() };
+    assert!(queue.add(large, Work::Kept).is_err() && !root.path().join("run-21").exists());
+    assert_eq!(queue.add(file(), Work::Kept).unwrap(), 21);
+}
+
+#[test]
 fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
     let root = tempfile::tempdir().unwrap();
     let before = queue(root.path());
