@@ -82,6 +82,8 @@ struct Column<'a, T> {
     page: Option<PageColumn<'a, T>>,
     /// Where on the page: before the columns of a greater number, after those of a smaller one.
     place: i8,
+    /// Not shown by a brief page.
+    is_detail: bool,
 }
 
 /// A column as a page shows it.
@@ -139,7 +141,7 @@ impl<'a, T> Columns<'a, T> {
     }
 
     fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<String> + 'a) -> Self {
-        self.0.push(Column { names, cells: Box::new(cells), page: None, place: 0 });
+        self.0.push(Column { names, cells: Box::new(cells), page: None, place: 0, is_detail: false });
         self
     }
 
@@ -207,15 +209,15 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// A page shows the columns of these names alone.
-    ///
-    /// # Panics
-    /// There is no column of that name.
-    pub fn only(mut self, names: &[&str]) -> Self {
-        let is_there = |name: &&&str| self.0.iter().any(|column| column.names[0] == **name);
-        assert_eq!(names.iter().find(|name| !is_there(name)), None, "columns that a page shows");
-        let others = self.0.iter_mut().filter(|column| !names.contains(&column.names[0].as_str()));
-        others.for_each(|column| column.page = None);
+    /// The last column is a detail.
+    pub fn detail(mut self) -> Self {
+        self.last().is_detail = true;
+        self
+    }
+
+    /// A page shows no details.
+    pub fn in_brief(mut self) -> Self {
+        self.0.iter_mut().filter(|column| column.is_detail).for_each(|column| column.page = None);
         self
     }
 
@@ -228,9 +230,9 @@ impl<'a, T> Columns<'a, T> {
             let cell: OfRow<'a, W, Shown> = Box::new(move |row| cell(part(row)));
             PageColumn { name, heading, kind, cell }
         };
-        let column = |Column { names, cells, page, place }: Column<'a, T>| {
+        let column = |Column { names, cells, page, place, is_detail }: Column<'a, T>| {
             let cells: OfRow<'a, W, Vec<String>> = Box::new(move |row| cells(part(row)));
-            Column { names, cells, page: page.map(shown), place }
+            Column { names, cells, page: page.map(shown), place, is_detail }
         };
         Columns(self.0.into_iter().map(column).collect())
     }
@@ -442,12 +444,12 @@ mod tests {
 
     #[test]
     fn columns_of_a_part_stand_beside_those_of_the_whole() {
-        let part = Columns::default().number("a", "A", |row: &u64| *row).number("b", "B", |row| 2 * row);
+        let part = Columns::default().number("a", "A", |row: &u64| *row).detail();
+        let part = part.number("b", "B", |row| 2 * row);
         let whole = part.of_part(|row: &(u64, bool)| &row.0);
         let whole = whole.and(Columns::default().text("c", "C", |row: &(u64, bool)| row.1));
         assert_eq!(whole.csv(&[(3, true)]), b"a,b,c\n3,6,true\n");
-        let shown: Vec<String> =
-            whole.only(&["b", "c"]).of_page().map(|column| column.heading.text).collect();
+        let shown: Vec<String> = whole.in_brief().of_page().map(|column| column.heading.text).collect();
         assert_eq!(shown, ["B", "C"]);
     }
 }

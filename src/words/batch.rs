@@ -19,7 +19,7 @@ pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lo
 pub const EXCHANGED: &str = "base and filter look exchanged";
 
 /// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
-/// unit.
+/// unit. Details are those that the table of walks leaves out.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
     let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
     let limit = move |row: &BatchRow| {
@@ -32,8 +32,10 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
         .text("filter", "Filter", |row| row.filter.clone())
         .text("group", "Group", |row| row.group.clone())
         .number("category", "Category", |row| row.category.map(u64::from))
+        .detail()
         .digits("fines_percent", 1, |row| row.fines_percent)
         .page_number("Fines, %", |row| row.fines_percent)
+        .detail()
         .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
         .digits("d85b_mm", 4, |row| row.d85b_mm)
         .page_number("D85B, mm", move |row| size(row.d85b_mm))
@@ -42,30 +44,18 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
             let [d15f, _] = d15f_and_limit_in_cells(row, unit);
             d15f
         })
+        .detail()
         .digits("limit_mm", 4, |row| row.limit_mm)
         .page_number("Limit, mm", limit)
         .column("limit_at_most", |row| row.limit_at_most)
         .text("rule", "Whose limit", |row| row.rule.clone())
+        .detail()
         .text("result", "Result", result)
         .text("tests", "Tests (Foster and Fell)", |row| tested_in_brief(row.tests, row.is_beyond_tests))
+        .detail()
         .text("note", "Note", move |row| besides(row, unit))
         .place(9)
 }
-
-/// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 11] = [
-    "sample",
-    "filter",
-    "group",
-    "d85b_mm",
-    "limit_mm",
-    "result",
-    "governs",
-    "walked",
-    "class",
-    "first_eroded_mass_percent",
-    "note",
-];
 
 /// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
 /// unit.
@@ -82,9 +72,10 @@ pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
             let range = walk.and_then(|walk| walk.curve_range.get(run).copied());
             (walk.and_then(|walk| walk.runs.get(run).copied()), range)
         })
+        .detail()
         .column("not_walked", |row| row.not_walked.clone())
         .column("folder", move |row| walk(row).map(|walk| walk.folder));
-    columns(unit).of_part(|row: &WalkedRow| &row.rules).and(of_walk).only(&SHOWN)
+    columns(unit).of_part(|row: &WalkedRow| &row.rules).and(of_walk).in_brief()
 }
 
 fn depth(row: &WalkedRow) -> &'static str {

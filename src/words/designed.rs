@@ -212,10 +212,6 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
     }
 }
 
-/// Columns of the table that a terminal and a page show; all are in the file.
-const SHOWN: [&str; 8] =
-    ["sample", "group", "d85b_mm", "d15f_max_mm", "rule", "d15f_min_mm", "band_d15f_max_mm", "governs"];
-
 /// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
 /// unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
@@ -249,7 +245,6 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .page_number("Band, D15F, mm", band)
         .number("governs", "Governs", |row| row.governs)
         .column("no_band", move |row| row.no_band.as_ref().map(|why| no_band(why, unit)))
-        .only(&SHOWN)
 }
 
 #[cfg(test)]
