@@ -7,7 +7,7 @@ use super::args::RulesArgs;
 use super::print::{plain, shown, to_copy, to_stdout};
 use crate::cases::refuse_twice;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::table::{ColumnKind, Columns, Shown};
+use crate::outcome::table::{ColumnKind, Columns};
 use crate::run::{RunError, write_new};
 use crate::verdict::batch::{NAMED, governing};
 use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
@@ -63,8 +63,7 @@ fn paths(rows: &[BatchRow], filter: &Path) -> Vec<PathBuf> {
 pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     let columns: Vec<_> = columns.of_page().collect();
     let mut lines = vec![columns.iter().map(|column| column.heading.text.clone()).collect::<Vec<_>>()];
-    let cell = |shown: Shown| [&[shown.text], &shown.below[..]].concat().join("; ");
-    let cells = |row: &T| columns.iter().map(|column| plain(&cell((column.cell)(row)))).collect();
+    let cells = |row: &T| columns.iter().map(|column| plain(&(column.cell)(row).line())).collect();
     lines.extend(rows.iter().map(cells));
     let width = |at: usize| lines.iter().map(|line| line[at].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();

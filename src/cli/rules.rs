@@ -5,14 +5,14 @@ use super::batch::each;
 use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
 use crate::gradation::{curves_in_file, notes_in_file};
 use crate::outcome::quantity::{SizeUnit, significant};
-use crate::outcome::record::{RuleNote, RuleRole};
+use crate::outcome::record::{AppliedRule, RuleNote};
 use crate::run::RunError;
 use crate::scene::TableOptions;
 use crate::store::format;
-use crate::verdict::rule_result::RuleResult;
-use crate::verdict::{ListedRule, PairRules};
+use crate::verdict::PairRules;
+use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::left_out::NOT_COVERED;
-use crate::words::rule::{LIMITS_ROUNDED, limit_begins, limit_ends, result, value_and_limit, value_begins};
+use crate::words::rule::{LIMITS_ROUNDED, PARTS, limit, result, value};
 use crate::words::rule_note::{regrade_reason, rule_notes};
 use crate::words::{practice_line, sentence};
 use std::fmt::Write;
@@ -106,13 +106,7 @@ fn words(
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
     let notes = |notes: &[RuleNote]| rule_notes(notes, SizeUnit::Mm);
-    for (role, heading) in [
-        (RuleRole::Retention, "The filter retains the base"),
-        (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
-        (RuleRole::Drainage, "The filter drains the base"),
-        (RuleRole::Placing, "The filter can be placed"),
-        (RuleRole::Stability, "Internal stability of the filter"),
-    ] {
+    for (role, heading) in PARTS {
         line(String::new());
         line(heading.to_owned());
         for rule in decision.listed.iter().filter(|rule| rule.role == role) {
@@ -137,20 +131,18 @@ fn words(
 }
 
 /// Result, name, value and limit of a rule.
-fn row(rule: &ListedRule) -> String {
+fn row(rule: &AppliedRule) -> String {
     // Short words, as in a column: what is not judged stands in the note below.
-    let word = match rule.result {
+    let word = match result_of(rule) {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",
         RuleResult::ExcessiveNotJudged => result(RuleResult::NotReached),
         found => result(found),
     };
-    let begins = limit_begins(rule).replace('≥', ">=").replace('≤', "<=");
-    let ends = limit_ends(rule);
-    let [value, limit] = value_and_limit(rule, SizeUnit::Mm);
-    let value = value.unwrap_or_else(|| "not known".into());
-    let limit = limit.map_or(String::new(), |limit| format!(", {begins} {limit}{ends}"));
-    format!("  {word:<12}{}: {} {} {value}{limit}", rule.name, rule.quantity, value_begins(rule))
+    let value = value(rule, SizeUnit::Mm).unwrap_or_else(|| "= not known".into());
+    let limit = limit(rule, SizeUnit::Mm).map_or(String::new(), |limit| format!(", {limit}"));
+    let limit = limit.replace('≥', ">=").replace('≤', "<=");
+    format!("  {word:<12}{}: {} {value}{limit}", rule.name, rule.quantity)
 }
 
 /// Sizes by their names, the unit once where all of them are known.

@@ -221,6 +221,18 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
+    /// The columns of these names alone, in this order.
+    ///
+    /// # Panics
+    /// There is no column of that name.
+    pub fn only(mut self, names: &[&str]) -> Self {
+        let column = |name: &&str| {
+            let place = self.0.iter().position(|column| column.names[0] == **name);
+            self.0.remove(place.unwrap_or_else(|| panic!("{name} is no column")))
+        };
+        Self(names.iter().map(column).collect())
+    }
+
     /// The same columns of rows of which these are a part.
     pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
     where
@@ -299,6 +311,11 @@ impl Shown {
     pub fn below(mut self, line: impl Into<Option<String>>) -> Self {
         self.below.extend(line.into());
         self
+    }
+
+    /// In one line.
+    pub fn line(self) -> String {
+        [&[self.text], &self.below[..]].concat().join("; ")
     }
 
     /// With a text that stands out, where there is a way.

@@ -7,15 +7,13 @@ use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
 use super::quantity::{SizeUnit, range_of_tests};
-use super::rules::result;
 use super::shell::{clean, unbroken};
 use super::sizes::{SizedSoil, of_few};
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, Headline, Outcome, PracticeClass, RuleRole};
 use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
-use crate::outcome::table::Columns;
-use crate::verdict::rule_result::RuleResult;
-use crate::verdict::{Decision, ListedRule};
+use crate::verdict::Decision;
+use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::left_out::left_out_line;
 use crate::words::rule::{self, limit_begins, limit_ends, value_and_limit, value_begins};
 use crate::words::{FirstLine, first_lines, grading, judged_alone};
@@ -102,14 +100,14 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 
 /// The rules of practice that decide or are not met, and how many others there are.
 pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
-    let rules = decision.listed.iter().filter(|rule| rule.role != RuleRole::Walk);
-    let mut practice: Vec<&ListedRule> = rules.collect();
+    let rules = decision.listed.iter();
+    let mut practice: Vec<&AppliedRule> = rules.filter(|rule| rule.role != RuleRole::Walk).collect();
     practice.sort_by_key(|rule| place(rule));
     let mut roles: Vec<RuleRole> = Vec::new();
-    let (shown, others): (Vec<&ListedRule>, Vec<&ListedRule>) = practice.into_iter().partition(|rule| {
+    let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) = practice.into_iter().partition(|rule| {
         // Of several rules of one kind that are not met the first is enough here.
         let is_first = !roles.contains(&rule.role);
-        if rule.result == RuleResult::NotMet {
+        if result_of(rule) == RuleResult::NotMet {
             roles.push(rule.role);
         }
         place(rule) < NOT_MET || place(rule) == NOT_MET && is_first
@@ -148,9 +146,9 @@ pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -
 }
 
 /// How many of these rules have each result, those that are not met first.
-fn counts(rules: &[&ListedRule]) -> Vec<(usize, RuleResult)> {
+fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
     let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
-    let count = |result: RuleResult| rules.iter().filter(|rule| rule.result == result).count();
+    let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
     let counts = with.into_iter().chain(RuleResult::WITHOUT).map(|result| (count(result), result));
     counts.filter(|(count, _)| *count > 0).collect()
 }
@@ -162,9 +160,9 @@ const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEAB
 const NOT_MET: usize = DECIDING.len();
 
 /// The place of a rule: those that decide first, then those that are not met, and then the others.
-fn place(rule: &ListedRule) -> usize {
+fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
-    match (deciding, rule.result) {
+    match (deciding, result_of(rule)) {
         (Some(place), _) => place,
         (None, RuleResult::NotMet) => NOT_MET,
         (None, _) => NOT_MET + 1,
@@ -191,15 +189,11 @@ fn quantity_in_brief(rule: &AppliedRule) -> &str {
     name.split([',', '(']).next().and_then(|name| name.split(" of the filter").next()).unwrap_or(name)
 }
 
-fn table(rules: &[&ListedRule], unit: SizeUnit) -> Markup {
-    let columns = Columns::default()
-        .name("rule", "Rule", |rule: &&ListedRule| purpose(rule))
-        .text("quantity", "Quantity", |rule| quantity_in_brief(rule).to_owned())
-        .text("value", "Here", |rule| value_and_limit(rule, unit)[0].clone())
-        .text("limit", "Limit", |rule| value_and_limit(rule, unit)[1].clone())
-        .text("authority", "Whose", |rule| rule.authorities().first().map(|name| name.to_string()))
-        .text("result", "Result", |rule| result(rule));
-    let table = Table::of(rules, columns)
+fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
+    let columns = rule::columns(unit).only(&["rule", "quantity", "value", "limit", "authority", "result"]);
+    let table = Table::of(rules.iter().copied(), columns)
+        .showing("quantity", |rule| html! { (clean(quantity_in_brief(rule))) })
+        .showing("authority", |rule| html! { (clean(rule.authorities().first().unwrap_or(&"–"))) })
         .showing("rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
             true => html! { b { (purpose(rule)) } },
             false => html! { (purpose(rule)) },

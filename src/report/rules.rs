@@ -6,12 +6,9 @@ use super::quantity::{SizeUnit, length};
 use super::shell::clean;
 use super::table::Table;
 use crate::outcome::record::{AppliedRule, RuleRole};
-use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
-use crate::verdict::rule_result::RuleResult;
-use crate::verdict::{Decision, ListedRule};
+use crate::verdict::Decision;
 use crate::words::left_out::NOT_COVERED;
-use crate::words::rule::{self as words, LIMITS_ROUNDED, limit_begins, limit_ends};
-use crate::words::rule::{value_and_limit, value_begins};
+use crate::words::rule::{LIMITS_ROUNDED, columns, value};
 use crate::words::rule_note::rule_notes;
 
 /// Every rule with its value, limit, result, source and what it was made for.
@@ -35,7 +32,7 @@ pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
 }
 
 /// Rules as a table in which numbers stand for the sources.
-fn numbered(rules: &[&ListedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
+fn numbered(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
     table_with(rules, unit, |rule| match sources.iter().position(|source| *source == rule.source) {
         Some(place) => html! { " [" (place + 1) "]" },
         None => html! {},
@@ -63,13 +60,13 @@ pub(super) fn sources(decision: &Decision) -> Markup {
 }
 
 /// The rules of practice, and those that check the walk.
-fn of_practice_and_walk(rules: &[ListedRule]) -> [Vec<&ListedRule>; 2] {
+fn of_practice_and_walk(rules: &[AppliedRule]) -> [Vec<&AppliedRule>; 2] {
     let (walk, practice) = rules.iter().partition(|rule| rule.role == RuleRole::Walk);
     [practice, walk]
 }
 
 /// Each source once, those of practice first.
-fn distinct_sources(rules: &[ListedRule]) -> Vec<&str> {
+fn distinct_sources(rules: &[AppliedRule]) -> Vec<&str> {
     let mut sources: Vec<&str> = Vec::new();
     for rule in of_practice_and_walk(rules).into_iter().flatten() {
         if !rule.source.is_empty() && !sources.contains(&&*rule.source) {
@@ -79,43 +76,11 @@ fn distinct_sources(rules: &[ListedRule]) -> Vec<&str> {
     sources
 }
 
-/// The sign in the place of a limit that is not there.
-fn no_limit(rule: &ListedRule) -> &'static str {
-    let is_none = rule.result == RuleResult::NotALimit;
-    if is_none { words::result(RuleResult::NotALimit) } else { "–" }
-}
-
-/// The result of a rule: with a tick where it is kept, and there alone.
-pub(super) fn result(rule: &ListedRule) -> Shown {
-    let result = rule.result;
-    let is_decided = matches!(result, RuleResult::Met | RuleResult::NotMet);
-    words::result(result).shown().emphasised(is_decided.then_some(Emphasis::Kept(result == RuleResult::Met)))
-}
-
 /// Rules as a table, with what stands for the source behind the name of each.
-fn table_with(rules: &[&ListedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
-    let value = |rule: &AppliedRule| {
-        let [value, _] = value_and_limit(rule, unit);
-        value.map_or_else(|| "–".to_owned(), |value| format!("{} {value}", value_begins(rule)))
-    };
-    let columns = Columns::default()
-        .name("rule", "Rule, what it is for, source", |rule: &&ListedRule| rule.name.clone())
-        .text("authority", "Authority", |rule| {
-            Some(rule.authorities().join(", ")).filter(|names| !names.is_empty())
-        })
-        .number("value", "Here", |rule| value(rule))
-        .number("limit", "Limit", |rule| {
-            let [begins, ends] = [limit_begins(rule), limit_ends(rule)];
-            let [_, limit] = value_and_limit(rule, unit);
-            let limit = limit.map(|limit| format!("{begins} {limit}{ends}"));
-            limit.unwrap_or_else(|| no_limit(rule).to_owned())
-        })
-        .text("result", "", |rule| match (rule.role, rule.met) {
-            (RuleRole::Walk, Some(true)) => "within".shown(),
-            (RuleRole::Walk, Some(false)) => "beyond".shown(),
-            _ => result(rule),
-        });
-    let table = Table::of(rules, columns)
+fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
+    let columns = columns(unit).only(&["rule", "authority", "value", "limit", "result"]);
+    let value = |rule: &AppliedRule| value(rule, unit).unwrap_or_else(|| "–".into());
+    let table = Table::of(rules.iter().copied(), columns)
         .class("rules")
         .showing("rule", |rule| {
             html! {
@@ -142,6 +107,7 @@ mod tests {
     use crate::gradation::Gradation;
     use crate::outcome::rules::{DESIGN, TERZAGHI};
     use crate::verdict::PairRules;
+    use crate::words::rule::value_and_limit;
 
     fn rule(id: &str, value: f64, limit: f64) -> AppliedRule {
         let of = |d15, size| Gradation::linear_from_dx(d15, size, 1.5).unwrap();

@@ -10,7 +10,7 @@ use super::sheets::Sheets;
 use crate::cases::BatchWalks;
 use crate::cases::numbered;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::table::{ColumnKind, Columns, Shown};
+use crate::outcome::table::{ColumnKind, Columns, PageColumn};
 use crate::verdict::{BatchFilter, BatchRow, WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, of_filter, walked_columns, walks};
 use crate::words::left_out::left_out_in_brief;
@@ -105,24 +105,43 @@ pub fn whole_sheet(soil: &str) -> &str {
     soil.split_once('#').map_or(soil, |(sheet, _)| sheet)
 }
 
-/// A table as the page shows it: headings, which of them stand over numbers, and cells.
-pub fn table<T>(columns: Columns<T>, rows: &[T]) -> Value {
+/// A table as the page shows it: headings, what stands under each, cells, and the class of each row's result.
+pub fn table<'r, T: 'r>(
+    columns: Columns<T>,
+    rows: impl IntoIterator<Item = &'r T>,
+    class: impl Fn(&T) -> Option<&'static str>,
+) -> Value {
     let columns: Vec<_> = columns.of_page().collect();
-    let cell = |shown: Shown| [&[shown.text], &shown.below[..]].concat().join("; ");
-    let cells = |row: &T| columns.iter().map(|column| cell((column.cell)(row))).collect();
-    let rows: Vec<Vec<String>> = rows.iter().map(cells).collect();
+    let kind = |column: &PageColumn<T>| match column.kind {
+        _ if column.name == "result" => "result",
+        ColumnKind::Name => "name",
+        ColumnKind::Text => "text",
+        ColumnKind::Number => "number",
+    };
+    let cells = |row: &T| columns.iter().map(|column| (column.cell)(row).line()).collect();
+    let (rows, classes): (Vec<Vec<String>>, Vec<_>) =
+        rows.into_iter().map(|row| (cells(row), class(row))).unzip();
     json!({
         "headings": columns.iter().map(|column| &column.heading.text).collect::<Vec<_>>(),
-        "numbers": columns.iter().map(|column| column.kind == ColumnKind::Number).collect::<Vec<_>>(),
+        "kinds": columns.iter().map(kind).collect::<Vec<_>>(),
         "rows": rows,
+        "classes": classes,
     })
 }
 
-/// The rows of a batch as far as they are walked, and which of them are in doubt though a rule is met.
+/// The class of the result of a sample: what is met and in doubt does not stand in green.
+pub fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
+    match row.met {
+        Some(true) if !is_doubted && !row.breaks_if_dispersive => Some("keeps"),
+        Some(false) => Some("breaks"),
+        _ => None,
+    }
+}
+
+/// The rows of a batch as far as they are walked.
 pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
-    let mut value = table(walked_columns(SizeUnit::of(false, inches)), rows);
-    value["doubted"] = json!(rows.iter().map(WalkedRow::is_doubted).collect::<Vec<_>>());
-    value
+    let columns = walked_columns(SizeUnit::of(false, inches));
+    table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
 }
 
 /// What the page shows of a batch that is done: its table, and what a client asks of each filter.
@@ -140,4 +159,24 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::{Gradation, SoilSample};
+    use crate::verdict::PairOptions;
+
+    #[test]
+    fn what_is_met_and_in_doubt_does_not_stand_in_green() {
+        let curve = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
+        let base = curve(&[(0.08, 0.0), (0.3, 100.0)]);
+        let sample = SoilSample { name: "A".into(), path: "A".into(), curve: base };
+        let filter = vec![("F".to_owned(), curve(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());
+        assert_eq!([class_of(&row, false), class_of(&row, true)], [Some("keeps"), None]);
+        let dispersive = BatchRow { breaks_if_dispersive: true, ..row.clone() };
+        let broken = BatchRow { met: Some(false), ..row };
+        assert_eq!([class_of(&dispersive, false), class_of(&broken, true)], [None, Some("breaks")]);
+    }
 }

@@ -258,24 +258,24 @@ async function showSamples(query) {
     if (state.samples !== String(asked)) return;
     $("#samples-said").replaceChildren(...table.filters.map(([first, ...rest]) => el("div", {}, el("p", {}, el("b", {}, first)), list(rest) || "")),
       ...(table.notes.length ? [list(table.notes)] : []));
-    $("#samples-table").replaceChildren(...rowsOf(table, table.unstable));
+    $("#samples-table").replaceChildren(...rowsOf(table));
   } catch (error) {
     for (const part of ["#samples-said", "#samples-table"]) $(part).replaceChildren();
     show($("#samples-problem"), error.message);
   }
 }
 
-/** Head and body of a table; what is met stands in green but in the rows that are doubted. */
-function rowsOf(table, doubted) {
-  const kind = (at) => ({ class: table.numbers[at] ? "n" : null });
-  const marked = (text, row) => (text === "met" && doubted && doubted[row] ? text : text === "met" ? el("span", { class: "keeps" }, text) : text === "not met" ? el("span", { class: "breaks" }, "NOT MET") : text);
-  return [el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", kind(at), text)))),
-    el("tbody", {}, ...table.rows.map((row, line) => el("tr", {}, ...row.map((text, at) => el(at ? "td" : "th", kind(at),
-      table.headings[at] === "Result" ? marked(text, line) : text)))))];
+/** The head of a table, and its body; the result of a row stands in the colour of its class. */
+const headOf = (table) => el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", { class: table.kinds[at] === "number" ? "n" : null }, text))));
+function bodyOf(table, ...first) {
+  const marked = (text, name) => (name ? el("span", { class: name }, name === "breaks" ? text.toUpperCase() : text) : text);
+  return el("tbody", {}, ...first, ...table.rows.map((row, line) => el("tr", {}, ...row.map((text, at) => el(table.kinds[at] === "name" ? "th" : "td",
+    { class: table.kinds[at] === "number" ? "n" : null }, table.kinds[at] === "result" ? marked(text, table.classes[line]) : text)))));
 }
+const rowsOf = (table) => [headOf(table), bodyOf(table)];
 
 /** The samples of a sheet with their walks; no two of the page have one name. */
-const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table, table.doubted)));
+const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table)));
 
 /** Puts the drawing into the page itself, so that it can be asked for its values. */
 async function showCurves(query) {
@@ -329,39 +329,20 @@ function readCurves(svg) {
   };
 }
 
-const ROLES = [["retention", "The filter retains the base"],
-  ["continuation", "Coarser filters: where erosion still ends"],
-  ["drainage", "The filter drains the base"], ["placing", "The filter can be placed"], ["stability", "Internal stability of the filter"]];
-
-/** What a rule found, in the program's words; what is met stands in green. */
-const result = (words) => el("span", { class: { met: "keeps", "not met": "breaks" }[words] || "none" }, words === "not met" ? "NOT MET" : words);
-
 function showRules(pair) {
-  const rows = pair.rules.map((rule, at) => ({ rule, named: pair.listed[at], shown: pair.shown[at], found: pair.results[at], sign: pair.limit_begins[at], ends: pair.limit_ends[at], bound: pair.value_begins[at], words: pair.rule_words[at] }))
-    .filter((row) => row.named);
-  const broken = rows.filter(({ rule }) => rule.applies && rule.met === false);
   const parts = pair.notes.map((note) => el("p", { class: "problem" }, note));
   const { base } = pair;
   parts.push(el("p", {}, `The base as practice reads it: D85 ${number(base.d85_mm)} mm, `, base.regraded
     ? `regraded on ${number(base.regraded_at_mm)} mm (as sampled ${number(base.d85_as_sampled_mm)} mm)` : "as sampled",
   `; ${pair.why}.`));
   parts.push(el("p", {}, el("b", {}, "Practice: "), `${pair.practice}.`));
-  const named = (some) => some.map((row) => row.named[0]).join("; ");
-  const open = rows.filter(({ found }) => found === "no result");
-  if (broken.length) parts.push(el("p", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), named(broken)));
-  if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), named(open)));
+  const { not_met: broken, open } = pair;
+  if (broken.length) parts.push(el("p", {}, el("b", { class: "breaks" }, `${broken.length} not met: `), broken.join("; ")));
+  if (open.length) parts.push(el("p", {}, el("b", {}, "No result: "), open.join("; ")));
   if (!broken.length && !open.length) parts.push(el("p", {}, "Every rule that was made for these soils is met. What the walk says is another question."));
   parts.push(el("p", {}, el("button", { type: "button", onclick: () => $("#how").scrollIntoView({ block: "start" }) }, "On to the walk")));
-  const rowsOfRole = (role) => rows.filter(({ rule }) => rule.role === role).map(({ rule, named: [name, source, authorities], shown: [value, limit], found, sign, ends, bound, words }) => {
-    return el("tr", {}, el("td", {}, result(found)), el("td", {}, name), el("td", {}, authorities || "–"),
-      el("td", {}, rule.quantity), el("td", { class: "n" }, value ? (bound === "=" ? value : `${bound} ${value}`) : "–"),
-      el("td", { class: "n" }, limit ? `${sign} ${limit}${ends}` : "–"),
-      el("td", { class: "small" }, [words, source].filter(Boolean).join(" – ")));
-  });
-  const table = el("table", { class: "rules" }, el("thead", {}, el("tr", {},
-    ...["Result", "Rule", "Authority", "Quantity"].map((text) => el("th", {}, text)),
-    ...["Value", "Limit"].map((text) => el("th", { class: "n" }, text)), el("th", {}, "Note, source"))),
-    ...ROLES.map(([role, title]) => el("tbody", {}, el("tr", {}, el("th", { colspan: 7 }, el("b", {}, title))), ...rowsOfRole(role))));
+  const title = (part) => el("tr", {}, el("th", { colspan: part.headings.length }, el("b", {}, part.title)));
+  const table = el("table", { class: "rules" }, headOf(pair.parts[0]), ...pair.parts.map((part) => bodyOf(part, title(part))));
   parts.push(el("details", { open: true }, el("summary", {}, "Every rule"), el("p", { class: "small" }, pair.rounded), scrolling("every rule", table)));
   $("#rules").replaceChildren(...parts);
 }

@@ -285,7 +285,7 @@ impl Routes {
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
             .map_err(|mistake| wrong(mistake.refusal()))?;
-        Ok(Answer::json(200, rules_of_pair(pair).map_err(wrong)?))
+        Ok(Answer::json(200, rules_of_pair(&pair)))
     }
 
     /// The rules of practice on every sample of a sheet.

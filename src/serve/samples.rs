@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::batches::{filter_names, filter_paths, table, whole_sheet};
+use super::batches::{class_of, filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
 use crate::cases::refuse_twice;
 use crate::outcome::quantity::SizeUnit;
@@ -38,14 +38,13 @@ impl SampleTable {
         Ok(Self(table))
     }
 
-    /// As the page shows it: headings, which of them stand over numbers, cells, and sentences on each filter.
+    /// As the page shows it, with sentences on each filter.
     pub fn json(&self) -> Value {
         let rows = &self.0.rows[..self.0.rows.len().min(MOST_SHOWN)];
         let cut = (rows.len() < self.0.rows.len())
             .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", self.0.rows.len()));
         let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display())).chain(cut);
-        let mut value = table(columns(SizeUnit::Mm), rows);
-        value["unstable"] = json!(rows.iter().map(|row| row.may_lose_fines).collect::<Vec<_>>());
+        let mut value = table(columns(SizeUnit::Mm), rows, |row| class_of(row, row.may_lose_fines));
         let of_filters = self.0.filters.iter().map(|filter| of_filter(filter, &self.0.rows, SizeUnit::Mm));
         value["filters"] = json!(of_filters.collect::<Vec<_>>());
         value["notes"] = json!(notes.collect::<Vec<_>>());

@@ -1,30 +1,12 @@
 //! Rules of practice in the rows of a table.
 
-use std::ops::Deref;
-
-use super::rule_result::{RuleResult, result_of, without_margin};
+use super::rule_result::without_margin;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 
-/// A rule in a row of a table, with its result.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ListedRule {
-    rule: AppliedRule,
-    /// Its result.
-    pub result: RuleResult,
-}
-
-impl Deref for ListedRule {
-    type Target = AppliedRule;
-
-    fn deref(&self) -> &AppliedRule {
-        &self.rule
-    }
-}
-
 /// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
 /// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
-pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule> {
+pub(super) fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
             |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
@@ -32,11 +14,7 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<ListedRule> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    let row = |rule: &AppliedRule| ListedRule {
-        result: result_of(rule),
-        rule: if is_one && rule.id == DESIGN { of_dispersive(rule) } else { rule.clone() },
-    };
-    once.map(row).collect()
+    once.map(|rule| if is_one && rule.id == DESIGN { of_dispersive(rule) } else { rule.clone() }).collect()
 }
 
 /// The limit of a dispersive base under its own name.

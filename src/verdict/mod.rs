@@ -42,7 +42,6 @@ pub use answer::ordered;
 pub use batch::BatchRow;
 pub use batch_table::{BatchFilter, BatchTable};
 pub use designed_samples::{DesignedSample, DesignedSamples};
-pub use listed::ListedRule;
 pub use mistake::{Mistake, MistakeKind};
 pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};
 pub use planned_walk::PlannedWalk;

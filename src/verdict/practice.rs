@@ -1,8 +1,8 @@
 //! The decision of filter practice on a pair: made once, of its rules, for records, notes and every face.
 
 use super::dispersion::BeyondDispersive;
-use super::listed::{ListedRule, listed};
-use super::rule_result::{RuleResult, has_no_margin, met_of, result_of, without_margin};
+use super::listed::listed;
+use super::rule_result::{has_no_margin, met_of, without_margin};
 use super::tested::{is_beyond_tests, is_beyond_unclear, tested};
 use super::washout::{Washout, washout};
 use crate::outcome::design::retention::{open_retention, retaining, retention};
@@ -17,10 +17,8 @@ use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_ERO
 pub struct Decision {
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// The result of every rule, in their order.
-    pub results: Vec<RuleResult>,
     /// Rules as a sheet lists them.
-    pub listed: Vec<ListedRule>,
+    pub listed: Vec<AppliedRule>,
     /// Rules that were made for these soils and are not kept; of retention those by which practice goes.
     broken: Vec<AppliedRule>,
     /// Where the filter stands.
@@ -98,7 +96,6 @@ impl Decision {
         let others = rules.iter().filter(|rule| rule.role != RuleRole::Retention);
         let facts = Self {
             rules: rules.to_vec(),
-            results: rules.iter().map(result_of).collect(),
             listed: listed(rules),
             broken: retaining(rules).chain(others).filter(|rule| rule.is_broken()).cloned().collect(),
             standing: Standing::NoRules,

@@ -30,7 +30,7 @@ impl RuleResult {
 }
 
 /// The result of a rule.
-pub(super) fn result_of(rule: &AppliedRule) -> RuleResult {
+pub fn result_of(rule: &AppliedRule) -> RuleResult {
     match rule.met.filter(|_| rule.applies) {
         Some(true) if rule.role == RuleRole::Continuation => {
             match rule.notes.contains(&RuleNote::ExcessiveNotJudged) {

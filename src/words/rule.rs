@@ -1,12 +1,75 @@
-//! Single rules of practice in words: their results, values beside limits, and how a sentence cites them.
+//! Rules of practice in words: their table, of which every face shows some columns, their results, and values
+//! beside limits.
 
+use super::rule_note::rule_notes;
 use crate::outcome::quantity::{SizeUnit, Unit, beside_limit};
 use crate::outcome::record::{AppliedRule, RuleRole, RuleUnit, ValueBound};
 use crate::outcome::rules::PERMEABILITY_LEAST;
-use crate::verdict::rule_result::RuleResult;
+use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
+use crate::verdict::rule_result::{RuleResult, result_of};
 
 /// Stands once where limits are listed: a reader finds the digits that are not shown a little larger.
 pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
+
+/// The parts in which rules of practice are listed, with their headings.
+pub const PARTS: [(RuleRole, &str); 5] = [
+    (RuleRole::Retention, "The filter retains the base"),
+    (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
+    (RuleRole::Drainage, "The filter drains the base"),
+    (RuleRole::Placing, "The filter can be placed"),
+    (RuleRole::Stability, "Internal stability of the filter"),
+];
+
+/// The columns of rules, sizes in this unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
+    Columns::default()
+        .name("rule", "Rule", |rule: &AppliedRule| rule.name.clone())
+        .text("authority", "Authority", |rule| {
+            Some(rule.authorities().join(", ")).filter(|names| !names.is_empty())
+        })
+        .text("quantity", "Quantity", |rule| rule.quantity.name().to_owned())
+        .number("value", "Value", move |rule| value(rule, unit))
+        .number("limit", "Limit", move |rule| {
+            let is_none = result_of(rule) == RuleResult::NotALimit;
+            limit(rule, unit).or(is_none.then(|| result(RuleResult::NotALimit).to_owned()))
+        })
+        .text("result", "Result", shown_result)
+        .text("note", "Note, source", move |rule| {
+            let texts = [notes(rule, unit), rule.source.clone()];
+            texts.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" – ")
+        })
+}
+
+/// What a rule says beside its result, and what it needs.
+pub fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
+    rule_notes(&[&rule.notes[..], &rule.needs].concat(), unit)
+}
+
+/// The result in a cell: of a comparison of the walk with tests whether it lies within them.
+fn shown_result(rule: &AppliedRule) -> Shown {
+    let found = result_of(rule);
+    match (rule.role, rule.met) {
+        (RuleRole::Walk, Some(true)) => "within".shown(),
+        (RuleRole::Walk, Some(false)) => "beyond".shown(),
+        _ => {
+            let is_decided = [RuleResult::Met, RuleResult::NotMet].contains(&found);
+            let emphasis = is_decided.then_some(Emphasis::Kept(found == RuleResult::Met));
+            result(found).shown().emphasised(emphasis)
+        }
+    }
+}
+
+/// The value of a rule as `= 0.8`, and as `at most 0.8` where sieves tell no more.
+pub fn value(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
+    let [value, _] = value_and_limit(rule, unit);
+    value.map(|value| format!("{} {value}", value_begins(rule)))
+}
+
+/// The limit of a rule with the words around it.
+pub fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
+    let [_, limit] = value_and_limit(rule, unit);
+    limit.map(|limit| format!("{} {limit}{}", limit_begins(rule), limit_ends(rule)))
+}
 
 /// The result of a rule.
 pub fn result(result: RuleResult) -> &'static str {

@@ -174,7 +174,7 @@ fn every_sample_of_a_sheet_has_its_rules() {
     for (at, name) in ["1 filter.csv: of 6 samples", "2 filter.csv: of 6 samples"].iter().enumerate() {
         assert!(both["filters"][at][0].as_str().unwrap().starts_with(name), "{both}");
     }
-    assert_eq!(both["unstable"].as_array().unwrap().len(), 12);
+    assert_eq!(both["classes"].as_array().unwrap().len(), 12);
     let seven = ["2"; 7].join("%0A");
     assert_eq!(served.get(&format!("api/samples?base=1&filter={seven}")).0, 422);
     // Stricter where the soils are dispersive.

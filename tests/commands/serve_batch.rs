@@ -71,9 +71,12 @@ fn the_table_is_that_of_the_command_line_and_grows_while_it_is_walked() {
         assert_eq!(walk(a), walk(b), "{}", a["sample"]);
     }
     // What is met and yet in doubt is marked, so that it does not stand in green.
-    let doubted: Vec<bool> = page["rows"].as_array().unwrap().iter().map(is_doubted).collect();
-    assert_eq!(result["doubted"], json!(doubted));
-    assert!(doubted.contains(&true), "{result}");
+    let rows = page["rows"].as_array().unwrap();
+    for (row, class) in rows.iter().zip(result["classes"].as_array().unwrap()) {
+        let is_green = row["met"] == true && row["breaks_if_dispersive"] != true && !is_doubted(row);
+        assert_eq!((class == "keeps", class == "breaks"), (is_green, row["met"] == false), "{row}");
+    }
+    assert!(rows.iter().any(is_doubted), "{result}");
     for sentence in result["filters"][0].as_array().unwrap().iter().skip(1) {
         assert!(told.contains(&sentence.as_str().unwrap().replace('\u{202f}', " ")), "{sentence}");
     }
@@ -111,7 +114,7 @@ fn a_batch_that_is_stopped_goes_on_and_keeps_what_is_walked() {
     };
     let begun = served.until(id, |job| looks(job) > 0);
     let table = &begun["live"]["table"];
-    assert_eq!((cells(table, "Sample").len(), table["doubted"].as_array().unwrap().len()), (6, 6));
+    assert_eq!((cells(table, "Sample").len(), table["classes"].as_array().unwrap().len()), (6, 6));
     assert!(begun["live"]["done"].as_array().unwrap().is_empty(), "the table says it");
     let stopped = stop();
     assert!(stopped["can_continue"] == true && looks(&stopped) < 6, "{stopped}");

@@ -6,7 +6,7 @@ use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Stat
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
 use crate::verdict::Decision;
-use crate::verdict::rule_result::RuleResult;
+use crate::verdict::rule_result::{RuleResult, result_of};
 use crate::words::rule::result;
 use crate::words::rule_note::rule_notes;
 use crate::words::{first_lines, sentence};
@@ -126,9 +126,8 @@ fn rules(decision: &Decision) -> Sheet {
         "Id",
     ];
     let mut sheet = Sheet::new("Rules", &headings);
-    let rules = decision.rules.iter().zip(&decision.results);
-    for (rule, result) in rules.filter(|(rule, _)| rule.role != RuleRole::Walk) {
-        sheet.row(of_rule(rule, *result));
+    for rule in decision.rules.iter().filter(|rule| rule.role != RuleRole::Walk) {
+        sheet.row(of_rule(rule, result_of(rule)));
     }
     sheet
 }
