@@ -14,6 +14,8 @@
 //! assert_eq!(shown, ["b", "3.00"]);
 //! ```
 
+use std::fmt::{self, Display, Formatter};
+
 use serde::de::value::Error;
 use serde::de::{DeserializeOwned, Error as _, Visitor};
 use serde::{Deserializer, Serialize, forward_to_deserialize_any};
@@ -78,7 +80,9 @@ type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
 struct Column<'a, T> {
     /// In a file; a value with its interval is three columns there, and one cell of a page.
     names: Vec<String>,
-    cells: OfRow<'a, T, Vec<String>>,
+    cells: OfRow<'a, T, Vec<CellValue>>,
+    /// In a workbook, where neither the page nor the name says what stands there.
+    heading: Option<&'static str>,
     page: Option<PageColumn<'a, T>>,
     /// Where on the page: before the columns of a greater number, after those of a smaller one.
     place: i8,
@@ -119,7 +123,7 @@ impl<'a, T> Columns<'a, T> {
     /// With a column of a file, which a page shows where [`Self::page_number()`] or [`Self::page_text()`]
     /// follows.
     pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
-        self.with(vec![name.into()], move |row| vec![cell(row).text()])
+        self.with(vec![name.into()], move |row| vec![cell(row).value()])
     }
 
     /// With such a column, of numbers with so many decimals.
@@ -136,12 +140,13 @@ impl<'a, T> Columns<'a, T> {
     pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
         self.with(names.map(String::from).to_vec(), move |row| {
             let ends = of(row).map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
-            ends.map(in_percent).to_vec()
+            ends.map(|end| in_percent(end).value()).to_vec()
         })
     }
 
-    fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<String> + 'a) -> Self {
-        self.0.push(Column { names, cells: Box::new(cells), page: None, place: 0, is_detail: false });
+    fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<CellValue> + 'a) -> Self {
+        let cells = Box::new(cells);
+        self.0.push(Column { names, cells, heading: None, page: None, place: 0, is_detail: false });
         self
     }
 
@@ -197,6 +202,12 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
+    /// A workbook has the last column under this heading.
+    pub fn headed(mut self, heading: &'static str) -> Self {
+        self.last().heading = Some(heading);
+        self
+    }
+
     /// A page shows the last column before (below 0) or after (above 0) the others.
     pub fn place(mut self, place: i8) -> Self {
         self.last().place = place;
@@ -242,9 +253,10 @@ impl<'a, T> Columns<'a, T> {
             let cell: OfRow<'a, W, Shown> = Box::new(move |row| cell(part(row)));
             PageColumn { name, heading, kind, cell }
         };
-        let column = |Column { names, cells, page, place, is_detail }: Column<'a, T>| {
-            let cells: OfRow<'a, W, Vec<String>> = Box::new(move |row| cells(part(row)));
-            Column { names, cells, page: page.map(shown), place, is_detail }
+        let column = |column: Column<'a, T>| {
+            let Column { names, cells, heading, page, place, is_detail } = column;
+            let cells: OfRow<'a, W, Vec<CellValue>> = Box::new(move |row| cells(part(row)));
+            Column { names, cells, heading, page: page.map(shown), place, is_detail }
         };
         Columns(self.0.into_iter().map(column).collect())
     }
@@ -267,9 +279,26 @@ impl<'a, T> Columns<'a, T> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(self.0.iter().flat_map(|of| of.names.clone()).map(inert)).expect(WRITTEN);
         for row in rows {
-            writer.write_record(self.0.iter().flat_map(|of| (of.cells)(row)).map(inert)).expect(WRITTEN);
+            let cells = self.values(row).map(|value| inert(value.to_string()));
+            writer.write_record(cells).expect(WRITTEN);
         }
         written(writer)
+    }
+
+    /// What a file holds of a row.
+    pub fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
+        self.0.iter().flat_map(|column| (column.cells)(row))
+    }
+
+    /// The headings of a workbook.
+    pub fn headings(&self) -> Vec<String> {
+        let names = self.0.iter().flat_map(|column| column.names.iter().map(move |name| (column, name)));
+        let heading = |(column, name): (&Column<T>, &String)| match (column.heading, &column.page) {
+            (Some(heading), _) => heading.to_owned(),
+            (None, Some(page)) => page.heading.text.clone(),
+            (None, None) => name.clone(),
+        };
+        names.map(heading).collect()
     }
 }
 
@@ -280,6 +309,33 @@ fn fixed(value: Option<f64>, decimals: usize) -> String {
 
 fn in_percent(fraction: Option<f64>) -> String {
     fixed(fraction.map(|fraction| 100.0 * fraction), 4)
+}
+
+/// What a cell of a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CellValue {
+    /// Nothing.
+    Empty,
+    /// Words.
+    Words(String),
+    /// A number.
+    Number(f64),
+    /// A count.
+    Count(u64),
+    /// Yes or no.
+    Truth(bool),
+}
+
+impl Display for CellValue {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => Ok(()),
+            Self::Words(words) => f.write_str(words),
+            Self::Number(number) => number.fmt(f),
+            Self::Count(count) => count.fmt(f),
+            Self::Truth(truth) => truth.fmt(f),
+        }
+    }
 }
 
 /// A cell or a heading of a page.
@@ -327,15 +383,15 @@ impl Shown {
 /// What stands in a cell: nothing in a file and a dash on a page where there is no value.
 pub trait TableCell {
     /// In a file.
-    fn text(self) -> String;
+    fn value(self) -> CellValue;
 
     /// On a page.
     fn shown(self) -> Shown;
 }
 
 impl<C: TableCell> TableCell for Option<C> {
-    fn text(self) -> String {
-        self.map_or(String::new(), C::text)
+    fn value(self) -> CellValue {
+        self.map_or(CellValue::Empty, C::value)
     }
 
     fn shown(self) -> Shown {
@@ -344,8 +400,8 @@ impl<C: TableCell> TableCell for Option<C> {
 }
 
 impl TableCell for Verdict {
-    fn text(self) -> String {
-        self.words().to_owned()
+    fn value(self) -> CellValue {
+        self.words().value()
     }
 
     fn shown(self) -> Shown {
@@ -355,8 +411,8 @@ impl TableCell for Verdict {
 
 /// A fraction in percent, on a page with its interval below it.
 impl TableCell for Statistic {
-    fn text(self) -> String {
-        in_percent(Some(self.mean))
+    fn value(self) -> CellValue {
+        in_percent(Some(self.mean)).value()
     }
 
     fn shown(self) -> Shown {
@@ -365,8 +421,8 @@ impl TableCell for Statistic {
 }
 
 impl TableCell for Quantity {
-    fn text(self) -> String {
-        self.number()
+    fn value(self) -> CellValue {
+        self.number().value()
     }
 
     fn shown(self) -> Shown {
@@ -375,8 +431,8 @@ impl TableCell for Quantity {
 }
 
 impl TableCell for Shown {
-    fn text(self) -> String {
-        self.text
+    fn value(self) -> CellValue {
+        self.text.value()
     }
 
     fn shown(self) -> Shown {
@@ -385,10 +441,10 @@ impl TableCell for Shown {
 }
 
 macro_rules! cells {
-    ($($kind:ty: $shown:expr;)*) => {
+    ($($kind:ty: $value:expr, $shown:expr;)*) => {
         $(impl TableCell for $kind {
-            fn text(self) -> String {
-                self.to_string()
+            fn value(self) -> CellValue {
+                $value(self)
             }
 
             fn shown(self) -> Shown {
@@ -399,12 +455,13 @@ macro_rules! cells {
 }
 
 cells! {
-    String: |text| text;
-    &str: str::to_owned;
-    bool: |is: bool| if is { "✓" } else { "✗" }.to_owned();
-    u64: whole;
-    usize: |count| whole(count as u64);
-    f64: significant;
+    String: CellValue::Words, |text| text;
+    &String: |text: &String| CellValue::Words(text.clone()), String::clone;
+    &str: |text: &str| CellValue::Words(text.to_owned()), str::to_owned;
+    bool: CellValue::Truth, |is: bool| if is { "✓" } else { "✗" }.to_owned();
+    u64: CellValue::Count, whole;
+    usize: |count| CellValue::Count(count as u64), |count| whole(count as u64);
+    f64: CellValue::Number, significant;
 }
 
 /// A cell that no spreadsheet takes for a formula.

@@ -16,15 +16,15 @@ use super::shell::{clean, unbroken};
 use super::shown::known;
 use super::table::Table;
 use super::written::Written;
-use crate::outcome::design::specification::{SieveLimit, StepValue};
+use crate::outcome::design::specification::StepValue;
 use crate::outcome::design::{Specification, SpecificationStep};
-use crate::outcome::quantity::{NumberRole, SizeUnit, length, significant};
+use crate::outcome::quantity::{NumberRole, SizeUnit, length};
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use crate::words::products::{columns, product as product_result, products as products_line, to_be_checked};
 use crate::words::row_note;
 use crate::words::specification::{
-    DESIGN_AGAIN, band, beside_limits, if_dispersive, limit, no_band, raised, step_name, step_notes,
-    step_value, still_to_set as still_to_set_line, without_margin,
+    DESIGN_AGAIN, band, beside_limits, if_dispersive, limit, limit_columns, no_band, raised, step_name,
+    step_notes, step_value, still_to_set as still_to_set_line, without_margin,
 };
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
@@ -165,18 +165,8 @@ fn limits(of: &Specification) -> Markup {
         let unit = SizeUnit::of(false, of.inches);
         return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, unit))) } } };
     }
-    let columns = Columns::default()
-        .name("sieve", "Sieve", |limit: &SieveLimit| limit.sieve.clone())
-        .number("opening_mm", "Opening (mm)", |limit| limit.opening_mm)
-        .number("min_percent_finer", "Least finer (%)", |limit| {
-            significant(limit.min_percent_finer).in_digits(4)
-        })
-        .number("max_percent_finer", "Greatest finer (%)", |limit| {
-            let most = limit.max_percent_finer;
-            most.map_or(Shown::default(), |most| significant(most).in_digits(4).shown())
-        });
     html! {
-        (Table::of(&of.limits, columns))
+        (Table::of(&of.limits, limit_columns()))
         @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
         @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }

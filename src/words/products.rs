@@ -46,17 +46,19 @@ pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
-/// The columns of `specification_products.csv`, and under their headings what a page shows, sizes in this
-/// unit.
+/// The columns of `specification_products.csv` and of a workbook, and under their headings what a page shows,
+/// sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
     let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
         .name("product", "Product", |of: &ProductMargin| of.product.clone())
         .column("d15_fine_mm", |of| of.d15_fine_mm)
+        .headed("D15 of the fine side (mm)")
         .page_number("D15, fine to coarse side (mm)", move |of| {
             length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
         })
         .column("d15_coarse_mm", |of| of.d15_coarse_mm)
+        .headed("D15 of the coarse side (mm)")
         .column("drains_by", |of| of.drains_by)
         .page_number("Drains: finest D15 / minimum D15F", move |of| margin(of.drains_by))
         .column("holds_by", |of| of.holds_by)
@@ -66,6 +68,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
             Some(not_kept(&of.not_kept)).filter(|words| !words.is_empty())
         })
         .column("source", |of| of.source.clone())
+        .headed("Source of its limits")
 }
 
 /// The result of a standard product beside a specification.

@@ -20,7 +20,8 @@ pub const PARTS: [(RuleRole, &str); 5] = [
     (RuleRole::Stability, "Internal stability of the filter"),
 ];
 
-/// The columns of rules, sizes in this unit.
+/// The columns of rules: those of a workbook, and under their headings what other faces choose from, sizes in
+/// this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
     Columns::default()
         .name("rule", "Rule", |rule: &AppliedRule| rule.name.clone())
@@ -28,20 +29,53 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
             Some(rule.authorities().join(", ")).filter(|names| !names.is_empty())
         })
         .text("quantity", "Quantity", |rule| rule.quantity.name().to_owned())
-        .number("value", "Value", move |rule| value(rule, unit))
-        .number("limit", "Limit", move |rule| {
+        .column("value", |rule| rule.value)
+        .page_number("Value", move |rule| value(rule, unit))
+        .column("The value is", |rule| rule.value_bound.map(value_is))
+        .column("limit", |rule| rule.limit)
+        .page_number("Limit", move |rule| {
             let is_none = result_of(rule) == RuleResult::NotALimit;
             limit(rule, unit).or(is_none.then(|| result(RuleResult::NotALimit).to_owned()))
         })
+        .column("Unit of value and limit", |rule| rule.unit.name())
+        .column("The limit is", |rule| rule.limit.map(|_| limit_is(rule)))
+        .column("Applies", |rule| rule.applies)
         .text("result", "Result", shown_result)
-        .text("note", "Note, source", move |rule| {
+        // A boundary of continuing erosion that is not reached is no limit that is met.
+        .column("Met", |rule| rule.met.filter(|met| rule.role != RuleRole::Continuation || !met))
+        .column("Formula", |rule| rule.formula.clone())
+        .column("Applies to", |rule| rule.applies_to.clone())
+        .column("note", move |rule| notes(rule, unit))
+        .headed("Note")
+        .page_text("Note, source", move |rule| {
             let texts = [notes(rule, unit), rule.source.clone()];
             texts.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" – ")
         })
+        .column("Source", |rule| rule.source.clone())
+        .column("Id", |rule| rule.id.clone())
+}
+
+/// The value of a rule where sieves give only a bound.
+fn value_is(bound: ValueBound) -> &'static str {
+    match bound {
+        ValueBound::AtMost => "the most that it can be",
+        ValueBound::AtLeast => "the least that it can be",
+    }
+}
+
+/// The kind of a limit that is known.
+fn limit_is(rule: &AppliedRule) -> &'static str {
+    match (rule.at_least, rule.limit_at_most) {
+        _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
+        (true, false) => "the least",
+        (true, true) => "enough; the least is not known",
+        (false, false) => "the most",
+        (false, true) => "the most that it can be",
+    }
 }
 
 /// What a rule says beside its result, and what it needs.
-pub fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
+fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
     rule_notes(&[&rule.notes[..], &rule.needs].concat(), unit)
 }
 

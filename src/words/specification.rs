@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT};
 use crate::outcome::design::products::LEAST_CU;
-use crate::outcome::design::size_band::{D15_OVER_D10, SizeBand};
+use crate::outcome::design::size_band::{D15_OVER_D10, SieveLimit, SizeBand};
 use crate::outcome::design::specification::{NoBand, StepName, StepNote, StepValue};
 use crate::outcome::design::{Specification, SpecificationStep};
 use crate::outcome::quantity::{self, NumberRole, SizeUnit, length, limits, significant};
@@ -15,6 +15,7 @@ use crate::outcome::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND,
     range_of_tests,
 };
+use crate::outcome::table::{Columns, Shown, TableCell};
 
 /// What to do where a base is found to be dispersive.
 pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
@@ -296,6 +297,20 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
         significant(within),
         length(from_mm, unit).to(length(4.0 * from_mm, unit))
     )
+}
+
+/// The columns of limits sieve by sieve on a page and in a workbook.
+pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
+    Columns::default()
+        .name("sieve", "Sieve", |limit: &SieveLimit| limit.sieve.clone())
+        .number("opening_mm", "Opening (mm)", |limit| limit.opening_mm)
+        .column("min_percent_finer", |limit| limit.min_percent_finer)
+        .page_number("Least finer (%)", |limit| significant(limit.min_percent_finer).in_digits(4))
+        .column("max_percent_finer", |limit| limit.max_percent_finer)
+        .page_number("Greatest finer (%)", |limit| {
+            let most = limit.max_percent_finer;
+            most.map_or(Shown::default(), |most| significant(most).in_digits(4).shown())
+        })
 }
 
 /// A number of `specification_steps.csv`.

@@ -254,8 +254,8 @@ fn the_workbook_of_a_specification_has_its_limits_and_steps() {
         assert_eq!(book["Sieve"].words(), json["sieve"].as_str().unwrap());
         for (heading, key) in [
             ("Opening (mm)", "opening_mm"),
-            ("Least finer by mass (%)", "min_percent_finer"),
-            ("Greatest finer by mass (%)", "max_percent_finer"),
+            ("Least finer (%)", "min_percent_finer"),
+            ("Greatest finer (%)", "max_percent_finer"),
         ] {
             assert_eq!(book[heading].number(), json[key].as_f64());
         }

@@ -6,6 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use rust_xlsxwriter::{DocProperties, ExcelDateTime, Format, Workbook, Worksheet, XlsxError};
 
+use crate::outcome::table::{CellValue, Columns, TableCell};
 use crate::report::shell::clean;
 use crate::text::shorten;
 
@@ -21,104 +22,56 @@ const DAY: (u16, u8, u8) = (2000, 1, 1);
 /// Widths of columns (characters).
 const WIDTHS: (usize, usize) = (8, 70);
 
-/// What stands in a cell.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Entry {
-    /// Nothing.
-    Empty,
-    /// Words.
-    Words(String),
-    /// A number.
-    Number(f64),
-    /// Yes or no.
-    Truth(bool),
-}
-
-impl From<&str> for Entry {
-    fn from(words: &str) -> Self {
-        if words.is_empty() { Self::Empty } else { Self::Words(shorten(&clean(words), CELL)) }
-    }
-}
-
-impl From<&String> for Entry {
-    fn from(words: &String) -> Self {
-        words.as_str().into()
-    }
-}
-
-impl From<String> for Entry {
-    fn from(words: String) -> Self {
-        words.as_str().into()
-    }
-}
-
-impl From<f64> for Entry {
-    fn from(number: f64) -> Self {
-        // A cell holds no other.
-        if number.is_finite() { Self::Number(number) } else { Self::Words(number.to_string()) }
-    }
-}
-
-impl From<u64> for Entry {
-    fn from(number: u64) -> Self {
-        if number <= WHOLE { Self::Number(number as f64) } else { Self::Words(number.to_string()) }
-    }
-}
-
-impl From<bool> for Entry {
-    fn from(truth: bool) -> Self {
-        Self::Truth(truth)
-    }
-}
-
-impl<T: Into<Entry>> From<Option<T>> for Entry {
-    fn from(entry: Option<T>) -> Self {
-        entry.map_or(Self::Empty, Into::into)
-    }
-}
-
 /// A sheet: headings, and rows below them.
 pub(super) struct Sheet {
     name: &'static str,
-    headings: Vec<&'static str>,
-    rows: Vec<Vec<Entry>>,
+    headings: Vec<String>,
+    rows: Vec<Vec<CellValue>>,
 }
 
 impl Sheet {
-    /// An empty sheet with headings, units included.
-    pub fn new(name: &'static str, headings: &[&'static str]) -> Self {
-        Self { name, headings: headings.to_vec(), rows: Vec::new() }
+    /// A sheet of rows with these columns.
+    pub fn of<'r, T: 'r>(
+        name: &'static str,
+        columns: &Columns<T>,
+        rows: impl IntoIterator<Item = &'r T>,
+    ) -> Self {
+        let rows = rows.into_iter().map(|row| columns.values(row).map(held).collect()).collect();
+        Self { name, headings: columns.headings(), rows }
     }
 
-    /// Adds a row.
-    pub fn row(&mut self, row: impl IntoIterator<Item = Entry>) {
-        self.rows.push(row.into_iter().collect());
+    /// An empty sheet of items.
+    pub fn items(name: &'static str) -> Self {
+        Self { name, headings: ["Item", "Value", "Unit"].map(String::from).to_vec(), rows: Vec::new() }
     }
 
-    /// Adds a row of a name, a value and its unit.
-    pub fn item(&mut self, name: &str, value: impl Into<Entry>, unit: &str) {
-        self.row([name.into(), value.into(), unit.into()]);
+    /// Adds an item with its value and unit.
+    pub fn item(&mut self, name: &str, value: impl TableCell, unit: &str) {
+        self.rows.push([name.value(), value.value(), unit.value()].map(held).to_vec());
     }
 
     fn write(&self, sheet: &mut Worksheet) -> Result<(), XlsxError> {
         sheet.set_name(self.name)?;
         let (bold, wrapped) = (Format::new().set_bold(), Format::new().set_text_wrap());
         for (column, heading) in (0u16..).zip(&self.headings) {
-            sheet.write_with_format(0, column, *heading, &bold)?;
-            let words = |row: &Vec<Entry>| match row.get(usize::from(column)) {
-                Some(Entry::Words(words)) => words.chars().count(),
+            sheet.write_with_format(0, column, heading, &bold)?;
+            let words = |row: &Vec<CellValue>| match row.get(usize::from(column)) {
+                Some(CellValue::Words(words)) => words.chars().count(),
                 _ => 0,
             };
             let widest = self.rows.iter().map(words).max().unwrap_or(0).max(heading.chars().count());
             sheet.set_column_width(column, (widest + 2).clamp(WIDTHS.0, WIDTHS.1) as f64)?;
         }
         for (line, row) in (1u32..).zip(&self.rows) {
-            for (column, entry) in (0u16..).zip(row) {
-                match entry {
-                    Entry::Empty => continue,
-                    Entry::Words(words) => sheet.write_string_with_format(line, column, words, &wrapped)?,
-                    Entry::Number(number) => sheet.write_number(line, column, *number)?,
-                    Entry::Truth(truth) => sheet.write_boolean(line, column, *truth)?,
+            for (column, value) in (0u16..).zip(row) {
+                match value {
+                    CellValue::Empty => continue,
+                    CellValue::Words(words) => {
+                        sheet.write_string_with_format(line, column, words, &wrapped)?
+                    }
+                    CellValue::Number(number) => sheet.write_number(line, column, *number)?,
+                    CellValue::Count(count) => sheet.write_number(line, column, *count as f64)?,
+                    CellValue::Truth(truth) => sheet.write_boolean(line, column, *truth)?,
                 };
             }
         }
@@ -126,6 +79,17 @@ impl Sheet {
         sheet.set_landscape();
         sheet.set_print_fit_to_pages(1, 0);
         Ok(())
+    }
+}
+
+/// A value as a cell holds it: words without hidden characters, and numbers that no cell holds as words.
+fn held(value: CellValue) -> CellValue {
+    match value {
+        CellValue::Words(words) if words.is_empty() => CellValue::Empty,
+        CellValue::Words(words) => CellValue::Words(shorten(&clean(&words), CELL)),
+        CellValue::Number(number) if !number.is_finite() => CellValue::Words(number.to_string()),
+        CellValue::Count(count) if count > WHOLE => CellValue::Words(count.to_string()),
+        value => value,
     }
 }
 
@@ -177,19 +141,19 @@ mod tests {
 
     #[test]
     fn cells_hold_what_they_can() {
-        assert_eq!(Entry::from(f64::NAN), Entry::Words("NaN".into()));
-        assert_eq!(Entry::from(u64::MAX), Entry::Words(u64::MAX.to_string()));
-        assert_eq!(Entry::from(Some(0.1)), Entry::Number(0.1));
-        assert_eq!((Entry::from(None::<f64>), Entry::from("")), (Entry::Empty, Entry::Empty));
-        assert_eq!(Entry::from("a\u{202e}b"), Entry::Words("a\u{fffd}b".into()));
+        assert_eq!(held(f64::NAN.value()), CellValue::Words("NaN".into()));
+        assert_eq!(held(u64::MAX.value()), CellValue::Words(u64::MAX.to_string()));
+        assert_eq!(held(Some(0.1).value()), CellValue::Number(0.1));
+        assert_eq!([None::<f64>.value(), "".value()].map(held), [CellValue::Empty, CellValue::Empty]);
+        assert_eq!(held("a\u{202e}b".value()), CellValue::Words("a\u{fffd}b".into()));
     }
 
     #[test]
     fn the_same_sheets_are_the_same_bytes() {
         let made = || {
-            let mut sheet = Sheet::new("One", &["Size (mm)", "Note"]);
-            sheet.row([0.1.into(), "=1+1".into()]);
-            workbook("a", &[sheet]).unwrap()
+            let columns = Columns::default().column("Size (mm)", |row: &(f64, &str)| row.0);
+            let columns = columns.column("Note", |row| row.1.to_owned());
+            workbook("a", &[Sheet::of("One", &columns, &[(0.1, "=1+1")])]).unwrap()
         };
         let first = made();
         std::thread::sleep(std::time::Duration::from_millis(2100));

@@ -1,10 +1,14 @@
 //! The workbook of a specification.
 
-use super::sheet::{Entry, Sheet};
+use super::sheet::Sheet;
 use crate::outcome::design::Specification;
+use crate::outcome::design::size_band::BandSize;
 use crate::outcome::quantity::SizeUnit;
-use crate::words::products::{not_kept, product as product_result};
-use crate::words::specification::{beside_limits, no_band, step_rows, still_to_set, without_margin};
+use crate::outcome::table::Columns;
+use crate::words::products::{columns as product_columns, product as product_result};
+use crate::words::specification::{
+    StepRow, beside_limits, limit_columns, no_band, step_rows, still_to_set, without_margin,
+};
 use crate::words::{dispersive_limit, row_note};
 
 /// What the page says too.
@@ -21,7 +25,7 @@ pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
 
 fn summary(of: &Specification) -> Sheet {
     let d15 = of.band.as_ref().map(|band| band.d15_mm());
-    let mut sheet = Sheet::new("Specification", &["Item", "Value", "Unit"]);
+    let mut sheet = Sheet::items("Specification");
     sheet.item("Base", &of.base, "");
     sheet.item("Dispersive", of.dispersive, "");
     sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
@@ -43,86 +47,49 @@ fn summary(of: &Specification) -> Sheet {
 }
 
 fn limits(of: &Specification) -> Sheet {
-    let headings = ["Sieve", "Opening (mm)", "Least finer by mass (%)", "Greatest finer by mass (%)", "Note"];
-    // Said once, beside the first sieve.
-    let mut note = beside_limits(of, SizeUnit::Mm);
-    let mut sheet = Sheet::new("Limits", &headings);
-    for limit in &of.limits {
-        sheet.row([
-            (&limit.sieve).into(),
-            limit.opening_mm.into(),
-            limit.min_percent_finer.into(),
-            limit.max_percent_finer.into(),
-            note.take().into(),
-        ]);
-    }
-    sheet
+    let (note, first) = (beside_limits(of, SizeUnit::Mm), of.limits.first());
+    let columns = limit_columns().column("Note", |limit| note.clone().filter(|_| Some(limit) == first));
+    Sheet::of("Limits", &columns, &of.limits)
 }
 
 fn band(of: &Specification) -> Sheet {
-    let mut sheet = Sheet::new("Band", &["Finer by mass (%)", "Least size (mm)", "Greatest size (mm)"]);
-    for size in of.band.iter().flat_map(|band| &band.sizes) {
-        sheet.row([size.percent.into(), size.min_mm.into(), size.max_mm.into()]);
-    }
-    sheet
+    let columns = Columns::default()
+        .column("Finer by mass (%)", |size: &BandSize| size.percent)
+        .column("Least size (mm)", |size| size.min_mm)
+        .column("Greatest size (mm)", |size| size.max_mm);
+    Sheet::of("Band", &columns, of.band.iter().flat_map(|band| &band.sizes))
 }
 
 fn products(of: &Specification) -> Sheet {
-    let headings = [
-        "Product",
-        "D15 of the fine side (mm)",
-        "D15 of the coarse side (mm)",
-        "D15 of the fine side / minimum D15F (-)",
-        "Maximum D15F / D15 of the coarse side (-)",
-        "Fits",
-        "Result",
-        "What else its sides do not keep",
-        "Source of its limits",
-    ];
-    let mut sheet = Sheet::new("Products", &headings);
-    for product in &of.products {
-        sheet.row([
-            (&product.product).into(),
-            product.d15_fine_mm.into(),
-            product.d15_coarse_mm.into(),
-            product.drains_by.into(),
-            product.holds_by.into(),
-            product.fits().into(),
-            product_result(of, product).into(),
-            not_kept(&product.not_kept).into(),
-            (&product.source).into(),
-        ]);
-    }
-    sheet
+    let columns = product_columns(SizeUnit::Mm)
+        .column("Fits", |product| product.fits())
+        .column("Result", |product| product_result(of, product));
+    Sheet::of("Products", &columns, &of.products)
 }
 
 fn steps(of: &Specification) -> Sheet {
-    let headings = ["Step", "What is done", "Quantity", "Value", "Unit", "Formula", "Note", "Source"];
-    let mut sheet = Sheet::new("Steps", &headings);
-    for row in of.steps.iter().flat_map(step_rows) {
-        sheet.row([
-            row.step.into(),
-            row.does.into(),
-            row.quantity.into(),
-            row.value.into(),
-            row.unit.into(),
-            row.formula.into(),
-            row.note.into(),
-            row.source.into(),
-        ]);
-    }
-    sheet
+    let columns = Columns::default()
+        .column("Step", |row: &StepRow| row.step)
+        .column("What is done", |row| row.does.clone())
+        .column("Quantity", |row| row.quantity.clone())
+        .column("Value", |row| row.value)
+        .column("Unit", |row| row.unit.clone())
+        .column("Formula", |row| row.formula.clone())
+        .column("Note", |row| row.note.clone())
+        .column("Source", |row| row.source.clone());
+    Sheet::of("Steps", &columns, &of.steps.iter().flat_map(step_rows).collect::<Vec<_>>())
 }
 
 fn base(of: &Specification) -> Sheet {
-    let mut sheet = Sheet::new("Base", &["Curve", "Grading", "Size (mm)", "Finer by mass (%)"]);
-    for curve in &of.curves {
-        for (grading, rows) in [("as sampled", &curve.gradation), ("regraded", &curve.regraded)] {
-            let row = |row: &[f64; 2]| -> [Entry; 4] {
-                [(&curve.curve).into(), grading.into(), row[0].into(), row[1].into()]
-            };
-            rows.iter().for_each(|of| sheet.row(row(of)));
-        }
-    }
-    sheet
+    let columns = Columns::default()
+        .column("Curve", |row: &(String, &str, [f64; 2])| row.0.clone())
+        .column("Grading", |row| row.1.to_owned())
+        .column("Size (mm)", |row| row.2[0])
+        .column("Finer by mass (%)", |row| row.2[1]);
+    let gradings = of.curves.iter().flat_map(|curve| {
+        [(&curve.curve, "as sampled", &curve.gradation), (&curve.curve, "regraded", &curve.regraded)]
+    });
+    let rows = gradings
+        .flat_map(|(curve, grading, rows)| rows.iter().map(move |row| (curve.clone(), grading, *row)));
+    Sheet::of("Base", &columns, &rows.collect::<Vec<_>>())
 }

@@ -1,14 +1,13 @@
 //! The workbook of a run: every number as `outcome.json` has it.
 
-use super::sheet::{Entry, Sheet};
+use super::sheet::Sheet;
 use crate::outcome::quantity::SizeUnit;
-use crate::outcome::record::{AppliedRule, Headline, Outcome, RuleRole, Run, Statistic, ValueBound};
+use crate::outcome::record::{Headline, Outcome, Replicate, RuleRole, Run, Statistic};
+use crate::outcome::table::Columns;
 use crate::report::folder::RunFolder;
 use crate::report::names::soil_name;
 use crate::verdict::Decision;
-use crate::verdict::rule_result::{RuleResult, result_of};
-use crate::words::rule::result;
-use crate::words::rule_note::rule_notes;
+use crate::words::rule::columns;
 use crate::words::{first_lines, sentence};
 
 /// Its sheets.
@@ -30,7 +29,7 @@ fn unit(outcome: &Outcome) -> &'static str {
 }
 
 fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
-    let mut sheet = Sheet::new("Verdict", &["Item", "Value", "Unit"]);
+    let mut sheet = Sheet::items("Verdict");
     for (line, said) in first_lines(outcome, decision, SizeUnit::Mm) {
         sheet.item(line.name(), said, "");
     }
@@ -63,7 +62,7 @@ fn statistic(sheet: &mut Sheet, name: &dyn Fn(&str) -> String, of: &Statistic) {
 }
 
 fn inputs(outcome: &Outcome) -> Sheet {
-    let mut sheet = Sheet::new("Inputs", &["Item", "Value", "Unit"]);
+    let mut sheet = Sheet::items("Inputs");
     let (inputs, unit) = (&outcome.inputs, unit(outcome));
     let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
     sheet.item("Filter", soil_name(&filter.name), "");
@@ -107,134 +106,54 @@ fn inputs(outcome: &Outcome) -> Sheet {
 }
 
 fn rules(decision: &Decision) -> Sheet {
-    let headings = [
-        "Rule",
-        "Authority",
-        "Quantity",
-        "Value",
-        "The value is",
-        "Limit",
-        "Unit of value and limit",
-        "The limit is",
-        "Applies",
-        "Result",
-        "Met",
-        "Formula",
-        "Applies to",
-        "Note",
-        "Source",
-        "Id",
-    ];
-    let mut sheet = Sheet::new("Rules", &headings);
-    for rule in decision.rules.iter().filter(|rule| rule.role != RuleRole::Walk) {
-        sheet.row(of_rule(rule, result_of(rule)));
-    }
-    sheet
-}
-
-fn of_rule(rule: &AppliedRule, found: RuleResult) -> [Entry; 16] {
-    let notes: Vec<String> = [&rule.notes, &rule.needs].map(|notes| rule_notes(notes, SizeUnit::Mm)).into();
-    let notes = notes.into_iter().filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
-    let value_is = match rule.value_bound {
-        Some(ValueBound::AtMost) => "the most that it can be",
-        Some(ValueBound::AtLeast) => "the least that it can be",
-        None => "",
-    };
-    let limit_is = match (rule.limit, rule.at_least, rule.limit_at_most) {
-        (None, ..) => "",
-        _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
-        (_, true, false) => "the least",
-        (_, true, true) => "enough; the least is not known",
-        (_, false, false) => "the most",
-        (_, false, true) => "the most that it can be",
-    };
-    [
-        (&rule.name).into(),
-        rule.authorities().join(", ").into(),
-        rule.quantity.name().into(),
-        rule.value.into(),
-        value_is.into(),
-        rule.limit.into(),
-        rule.unit.name().into(),
-        limit_is.into(),
-        rule.applies.into(),
-        result(found).into(),
-        // A boundary of continuing erosion that is not reached is no limit that is met.
-        rule.met.filter(|met| rule.role != RuleRole::Continuation || !met).into(),
-        (&rule.formula).into(),
-        (&rule.applies_to).into(),
-        notes.into(),
-        (&rule.source).into(),
-        (&rule.id).into(),
-    ]
+    let rules = decision.rules.iter().filter(|rule| rule.role != RuleRole::Walk);
+    Sheet::of("Rules", &columns(SizeUnit::Mm), rules)
 }
 
 fn runs(outcome: &Outcome) -> Sheet {
-    let headings = [
-        "Replicate",
-        "Seed",
-        "Class of the replicate",
-        "Run",
-        "Mass eroded (fraction of the mass inserted)",
-        "Particles eroded (fraction of those inserted)",
-        "Largest particle eroded (mm, or D0F without a unit)",
-        "Largest particle eroded / D15F (-)",
-        "Particles inserted",
-        "Particles eroded",
-        "Particles retained in constrictions",
-        "Particles retained in voids",
-        "Constrictions blocked",
-        "Constrictions blocked (fraction of all)",
-        "Increments",
-        "Particle moves",
-    ];
-    let mut sheet = Sheet::new("Runs", &headings);
-    for (number, replicate) in (1u64..).zip(&outcome.replicates) {
-        for run in &replicate.runs {
-            let of_replicate: [Entry; 3] =
-                [number.into(), replicate.seed.into(), replicate.verdict.words().into()];
-            sheet.row(of_replicate.into_iter().chain(of_run(run)));
-        }
-    }
-    sheet
-}
-
-fn of_run(run: &Run) -> [Entry; 13] {
-    [
-        run.run.into(),
-        run.eroded_mass_fraction.into(),
-        run.eroded_number_fraction.into(),
-        run.largest_eroded_mm.into(),
-        run.largest_eroded_over_d15f.into(),
-        run.inserted.into(),
-        run.eroded.into(),
-        run.retained_in_constrictions.into(),
-        run.retained_in_voids.into(),
-        run.blocked.into(),
-        run.blocked_fraction.into(),
-        run.increments.into(),
-        run.particle_moves.into(),
-    ]
+    let columns = Columns::default()
+        .column("Replicate", |row: &(u64, &Replicate, &Run)| row.0)
+        .column("Seed", |(_, replicate, _)| replicate.seed)
+        .column("Class of the replicate", |(_, replicate, _)| replicate.verdict)
+        .column("Run", |(.., run)| run.run)
+        .column("Mass eroded (fraction of the mass inserted)", |(.., run)| run.eroded_mass_fraction)
+        .column("Particles eroded (fraction of those inserted)", |(.., run)| run.eroded_number_fraction)
+        .column("Largest particle eroded (mm, or D0F without a unit)", |(.., run)| run.largest_eroded_mm)
+        .column("Largest particle eroded / D15F (-)", |(.., run)| run.largest_eroded_over_d15f)
+        .column("Particles inserted", |(.., run)| run.inserted)
+        .column("Particles eroded", |(.., run)| run.eroded)
+        .column("Particles retained in constrictions", |(.., run)| run.retained_in_constrictions)
+        .column("Particles retained in voids", |(.., run)| run.retained_in_voids)
+        .column("Constrictions blocked", |(.., run)| run.blocked)
+        .column("Constrictions blocked (fraction of all)", |(.., run)| run.blocked_fraction)
+        .column("Increments", |(.., run)| run.increments)
+        .column("Particle moves", |(.., run)| run.particle_moves);
+    let numbered = (1..).zip(&outcome.replicates);
+    let rows = numbered
+        .flat_map(|(number, replicate)| replicate.runs.iter().map(move |run| (number, replicate, run)));
+    Sheet::of("Runs", &columns, &rows.collect::<Vec<_>>())
 }
 
 fn gradations(outcome: &Outcome) -> Sheet {
-    let headings = ["Curve", "Size (mm, or D0F without a unit)", "Finer (%)", "Percent finer by"];
-    let mut sheet = Sheet::new("Gradations", &headings);
+    let columns = Columns::default()
+        .column("Curve", |row: &(&str, [f64; 2], &str)| row.0.to_owned())
+        .column("Size (mm, or D0F without a unit)", |row| row.1[0])
+        .column("Finer (%)", |row| row.1[1])
+        .column("Percent finer by", |row| row.2.to_owned());
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let sampled = base.as_sampled.as_ref().map_or(&[][..], |before| &before.gradation);
-    for (curve, rows, by) in [
+    let curves = [
         ("filter", &filter.gradation[..], "mass"),
         ("constrictions of the filter", &filter.constrictions, "number"),
         ("base as walked", &base.gradation, "mass"),
         ("base as sampled", sampled, "mass"),
-    ] {
-        rows.iter().for_each(|row| sheet.row([curve.into(), row[0].into(), row[1].into(), by.into()]));
-    }
-    sheet
+    ];
+    let rows = curves.into_iter().flat_map(|(curve, rows, by)| rows.iter().map(move |row| (curve, *row, by)));
+    Sheet::of("Gradations", &columns, &rows.collect::<Vec<_>>())
 }
 
 fn provenance(of: &RunFolder) -> Sheet {
-    let mut sheet = Sheet::new("Provenance", &["Item", "Value", "Unit"]);
+    let mut sheet = Sheet::items("Provenance");
     let manifest = &of.manifest;
     for (name, value) in [
         ("voidwalk", Some(&manifest.version)),
