@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes records.py and settings.py into scripts/python/python/voidwalk: the types of every JSON record and of a scene's settings,
-from what the program prints. The program is that of this checkout, or what VOIDWALK_PROGRAM names."""
+"""Writes records.py, columns.py and settings.py into scripts/python/python/voidwalk: the types of every JSON record, of the columns of
+tables and of a scene's settings, from what the program prints. The program is that of this checkout, or what VOIDWALK_PROGRAM names."""
 
 from __future__ import annotations
 
@@ -211,6 +211,63 @@ def records_text() -> str:
     return HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(types.texts.values())
 
 
+COLUMNS_HEAD = '''"""The types of tables: the columns of the CSV files of a run, of boundaries and of a campaign.
+
+Made by ``scripts/python/records.py`` from what ``voidwalk init --schema columns`` prints. A number that a file leaves
+empty is NaN here.
+"""
+
+from __future__ import annotations
+
+from typing import Dict, TypedDict, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Numbers with a point.
+Floats = NDArray[np.float64]
+#: Counts.
+Counts = NDArray[np.uint64]
+#: Whole numbers, of which -1 stands for what has no number.
+Whole = NDArray[np.int64]
+#: Words.
+Words = NDArray[np.str_]
+
+#: A column of a table whose columns depend on what was asked for.
+Column = Union[Floats, Counts, Whole, Words]
+
+#: Such a table: its columns by their names.
+Table = Dict[str, Column]
+
+'''
+
+#: What the columns of rows are called, by the rows of a file.
+TABLES = {
+    "SeriesRow": "Series",
+    "LayerRow": "Layers",
+    "SizeRow": "Sizes",
+    "FlowRow": "Flow",
+    "RetainedRow": "RetainedByVoid",
+    "BlockedRow": "Blockings",
+    "WalkRow": "Walked",
+}
+
+
+def columns_text() -> str:
+    """The module of the columns of tables."""
+    rows = printed("--schema", "columns")["$defs"]
+    kinds = {"uint64": "Counts", "int64": "Whole", "double": "Floats"}
+    classes = []
+    for row, name in TABLES.items():
+        fields = rows[row]["properties"]
+        about = [(field, of["description"]) for field, of in fields.items()]
+        columns = "".join(f"    {field}: {kinds.get(of.get('format'), 'Words')}\n" for field, of in fields.items())
+        classes.append(f"class {name}(TypedDict):\n{documented(rows[row]['description'], about)}\n{columns}")
+    listed = sorted(["Column", "Table", *TABLES.values()])
+    names = "".join(f'    "{name}",\n' for name in listed)
+    return f"{COLUMNS_HEAD}__all__ = [\n{names}]\n\n\n" + "\n\n".join(classes)
+
+
 SETTINGS_HEAD = '''"""The types of a scene's settings, as :attr:`voidwalk.Scene.settings` gives them: lengths in mm, as numbers.
 
 Made by ``scripts/python/records.py`` from what ``voidwalk init --json`` prints. A setting that a scene
@@ -258,7 +315,8 @@ def settings_text(told: Any) -> str:
 
 
 def write() -> None:
-    """Writes both modules."""
+    """Writes the modules."""
+    (PACKAGE / "columns.py").write_text(columns_text(), encoding="utf-8")
     (PACKAGE / "records.py").write_text(records_text(), encoding="utf-8")
     (PACKAGE / "settings.py").write_text(settings_text(printed("--json")), encoding="utf-8")
 

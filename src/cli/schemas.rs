@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use crate::cases::PlanCheck;
 use crate::constrictions::Summary;
 use crate::gradation::SoilSummary;
-use crate::outcome::boundary::Boundaries;
+use crate::outcome::Recorded;
+use crate::outcome::boundary::{Boundaries, WalkRow};
 use crate::outcome::design::Specification;
 use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::network_walk::NetworkWalkRecord;
@@ -43,14 +44,15 @@ const CONTENTS: &[(Format, Made)] = &[
     (format::SOILS, of::<Soils>),
     (format::SETTINGS, of::<SceneReference>),
 ];
-/// What Python's `walk` gives is no file: its types are made from its schema.
-const NETWORK_WALK: &str = "network-walk";
+/// What Python gives that is no file: its types are made from their schemas.
+const OF_PYTHON: &[(&str, Made)] = &[("network-walk", of::<NetworkWalkRecord>), ("columns", of::<Tables>)];
 
 /// The JSON Schema of a file, by the name of its form, as `outcome`: indented, with a newline at its end.
 pub fn schema(name: &str) -> Option<String> {
     let content = CONTENTS.iter().find(|(form, _)| form.name() == name);
     let of_file = content.map(|(form, content)| headed(*form, content()));
-    let schema = of_file.or_else(|| (name == NETWORK_WALK).then(|| of::<NetworkWalkRecord>().to_value()))?;
+    let of_python = || OF_PYTHON.iter().find(|(form, _)| *form == name);
+    let schema = of_file.or_else(|| of_python().map(|(_, content)| content().to_value()))?;
     Some(serde_json::to_string_pretty(&schema).expect("JSON of a map") + "\n")
 }
 
@@ -59,6 +61,13 @@ pub fn schema(name: &str) -> Option<String> {
 pub(super) struct Soils {
     /// Each soil, in the order of the file.
     pub(super) soils: Vec<SoilSummary>,
+}
+
+/// The tables whose columns Python gives.
+#[derive(Serialize, JsonSchema)]
+struct Tables {
+    run: Recorded,
+    boundary: Vec<WalkRow>,
 }
 
 /// A file of which only the beginning is anybody's business.
@@ -122,7 +131,7 @@ mod tests {
         let forms: Vec<Format> = CONTENTS.iter().map(|(form, _)| *form).collect();
         assert_eq!(forms, format::FORMATS);
         let files = forms.iter().map(|form| (form.to_string(), schema(form.name())));
-        let all = files.chain([(NETWORK_WALK.to_owned(), schema(NETWORK_WALK))]);
+        let all = files.chain(OF_PYTHON.iter().map(|(name, _)| (name.to_string(), schema(name))));
         let lines: Vec<String> = all
             .map(|(form, schema)| format!("{form} {:016x}", xxh3_64(schema.unwrap().as_bytes())))
             .collect();

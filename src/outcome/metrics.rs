@@ -31,6 +31,7 @@ pub struct RunMetrics {
 
 /// Rows of the CSV files of one run.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Recorded {
     /// Rows of `series.csv`.
     pub series: Vec<SeriesRow>,

@@ -53,6 +53,7 @@ macro_rules! rows {
     })*) => { $(
         $(#[$about])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
         pub struct $row {
             $($(#[$what])* pub $field: $kind,)*
         }

@@ -222,7 +222,7 @@ pub struct WalkRow {
     pub thickness: String,
     /// Network, counted from 1.
     pub network: u64,
-    /// The ratio.
+    /// The ratio D15F/D85B.
     pub d15f_over_d85b: f64,
     /// Mass eroded in the first run, over the mass inserted.
     pub eroded_first: f64,

@@ -3,7 +3,7 @@
 use crate::outcome::number_rows::rows;
 
 rows! {
-    /// One row of `flow.csv`: the permeability when the flow was solved.
+    /// One row of `flow.csv`: the permeability when the flow was solved; there is none without water.
     pub struct FlowRow {
         /// Counts from 1.
         pub replicate: u64,
@@ -50,7 +50,7 @@ rows! {
         pub replicate: u64,
         /// 1 or 2.
         pub run: u64,
-        /// Counts from 0 at the start nodes.
+        /// Counts from 0 where particles come in.
         pub layer: u64,
         /// Constrictions that leave the voids of this layer.
         pub constrictions: u64,
@@ -71,7 +71,7 @@ rows! {
         pub run: u64,
         /// The increment after which the curve was taken.
         pub increment: u64,
-        /// Size.
+        /// Size (mm).
         pub diameter_mm: f64,
         /// Percent of the mass in particles no larger.
         pub percent_finer_by_mass: f64,

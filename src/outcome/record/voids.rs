@@ -46,7 +46,7 @@ rows! {
         pub run: u64,
         /// The increment in which a particle stopped there.
         pub increment: u64,
-        /// The constriction.
+        /// The constriction, from 0.
         pub constriction: u64,
     }
 
@@ -57,7 +57,7 @@ rows! {
         pub run: u64,
         /// Increments that were done.
         pub increment: u64,
-        /// The void; -1 is the reservoir before the filter.
+        /// The void, from 0; -1 is the reservoir before the filter.
         pub void: i64,
         /// Particles stopped by its constrictions so far in this run.
         pub retained_in_constrictions: u64,
