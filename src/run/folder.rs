@@ -19,10 +19,6 @@ pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
 /// The files of the checkpoint of a percolation study that is not finished.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
 
-/// The tables of a specification, and its workbook.
-const SPECIFIED: [&str; 4] =
-    ["specification.csv", "specification_steps.csv", "specification_products.csv", "specification.xlsx"];
-
 /// What `voidwalk export` writes into a folder of that name ...
 const EXPORTED: [&str; 6] =
     ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
@@ -174,10 +170,10 @@ impl FolderKind {
             Self::Specification => &[
                 "specification.json",
                 "specification.html",
-                SPECIFIED[0],
-                SPECIFIED[1],
-                SPECIFIED[2],
-                SPECIFIED[3],
+                "specification.csv",
+                "specification_steps.csv",
+                "specification_products.csv",
+                "specification.xlsx",
             ],
             Self::Constrictions => {
                 &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
