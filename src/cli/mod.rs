@@ -46,6 +46,7 @@ use clap::FromArgMatches;
 
 use crate::run::{Exit, RunError};
 use args::{Arguments, Command};
+pub use report::page;
 pub use schemas::schema;
 use start::START;
 pub use start::Start;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use voidwalk::cli::page;
 use voidwalk::outcome::record::Outcome;
 use voidwalk::report::files::json_of;
 use voidwalk::report::{self as reports, ReportError};
@@ -13,7 +14,6 @@ use voidwalk::verdict::{Decision, RunFiles};
 
 use crate::problem::{of_run, refused};
 use crate::tables::to_recorded;
-use crate::work::page;
 
 /// Writes the page of a finished folder again.
 #[pyfunction]
@@ -24,7 +24,7 @@ pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
             return Err(RunError::Refused(format!("{}: {problem}", folder.display())));
         };
         let claimed = claim(folder, kind, true)?;
-        page(kind, claimed.path(), None).map_err(RunError::Failed)
+        page(kind, claimed.path(), None).map_err(RunError::failed)
     };
     py.detach(|| write(&folder)).map_err(|error| of_run(&error))
 }

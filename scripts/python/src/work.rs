@@ -6,7 +6,6 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -14,10 +13,8 @@ use std::time::Duration;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyUserWarning};
 use pyo3::prelude::*;
 use voidwalk::cases::{CaseCallbacks, CaseEvent};
-use voidwalk::report;
-use voidwalk::run::error::AnyError;
-use voidwalk::run::{Callbacks, Event, Exit, FolderKind, RunError};
-use voidwalk::verdict::RunFiles;
+use voidwalk::cli::page;
+use voidwalk::run::{Callbacks, Event, Exit, RunError};
 
 use crate::notes::with_setting;
 use crate::problem::of_run;
@@ -126,26 +123,6 @@ impl<T> Desk<T> {
     }
 }
 
-/// Writes the page of results that are whole, of a run from the content of its files where that is at hand,
-/// and gives its path; a set of constrictions and a server's folder have none, and give their own.
-pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, AnyError> {
-    let written = match kind {
-        FolderKind::Run => match run {
-            Some(files) => report::write_walked(folder, files)?,
-            None => report::write(folder)?,
-        },
-        FolderKind::Packing => report::write_packing(folder)?,
-        FolderKind::Campaign => report::write_campaign(folder)?,
-        FolderKind::Percolation => report::write_percolation(folder)?,
-        FolderKind::Batch => report::write_batch(folder)?,
-        FolderKind::Boundary => report::write_boundary(folder)?,
-        FolderKind::Designs => report::write_designs(folder)?,
-        FolderKind::Specification => report::write_specification(folder)?,
-        FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
-    };
-    Ok(written.page)
-}
-
 /// Does a call's work without the interpreter's lock.
 pub fn at_work<T: Send>(
     py: Python<'_>,
@@ -170,7 +147,7 @@ pub fn at_work<T: Send>(
                 on_event: &|event| desk.tell(event),
                 stop: &desk.stop,
                 warn: &|warning| desk.warn(warning),
-                on_results: &|kind, folder, run| page(kind, folder, run).map(drop),
+                on_results: &|kind, folder, run| Ok(page(kind, folder, run).map(drop)?),
             };
             let callbacks = CaseCallbacks {
                 run,
