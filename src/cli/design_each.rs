@@ -10,15 +10,14 @@ use super::progress::followed;
 use crate::outcome::quantity::SizeUnit;
 use crate::run::RunError;
 use crate::store::format;
-use crate::study::designs::each;
-use crate::study::specified::SpecifyOptions;
+use crate::study::specified::{SpecifyOptions, specify_each};
 use crate::verdict::DesignedSamples;
 use crate::words::designed::{columns, lines};
 use crate::words::specification::DESIGN_EACH_AGAIN;
 
 /// Specifies a filter for every sample and writes the table into a folder.
 pub(super) fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result<(), RunError> {
-    let all = followed(args.quiet, |callbacks| each(options, callbacks))?;
+    let all = followed(args.quiet, |callbacks| specify_each(options, callbacks))?;
     if args.json {
         as_it_is(&json(format::DESIGNS, &all)?);
     } else if !args.quiet {

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::callbacks::Callbacks;
 use super::error::RunError;
-use super::folder::{FolderKind, claim, clear, shown};
+use super::folder::{FolderKind, begin, claim, shown};
 use super::machine::on_threads;
-use super::unfinished::{self, Unfinished};
+use super::unfinished;
 use crate::constrictions::{Constrictions, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph};
 use crate::network::permeability_mm2;
 use crate::packing::{Packing, ReadOptions};
@@ -84,9 +84,7 @@ fn measure_here(
         summary.kozeny_carman_over_d32_squared = Some(graph.kozeny_carman_mm2() / square);
     }
     let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
-    clear(&folder, FolderKind::Constrictions)?;
-    let mark = Unfinished { kind: FolderKind::Constrictions.name().into(), ..Unfinished::default() };
-    mark.begin(&folder)?;
+    begin(&folder, FolderKind::Constrictions)?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
     if let Some(graph) = &graph {
         folder.write("graph.csv", graph.to_csv().as_bytes())?;

@@ -272,7 +272,16 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     folder.remove_all(&[unfinished::FILE])
 }
 
-/// The same, but for the scene of a run and its input files, from which it is walked anew.
+/// Clears a claimed folder, and marks it as one whose work of this kind is not whole yet.
+///
+/// # Errors
+/// What the system says.
+pub fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    clear(folder, kind)?;
+    Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)
+}
+
+/// Clears a claimed folder as [`clear`], but for the scene of a run and its input files.
 ///
 /// # Errors
 /// What the system says.

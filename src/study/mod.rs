@@ -2,6 +2,5 @@
 //! boundaries of erosion and the percolation threshold of lattices.
 
 pub mod boundary;
-pub mod designs;
 pub mod percolation;
 pub mod specified;

@@ -1,11 +1,13 @@
-//! The specification of a filter by the rules of practice alone, in a folder of its own.
+//! The specification of a filter by the rules of practice alone, for one base or for each of many samples, in
+//! a folder of its own.
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use crate::cases::days::today;
-use crate::cases::inputs::input_files;
-use crate::cases::kept;
-use crate::gradation::{Gradation, curves_in_file};
+use crate::cases::inputs::{files_of, input_files};
+use crate::gradation::{Gradation, SoilSample, curves_in_file, notes_in_file, samples_in};
 use crate::outcome::design::{SieveSeries, Specification};
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::SheetCover;
@@ -13,11 +15,12 @@ use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, claim, shown};
+use crate::run::folder::{FolderKind, begin, claim, shown};
+use crate::run::results::json;
 use crate::store::{Folder, StoreError};
-use crate::verdict::SpecificationOptions;
-use crate::words::products::columns;
+use crate::verdict::{DesignedSample, DesignedSamples, SpecificationOptions};
 use crate::words::specification::step_rows;
+use crate::words::{designed, products};
 
 /// A base coarser than this (D85, mm) is none: its sizes are in another unit.
 pub(super) const NO_BASE_MM: f64 = 100.0;
@@ -43,6 +46,27 @@ pub struct SpecifyOptions {
     pub overwrite: bool,
 }
 
+impl SpecifyOptions {
+    fn of_practice(&self) -> SpecificationOptions {
+        let (finer, sieves) = (self.finer, self.sieves);
+        SpecificationOptions { dispersive: self.dispersive.then_some(true), finer, sieves }
+    }
+
+    /// Writes tables, record and page into the folder.
+    fn write(
+        &self,
+        (kind, record): (FolderKind, &impl Serialize),
+        callbacks: &Callbacks,
+        tables: impl FnOnce(&Folder) -> Result<(), StoreError>,
+    ) -> Result<(), RunError> {
+        let folder = claim(&self.out, kind, self.overwrite)?;
+        begin(&folder, kind)?;
+        tables(&folder)?;
+        folder.write(kind.record(), &json(kind.format(), record)?)?;
+        callbacks.finish(kind, &folder)
+    }
+}
+
 /// Makes the specification of a filter for a base, step by step, and writes its tables and, last,
 /// `specification.json`.
 ///
@@ -53,21 +77,49 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let bases = curves_in_file(&options.base, None).map_err(RunError::refused)?;
     no_filter_within(&options.base, &bases)?;
     bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
-    let (dispersive, finer, sieves) = (options.dispersive, options.finer, options.sieves);
-    let said = dispersive.then_some(true);
-    let specified = SpecificationOptions { dispersive: said, finer, sieves };
-    let specification = Specification::of(&options.base.display().to_string(), &bases, specified);
+    let specification = Specification::of(&options.base.display().to_string(), &bases, options.of_practice());
     let cover = options.cover.clone().dated(today());
     let inputs = input_files([options.base.as_path()])?;
     let specification = Specification { inches: options.inches, cover, inputs, ..specification };
-    let kind = FolderKind::Specification;
-    let folder = claim(&options.out, kind, options.overwrite)?;
-    let (inches, cover) = (options.inches, &options.cover);
-    let work = format!("{dispersive} {finer} {sieves} {inches} {cover:?} {bases:?}");
-    kept::study((&folder, kind, options.overwrite), work, callbacks, |_, _: Option<()>| {
-        write_tables(&folder, &specification)?;
-        Ok(specification)
-    })
+    options.write((FolderKind::Specification, &specification), callbacks, |folder| {
+        write_tables(folder, &specification)
+    })?;
+    Ok(specification)
+}
+
+/// Specifies a filter for every sample of a file or a folder (the base of the options) by practice alone, and
+/// writes `designs.csv`, a row a sample, and, last, `designs.json`.
+///
+/// # Errors
+/// Samples that cannot be read, or one that is none, and a folder that cannot be claimed, are refused before
+/// anything is written.
+pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
+    let samples = samples_in(&options.base).map_err(RunError::refused)?;
+    samples.iter().try_for_each(|sample| is_a_base(&sample.path, &sample.name, &sample.curve))?;
+    let row = |sample: &SoilSample| {
+        let curve = (sample.name.clone(), sample.curve.clone());
+        DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], options.of_practice()))
+    };
+    let files = samples.iter().map(|sample| sample.path.as_path());
+    let (notes, inputs) = (notes(&files_of(files.clone()))?, input_files(files)?);
+    let table = DesignedSamples::new(shown(&options.base), samples.iter().map(row).collect());
+    let (dispersive, inches, cover) =
+        (options.dispersive, options.inches, options.cover.clone().dated(today()));
+    let table = DesignedSamples { dispersive, inches, cover, notes, inputs, ..table };
+    options.write((FolderKind::Designs, &table), callbacks, |folder| {
+        folder.write("designs.csv", &designed::columns(SizeUnit::Mm).csv(&table.rows))
+    })?;
+    Ok(table)
+}
+
+/// What was assumed of the files, once each.
+fn notes(files: &[PathBuf]) -> Result<Vec<String>, RunError> {
+    let mut all = Vec::new();
+    for file in files {
+        let of_file = notes_in_file(file).map_err(RunError::refused)?;
+        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(file))));
+    }
+    Ok(all)
 }
 
 /// Refuses a file with both a base and a filter: the filter is no curve of the base.
@@ -88,7 +140,7 @@ fn no_filter_within(file: &Path, curves: &[NamedCurve]) -> Result<(), RunError> 
 }
 
 /// Refuses stones: a size in micrometres under a header in mm, most likely.
-pub(super) fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
+fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
     match base.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
         Some(d85) => Err(RunError::Refused(format!("{}: {name}: {}", shown(file), no_base(d85)))),
         None => Ok(()),
@@ -109,7 +161,8 @@ pub(super) fn no_base(d85: f64) -> String {
 /// What the system says.
 fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
     let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
+    let products = products::columns(SizeUnit::Mm).csv(&specification.products);
     folder.write("specification.csv", &csv_of(&specification.limits))?;
     folder.write("specification_steps.csv", &csv_of(&steps))?;
-    folder.write("specification_products.csv", &columns(SizeUnit::Mm).csv(&specification.products))
+    folder.write("specification_products.csv", &products)
 }
