@@ -26,7 +26,8 @@ pub(crate) mod walk;
 
 pub use check::{CaseCheck, PlanCheck, check_plan};
 pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
-pub(crate) use file_names::{numbered, refuse_twice};
+pub(crate) use file_names::numbered;
+pub(crate) use pairs::pairs_of;
 pub use pairs::{BatchPlan, BatchWalks};
 pub use plan::CasePlan;
 pub use prepared::{CasePart, FailedCase};

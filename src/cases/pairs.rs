@@ -4,15 +4,17 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::file_names::{as_folders, names, refuse_twice};
+use super::inputs::InputSamples;
 use super::plan::{CasePlan, PlannedCase};
 use super::run::{CaseOptions, unsound};
+use crate::gradation::{GradationError, curves_in_file};
 use crate::outcome::record::SheetCover;
 use crate::run::error::RunError;
 use crate::run::folder::shown;
 use crate::scene::{Scene, TableOptions};
 use crate::schema::setting_name;
 use crate::verdict::batch::{NAMED, governing};
-use crate::verdict::{BatchFilter, BatchRow, BatchTable, WalkedRow};
+use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions, WalkedRow};
 use crate::words::batch::{EXCHANGED, MAY_GOVERN};
 
 /// Voids across the lattice of a first look, as `voidwalk boundary` searches.
@@ -70,12 +72,7 @@ impl BatchPlan {
         walks: BatchWalks,
         options: &CaseOptions,
     ) -> Result<Self, RunError> {
-        refuse_twice(filters)?;
-        let table = BatchTable::read(samples, filters, tables.of_rules()?).map_err(RunError::refused)?;
-        if walks == BatchWalks::OneBase {
-            table.one_base(samples).map_err(RunError::Refused)?;
-        }
-        let of_notes = table.notes.iter().map(|(file, note)| format!("{}: {note}", shown(file)));
+        let table = pairs_of(samples, filters, tables.of_rules()?, walks != BatchWalks::OneBase)?;
         let cases = case_names(&table, filters);
         let mut plan = Self {
             samples: samples.to_owned(),
@@ -84,7 +81,7 @@ impl BatchPlan {
             base: if walks == BatchWalks::OneBase { table.base } else { Vec::new() },
             cases,
             in_full: HashSet::new(),
-            notes: of_notes.collect(),
+            notes: table.notes,
             campaign: CasePlan {
                 file: "batch".into(),
                 title: format!("samples of {}", shown(samples)),
@@ -177,6 +174,32 @@ impl BatchPlan {
     pub fn constrictions_in_words(&self) -> String {
         self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
     }
+}
+
+/// The rows of the samples of a file or a folder against filters, without `each` of one base; every soil of a
+/// filter's file is a curve of its envelope.
+///
+/// # Errors
+/// A file that cannot be read; a filter that is named twice; several soils in place of one base.
+pub(crate) fn pairs_of(
+    samples: &Path,
+    filters: &[PathBuf],
+    options: PairOptions,
+    each: bool,
+) -> Result<BatchTable, RunError> {
+    refuse_twice(filters)?;
+    let bases = InputSamples::read(samples)?;
+    let soils = bases.samples.len();
+    if soils > 1 && !each {
+        return Err(RunError::Refused(format!(
+            "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
+            samples.display()
+        )));
+    }
+    let curves = |filter: &PathBuf| Ok((filter.display().to_string(), curves_in_file(filter, None)?));
+    let curves: Result<Vec<_>, GradationError> = filters.iter().map(curves).collect();
+    let curves = curves.map_err(RunError::refused)?;
+    Ok(BatchTable::new(&bases.samples, curves, bases.notes(filters)?, options))
 }
 
 /// The rows of a table, with those that govern.

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use super::args::RulesArgs;
 use super::print::{plain, shown, to_copy, to_stdout};
-use crate::cases::refuse_twice;
+use crate::cases::pairs_of;
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::table::{ColumnKind, Columns};
 use crate::run::{RunError, write_new};
 use crate::verdict::batch::{NAMED, governing};
-use crate::verdict::{BatchFilter, BatchRow, BatchTable, PairOptions};
+use crate::verdict::{BatchFilter, BatchRow, PairOptions};
 use crate::words::batch::{columns, of_filter as filter_lines};
 
 /// Applies every rule to each sample and each filter.
@@ -18,11 +18,7 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
     if args.json {
         return Err(RunError::refused("--json goes with one filter, without --each"));
     }
-    refuse_twice(&args.filters)?;
-    let table = BatchTable::read(&args.base, &args.filters, options).map_err(RunError::refused)?;
-    if !args.each {
-        table.one_base(&args.base).map_err(RunError::Refused)?;
-    }
+    let table = pairs_of(&args.base, &args.filters, options, args.each)?;
     let rows = &table.rows;
     if let Some(path) = &args.csv {
         let csv = columns(SizeUnit::Mm).csv(rows);
@@ -32,9 +28,7 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
         }
     }
     let mut text = aligned(columns(SizeUnit::Mm), rows);
-    let notes: Vec<String> =
-        table.notes.iter().map(|(file, note)| format!("{}: {note}", shown(file))).collect();
-    text += &in_notes(&notes);
+    text += &in_notes(&table.notes);
     for filter in &table.filters {
         text.push('\n');
         text += &of_filter(rows, filter, false);

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::batches::{class_of, filter_names, filter_paths, table, whole_sheet};
 use super::sheets::Sheets;
-use crate::cases::refuse_twice;
+use crate::cases::pairs_of;
 use crate::outcome::quantity::SizeUnit;
 use crate::verdict::{BatchTable, PairOptions};
 use crate::words::batch::{columns, of_filter};
@@ -22,9 +22,8 @@ impl SampleTable {
     /// There is no such sheet; a sheet that cannot be read; no filter, or too many of them.
     pub fn new(sheets: &Sheets, base: &str, filters: &[&str], options: PairOptions) -> Result<Self, String> {
         let paths = filter_paths(sheets, filters)?;
-        refuse_twice(&paths).map_err(|problem| sheets.as_named(&problem.to_string()))?;
-        let mut table =
-            BatchTable::read(&sheets.path(whole_sheet(base))?, &paths, options).map_err(|e| e.to_string())?;
+        let table = pairs_of(&sheets.path(whole_sheet(base))?, &paths, options, true);
+        let mut table = table.map_err(|problem| sheets.as_named(&problem.to_string()))?;
         // Sheets have their own names here, of which two can be the same, and no folder.
         let names = filter_names(sheets, &paths);
         let of_filter = (table.rows.len() / table.filters.len()).max(1);
@@ -32,9 +31,7 @@ impl SampleTable {
             row.filter.clone_from(&names[at / of_filter]);
         }
         table.filters.iter_mut().zip(names).for_each(|(filter, name)| filter.name = name);
-        for (file, _) in &mut table.notes {
-            *file = sheets.as_named(&file.display().to_string()).into();
-        }
+        table.notes.iter_mut().for_each(|note| *note = sheets.as_named(note));
         Ok(Self(table))
     }
 
@@ -43,7 +40,7 @@ impl SampleTable {
         let rows = &self.0.rows[..self.0.rows.len().min(MOST_SHOWN)];
         let cut = (rows.len() < self.0.rows.len())
             .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", self.0.rows.len()));
-        let notes = self.0.notes.iter().map(|(file, note)| format!("{}: {note}", file.display())).chain(cut);
+        let notes = self.0.notes.iter().cloned().chain(cut);
         let mut value = table(columns(SizeUnit::Mm), rows, |row| class_of(row, row.may_lose_fines));
         let of_filters = self.0.filters.iter().map(|filter| of_filter(filter, &self.0.rows, SizeUnit::Mm));
         value["filters"] = json!(of_filters.collect::<Vec<_>>());

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cases::days::today;
-use crate::cases::inputs::{files_of, input_files};
-use crate::gradation::{Gradation, SoilSample, curves_in_file, notes_in_file, samples_in};
+use crate::cases::inputs::{InputSamples, input_files};
+use crate::gradation::{Gradation, SoilSample, curves_in_file};
 use crate::outcome::design::{SieveSeries, Specification};
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::SheetCover;
@@ -94,14 +94,15 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 /// Samples that cannot be read, or one that is none, and a folder that cannot be claimed, are refused before
 /// anything is written.
 pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
-    let samples = samples_in(&options.base).map_err(RunError::refused)?;
+    let input = InputSamples::read(&options.base)?;
+    let samples = &input.samples;
     samples.iter().try_for_each(|sample| is_a_base(&sample.path, &sample.name, &sample.curve))?;
     let row = |sample: &SoilSample| {
         let curve = (sample.name.clone(), sample.curve.clone());
         DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], options.of_practice()))
     };
-    let files = samples.iter().map(|sample| sample.path.as_path());
-    let (notes, inputs) = (notes(&files_of(files.clone()))?, input_files(files)?);
+    let (notes, inputs) =
+        (input.notes(&[])?, input_files(samples.iter().map(|sample| sample.path.as_path()))?);
     let table = DesignedSamples::new(shown(&options.base), samples.iter().map(row).collect());
     let (dispersive, inches, cover) =
         (options.dispersive, options.inches, options.cover.clone().dated(today()));
@@ -110,16 +111,6 @@ pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<D
         folder.write("designs.csv", &designed::columns(SizeUnit::Mm).csv(&table.rows))
     })?;
     Ok(table)
-}
-
-/// What was assumed of the files, once each.
-fn notes(files: &[PathBuf]) -> Result<Vec<String>, RunError> {
-    let mut all = Vec::new();
-    for file in files {
-        let of_file = notes_in_file(file).map_err(RunError::refused)?;
-        all.extend(of_file.into_iter().map(|note| format!("{}: {note}", shown(file))));
-    }
-    Ok(all)
 }
 
 /// Refuses a file with both a base and a filter: the filter is no curve of the base.

@@ -10,7 +10,7 @@
 //! - [`PlannedWalk`] has the notes on soils and network before their walk, `walks` those of walks themselves;
 //!   [`ordered()`] brings notes into the order of their table.
 //! - [`PairRules`] are two soils as practice sees them, `batch` many samples, a row each; [`BatchTable`]
-//!   reads them, and [`WalkedBatch`] is them with their walks.
+//!   has their rows, and [`WalkedBatch`] these with their walks.
 //! - [`RunFiles`] is the content of the files of a run folder, as values.
 //! - [`SpecificationOptions`] are what a specification is asked for, whose steps are made here.
 
