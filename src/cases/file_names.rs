@@ -1,5 +1,6 @@
 //! Short names of the tables that a study is given, no two the same.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::gradation::file_and_soil;
@@ -11,9 +12,9 @@ use crate::run::folder::shown;
 /// # Errors
 /// The one.
 pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
-    let real: Vec<PathBuf> = files.iter().map(|file| real(file)).collect();
-    match (1..files.len()).find(|&at| real[..at].contains(&real[at])) {
-        Some(twice) => Err(RunError::Refused(format!("{} is named twice", shown(&files[twice])))),
+    let mut seen = HashSet::new();
+    match files.iter().find(|file| !seen.insert(real(file))) {
+        Some(twice) => Err(RunError::Refused(format!("{} is named twice", shown(twice)))),
         None => Ok(()),
     }
 }
@@ -63,7 +64,7 @@ pub(crate) fn numbered(mut names: Vec<String>) -> Vec<String> {
 }
 
 /// Where names stand that are not alone; large and small letters are the same to some disks.
-fn shared(names: &[String]) -> Vec<usize> {
+pub(super) fn shared(names: &[String]) -> Vec<usize> {
     let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
     (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
 }

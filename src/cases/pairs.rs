@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use super::file_names::{as_folders, names, refuse_twice};
-use super::inputs::InputSamples;
+use super::inputs::InputSoils;
 use super::plan::{CasePlan, PlannedCase};
 use super::run::{CaseOptions, unsound};
 use crate::gradation::{GradationError, curves_in_file};
@@ -188,8 +188,8 @@ pub(crate) fn pairs_of(
     each: bool,
 ) -> Result<BatchTable, RunError> {
     refuse_twice(filters)?;
-    let bases = InputSamples::read(samples)?;
-    let soils = bases.samples.len();
+    let bases = InputSoils::samples(&[samples.to_owned()])?;
+    let soils = bases.soils.len();
     if soils > 1 && !each {
         return Err(RunError::Refused(format!(
             "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
@@ -199,7 +199,7 @@ pub(crate) fn pairs_of(
     let curves = |filter: &PathBuf| Ok((filter.display().to_string(), curves_in_file(filter, None)?));
     let curves: Result<Vec<_>, GradationError> = filters.iter().map(curves).collect();
     let curves = curves.map_err(RunError::refused)?;
-    Ok(BatchTable::new(&bases.samples, curves, bases.notes(filters)?, options))
+    Ok(BatchTable::new(&bases.soils, curves, bases.notes(filters)?, options))
 }
 
 /// The rows of a table, with those that govern.

@@ -38,7 +38,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     let about = &scene.about;
     let folder = if args.each { EACH_FOLDER } else { FOLDER };
     let options = SpecifyOptions {
-        base: args.base.clone(),
+        bases: args.bases.clone(),
         dispersive: scene.base.dispersive == Some(true),
         finer: args.finer,
         sieves: args.sieves,

@@ -18,10 +18,11 @@ use crate::study::boundary::ThicknessList;
 /// For which base, and where the specification goes.
 #[derive(Debug, Args)]
 pub struct DesignArgs {
-    /// The base: a sieve table (FILE#NAME for one of several soils); several soils are the curves of an
-    /// envelope; with --each also a folder of tables
-    pub base: PathBuf,
-    /// Take every soil of BASE as a sample of its own, from a file, a workbook, an AGS file or a folder: what
+    /// The base: sieve tables (FILE#NAME for one of several soils); several soils are the curves of an
+    /// envelope; with --each also folders of tables
+    #[arg(value_name = "BASE", required = true)]
+    pub bases: Vec<PathBuf>,
+    /// Take every soil of BASE as a sample of its own, from files, workbooks, AGS files or folders: what
     /// practice specifies for each, one table and the samples that govern
     #[arg(long)]
     pub each: bool,

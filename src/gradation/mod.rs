@@ -58,8 +58,8 @@ pub use shape::Gap;
 pub use sieve::Gradation;
 pub(crate) use soil::file_and_soil;
 pub use soil::{
-    Soil, SoilSample, SoilSummary, curves_in_file, named_soils_in, notes_in_file, samples_in, soils_in_file,
-    us_sieve,
+    Soil, SoilSample, SoilSummary, curves_in_file, envelope_in, named_soils_in, notes_in_file, samples_in,
+    soils_in_file, us_sieve,
 };
 pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};

@@ -1,23 +1,23 @@
 //! The specification of a filter by the rules of practice alone, for one base or for each of many samples, in
 //! a folder of its own.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Serialize;
 
 use crate::cases::days::today;
-use crate::cases::inputs::{InputSamples, input_files};
-use crate::gradation::{Gradation, SoilSample, curves_in_file};
+use crate::cases::inputs::{InputSoils, input_files};
+use crate::gradation::{SoilSample, file_and_soil};
 use crate::outcome::design::{SieveSeries, Specification};
 use crate::outcome::quantity::SizeUnit;
 use crate::outcome::record::SheetCover;
-use crate::outcome::rules::NamedCurve;
 use crate::outcome::table::csv_of;
 use crate::run::callbacks::Callbacks;
 use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, begin, claim, shown};
 use crate::run::results::json;
 use crate::store::{Folder, StoreError};
+use crate::text::plain;
 use crate::verdict::{DesignedSample, DesignedSamples, SpecificationOptions};
 use crate::words::specification::step_rows;
 use crate::words::{designed, products};
@@ -28,8 +28,9 @@ pub(super) const NO_BASE_MM: f64 = 100.0;
 /// What a specification is asked for, and where it goes.
 #[derive(Clone, Debug)]
 pub struct SpecifyOptions {
-    /// Sieve table of the base; several soils in it are the curves of an envelope.
-    pub base: PathBuf,
+    /// Sieve tables of the base, whose soils are the curves of an envelope; or of samples, also folders of
+    /// tables.
+    pub bases: Vec<PathBuf>,
     /// Whether the base is dispersive.
     pub dispersive: bool,
     /// Whether the band is to lie at the finer end of what is allowed.
@@ -74,66 +75,73 @@ impl SpecifyOptions {
 /// A base that cannot be read or is none, and a folder that cannot be claimed, are refused before anything
 /// is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
-    let bases = curves_in_file(&options.base, None).map_err(RunError::refused)?;
-    no_filter_within(&options.base, &bases)?;
-    bases.iter().try_for_each(|(name, base)| is_a_base(&options.base, name, base))?;
-    let specification = Specification::of(&options.base.display().to_string(), &bases, options.of_practice());
-    let cover = options.cover.clone().dated(today());
-    let inputs = input_files([options.base.as_path()])?;
-    let specification = Specification { inches: options.inches, cover, inputs, ..specification };
+    let base = InputSoils::envelope(&options.bases)?;
+    no_filter_within(&base)?;
+    base.soils.iter().try_for_each(is_a_base)?;
+    let curves: Vec<_> = base.soils.iter().map(|soil| (soil.name.clone(), soil.curve.clone())).collect();
+    let specification = Specification::of(&base.name, &curves, options.of_practice());
+    let (inches, cover) = (options.inches, options.cover.clone().dated(today()));
+    let specification = Specification { inches, cover, inputs: input_files(&base.soils)?, ..specification };
     options.write((FolderKind::Specification, &specification), callbacks, |folder| {
         write_tables(folder, &specification)
     })?;
     Ok(specification)
 }
 
-/// Specifies a filter for every sample of a file or a folder (the base of the options) by practice alone, and
-/// writes `designs.csv`, a row a sample, and, last, `designs.json`.
+/// Specifies a filter for every sample (the bases of the options) by practice alone, and writes
+/// `designs.csv`, a row a sample, and, last, `designs.json`.
 ///
 /// # Errors
 /// Samples that cannot be read, or one that is none, and a folder that cannot be claimed, are refused before
 /// anything is written.
 pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
-    let input = InputSamples::read(&options.base)?;
-    let samples = &input.samples;
-    samples.iter().try_for_each(|sample| is_a_base(&sample.path, &sample.name, &sample.curve))?;
+    let input = InputSoils::samples(&options.bases)?;
+    input.soils.iter().try_for_each(is_a_base)?;
     let row = |sample: &SoilSample| {
         let curve = (sample.name.clone(), sample.curve.clone());
         DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], options.of_practice()))
     };
-    let (notes, inputs) =
-        (input.notes(&[])?, input_files(samples.iter().map(|sample| sample.path.as_path()))?);
-    let table = DesignedSamples::new(shown(&options.base), samples.iter().map(row).collect());
-    let (dispersive, inches, cover) =
-        (options.dispersive, options.inches, options.cover.clone().dated(today()));
-    let table = DesignedSamples { dispersive, inches, cover, notes, inputs, ..table };
+    let table = DesignedSamples::new(plain(&input.name), input.soils.iter().map(row).collect());
+    let table = DesignedSamples {
+        dispersive: options.dispersive,
+        inches: options.inches,
+        cover: options.cover.clone().dated(today()),
+        notes: input.notes(&[])?,
+        inputs: input_files(&input.soils)?,
+        ..table
+    };
     options.write((FolderKind::Designs, &table), callbacks, |folder| {
         folder.write("designs.csv", &designed::columns(SizeUnit::Mm).csv(&table.rows))
     })?;
     Ok(table)
 }
 
-/// Refuses a file with both a base and a filter: the filter is no curve of the base.
-fn no_filter_within(file: &Path, curves: &[NamedCurve]) -> Result<(), RunError> {
-    let of = |wanted: &str| {
+/// Refuses a base and a filter together: the filter is no curve of the base.
+fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
+    let called = |wanted: &str| {
         // Of several samples on a sheet each is named `Base/Sample 1`.
         let sheet = |name: &str| name.split('/').next().unwrap_or_default().trim().to_lowercase();
-        curves.iter().map(|(name, _)| name).find(|name| sheet(name) == wanted)
+        let in_file = |soil: &SoilSample| file_and_soil(&soil.path).1.unwrap_or_else(|| soil.name.clone());
+        base.soils.iter().find(|soil| sheet(&in_file(soil)) == wanted)
     };
-    match (of("base"), of("filter")) {
-        (Some(base), Some(filter)) => Err(RunError::Refused(format!(
-            "{file}: {filter}: it holds a base and a filter, and all curves are taken as of the base; name \
-             one: {file}#{base}",
-            file = shown(file)
+    match (called("base"), called("filter")) {
+        (Some(soil), Some(filter)) => Err(RunError::Refused(format!(
+            "{}: {}: it holds a base and a filter, and all curves are taken as of the base; name one: {}",
+            plain(&base.name),
+            filter.name,
+            shown(&soil.path)
         ))),
         _ => Ok(()),
     }
 }
 
 /// Refuses stones: a size in micrometres under a header in mm, most likely.
-fn is_a_base(file: &Path, name: &str, base: &Gradation) -> Result<(), RunError> {
-    match base.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
-        Some(d85) => Err(RunError::Refused(format!("{}: {name}: {}", shown(file), no_base(d85)))),
+fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
+    match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
+        Some(d85) => {
+            let problem = format!("{}: {}: {}", shown(&soil.path), soil.name, no_base(d85));
+            Err(RunError::Refused(problem))
+        }
         None => Ok(()),
     }
 }

@@ -106,6 +106,38 @@ fn a_folder_of_sheets_is_taken() {
 }
 
 #[test]
+fn samples_of_several_files_and_folders_are_rows_of_one_table() {
+    let root = site();
+    let at = root.path();
+    fs::create_dir(at.join("sheets")).unwrap();
+    fs::copy(at.join("other.csv"), at.join("sheets/more.csv")).unwrap();
+    let of = |files: &[&str], out: &str| {
+        designed(at, &[&["design"], files, &["--each", "--out", out]].concat());
+        record(&at.join(out))
+    };
+    let all = of(&["samples.csv", "other.csv#Till", "sheets"], "all");
+    let rows = all["rows"].as_array().unwrap();
+    let names: Vec<&str> = rows.iter().map(|row| row["sample"].as_str().unwrap()).collect();
+    // Till of two files is told apart by them.
+    assert_eq!(
+        names,
+        ["Core", "Shell", "samples: Till", "other: Till", "more/Core", "more/Shell", "more/Till"]
+    );
+    assert_eq!(all["samples"], "samples, other: Till, sheets");
+    let files: Vec<&str> =
+        all["inputs"].as_array().unwrap().iter().map(|of| of["name"].as_str().unwrap()).collect();
+    assert_eq!(files, ["samples.csv", "other.csv", "sheets/more.csv"]);
+    // A row does not depend on its neighbours.
+    let alone = of(&["samples.csv"], "alone");
+    for (row, own) in rows.iter().zip(alone["rows"].as_array().unwrap()) {
+        assert_eq!((&row["d15f_max_mm"], &row["path"]), (&own["d15f_max_mm"], &own["path"]));
+    }
+    let twice = call(at, &["design", "sheets", "sheets/more.csv#Core", "--each", "--out", "twice"]);
+    refused(&twice, "sheets/more.csv#Core is named twice");
+    assert!(!at.join("twice").exists());
+}
+
+#[test]
 fn what_cannot_be_done_is_refused_before_anything_is_written() {
     let root = site();
     let at = root.path();

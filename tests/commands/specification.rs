@@ -91,6 +91,62 @@ fn what_needs_a_walk_or_lacks_a_base_is_refused() {
     assert!(!root.path().join("voidwalk-specification").exists());
 }
 
+#[test]
+fn the_soils_of_several_files_are_one_envelope() {
+    let root = root();
+    let at = root.path();
+    fs::create_dir(at.join("lab")).unwrap();
+    let sands = ["sands.csv#north", "sands.csv#south"].map(str::to_owned);
+    for (place, column) in [("north.csv", 1), ("lab/south.csv", 2)] {
+        let row = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            format!("{},{}\n", cells[0], cells[column])
+        };
+        let table: String =
+            SANDS.replace("north", "Sand").replace("south", "Sand").lines().map(row).collect();
+        fs::write(at.join(place), table).unwrap();
+    }
+    done(&call(at, &["design", "sands.csv", "--out", "one", "-q"]));
+    let one = json(&at.join("one"));
+    let output = call(at, &["design", "north.csv", "lab/south.csv", "--out", "two"]);
+    done(&output);
+    let two = json(&at.join("two"));
+    for name in ["d15f_min_mm", "d15f_max_mm", "band", "limits", "products"] {
+        assert_eq!(two[name], one[name], "{name}");
+    }
+    let texts = |list: &Value, name: &str| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|of| of[name].as_str().unwrap().to_owned()).collect()
+    };
+    // Both soils are called Sand; their files tell them apart.
+    assert_eq!(texts(&two["curves"], "curve"), ["north", "south"]);
+    assert_eq!(two["inputs"].as_array().unwrap().len(), 2);
+    assert_eq!(two["base"], "north, south");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("of a filter for north, south, by the rules"));
+    let page = fs::read_to_string(at.join("two/specification.html")).unwrap();
+    assert!(page.contains("Base <b><bdi>north, south</bdi></b>") && !page.contains("lab/"));
+    // Soils of one file, named one by one, are its envelope, and the file was read once.
+    done(&call(at, &["design", &sands[0], &sands[1], "--out", "named", "-q"]));
+    let named = json(&at.join("named"));
+    assert_eq!((&named["curves"], &named["inputs"]), (&one["curves"], &one["inputs"]));
+}
+
+#[test]
+fn files_that_are_no_envelope_together_are_refused() {
+    let root = root();
+    let at = root.path();
+    let sand = "mm,percent finer\n0.1,0\n0.5,100\n";
+    fs::create_dir(at.join("lab")).unwrap();
+    for name in ["base.csv", "filter.csv", "lab/north.csv"] {
+        fs::write(at.join(name), sand).unwrap();
+    }
+    refused(&call(at, &["design", "base.csv", "./base.csv"]), "./base.csv is named twice");
+    refused(&call(at, &["design", "sands.csv", "sands.csv#north"]), "sands.csv#north is named twice");
+    refused(&call(at, &["design", "base.csv", "filter.csv"]), "it holds a base and a filter");
+    refused(&call(at, &["design", "base.csv", "lab"]), "lab");
+    refused(&call(at, &["design", "base.csv", "nowhere.csv"]), "nowhere.csv");
+    assert!(!at.join("voidwalk-specification").exists());
+}
+
 /// One band: that of the last step stands on the first sheet and on the figure.
 #[test]
 fn the_band_of_the_steps_is_that_of_the_sheet_and_the_figure() {

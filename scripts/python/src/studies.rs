@@ -90,7 +90,8 @@ pub fn specification(
     let sieves =
         sieves.parse().map_err(|_| refused(format!("sieves = {sieves} is not allowed; us or iso")))?;
     let cover = SheetCover::default();
-    let options = SpecifyOptions { base, dispersive, finer, sieves, cover, inches: false, out, overwrite };
+    let bases = vec![base];
+    let options = SpecifyOptions { bases, dispersive, finer, sieves, cover, inches: false, out, overwrite };
     let found = at_work(py, progress, |callbacks| specify(&options, &callbacks.run))?;
     format::SPECIFICATION.json(&found).map_err(failed)
 }

@@ -53,7 +53,7 @@ mod zipped;
 
 pub(crate) use read::file_and_soil;
 pub use read::{curves_in_file, notes_in_file, soils_in_file};
-pub use samples::{SoilSample, named_soils_in, samples_in};
+pub use samples::{SoilSample, envelope_in, named_soils_in, samples_in};
 pub use size::us_sieve;
 pub use summary::SoilSummary;
 pub use table::Soil;

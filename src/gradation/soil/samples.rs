@@ -39,6 +39,14 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     })
 }
 
+/// The curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
+///
+/// # Errors
+/// As [`curves_in_file`].
+pub fn envelope_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_file(path, &|file| curves_in_file(file, None))
+}
+
 /// Every soil of a file or a folder, as [`samples_in`], with those that are no samples.
 ///
 /// # Errors
