@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """The eleven problems of a dam engineer: the program's first lines beside limits worked out by hand, and pictures of its pages.
 
-    scripts/checks/eleven_problems.py [--binary target/release/voidwalk] [--only a,b2] [--pictures DIR] [--out results/eleven-problems.md]
-                                      [--set network.nx=8 ...]
+    scripts/checks/eleven_problems.py [--binary target/release/voidwalk] [--only a,b2] [--pictures DIR] [--set network.nx=8 ...]
 
 Writes the soils of each problem as sheets (`trial_sheets.py` has them), runs `judge` or `design` as somebody would who gives no
 density, and takes what the program says first, its seconds and its exit code. By hand: D15F by logarithmic interpolation, the limit of design by
@@ -229,7 +228,6 @@ def main():
     parser.add_argument("--binary", default="target/release/voidwalk", type=lambda text: str(pathlib.Path(text).resolve()))
     parser.add_argument("--only", help="names of problems, with commas between them")
     parser.add_argument("--pictures", type=pathlib.Path, help="folder for pictures and prints of each page")
-    parser.add_argument("--out", type=pathlib.Path, help="Markdown page whose table is replaced")
     parser.add_argument("--set", nargs="*", default=[], metavar="KEY=VALUE", help="settings of every walk")
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else list(PROBLEMS)
@@ -245,20 +243,7 @@ def main():
             wrong += bool(problem.faults)
             print(html.unescape(rows[-1]), flush=True)
     print(f"{len(rows) - wrong} of {len(rows)} equal")
-    if options.out:
-        table = ["| problem | by hand (mm) | practice, and *walk* | s | exit code | beside the hand limits |", "|---|---|---|---|---|---|", *rows]
-        write_table(options.out, table)
     return 1 if wrong else 0
-
-
-BEGIN, END = "<!-- table -->", "<!-- end of table -->"
-
-
-def write_table(page, table):
-    """Replaces the table between its marks; the words around it are by hand."""
-    text = page.read_text() if page.exists() else f"{BEGIN}\n{END}\n"
-    before, rest = text.split(BEGIN)
-    page.write_text(f"{before}{BEGIN}\n" + "\n".join(table) + f"\n{END}{rest.split(END)[1]}")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """What a scene does not need: which parts the program leaves out, what that saves, and that the answer is the same.
 
-    scripts/checks/left_out.py [FOLDER]
+    scripts/checks/left_out.py
 
 Runs scenes as they are and by their full path (every particle one by one, everything recorded, two runs), on the same networks,
-and writes left-out.md into FOLDER (default results/stability). Networks are 12 x 12 x 20, so that the full path can be walked.
+and prints the table of results/stability.md in Markdown. Networks are 12 x 12 x 20, so that the full path can be walked.
 Exit code 1 where an answer differs.
 """
 import datetime
@@ -66,7 +66,6 @@ def figures(outcome):
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results" / "stability"
     subprocess.run(["cargo", "build", "--release", "--quiet"], cwd=ROOT, check=True)
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
     load = os.getloadavg()[0]
@@ -99,16 +98,11 @@ def main():
             rows.append(f"| {name} | {outcome['engine']} | {seconds:.2f} | {full_seconds:.2f} | {full_seconds / seconds:.1f} | "
                         f"{megabytes:.0f} / {full_megabytes:.0f} | {cells[0]} | {cells[1]} | {less_seconds:.2f}, "
                         f"{'the same bits' if alike else 'DIFFERS'} |")
-    folder.mkdir(parents=True, exist_ok=True)
-    text = [f"# What a scene does not need, {datetime.date.today()}", "",
-            f"Made by `scripts/checks/left_out.py`; commit {commit}, seed 1, one thread, load {load:.1f} at the start. Networks of 12 x 12 x 20, 12 "
-            "replicates, two runs. Times are processor seconds of whole processes. The full path walks every particle one by one; "
-            "differences of the eroded mass are paired by network (percentage points, with the standard error of the mean). "
-            "The report of each scene says what was left out. "
-            "Both engines on all 78 combinations of the paper: `results/engines.md`.", "",
+    text = [f"{datetime.date.today()}, commit {commit}, load {load:.1f} at the start; processor seconds of whole processes; differences of the eroded mass are "
+            "paired by network (percentage points, with the standard error of the mean)", "",
             "| scene | engine as it is | s | s, full path | ratio | peak MB, as it is / full | first run, difference | second run, difference | "
-            "first run alone, nothing recorded: s, quantities |", "|---|---|---|---|---|---|---|---|---|", *rows, ""]
-    (folder / "left-out.md").write_text("\n".join(text))
+            "first run alone, nothing recorded: s, quantities |", "|---|---|---|---|---|---|---|---|---|", *rows]
+    print("\n".join(text))
     if wrong:
         sys.exit(f"answers differ: {wrong}")
 

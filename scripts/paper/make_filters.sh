@@ -2,7 +2,7 @@
 # Packs the six filters of the paper's Table 2 by one protocol and writes their curves, ready to be shipped:
 #     scripts/paper/make_filters.sh [FOLDER] [NAME ...]
 # FOLDER (default target/filters) keeps the packings, so that a second call only measures; NAME picks some of the six.
-# Writes FOLDER/shipped/NAME.csv and FOLDER/shipped/filters.toml (an entry each), and prints the table of results/filters.md.
+# Writes FOLDER/shipped/NAME.csv and FOLDER/shipped/filters.toml (an entry each), and prints the table of results/packing.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 out="${1:-target/filters}"

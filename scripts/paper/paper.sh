@@ -2,7 +2,7 @@
 # Regenerates every figure and number of the paper's reproduction:
 #     scripts/paper/paper.sh [FOLDER]
 # Walks the plans of scripts/campaigns into FOLDER (default target/paper; what is done there is not walked again), writes
-# FOLDER/report.html, figures/*.svg and statements.csv, and copies what lasts to results/paper.
+# FOLDER/report.html, figures/*.svg and statements.csv, and copies what lasts to results/paper; results/paper.md is written by hand.
 # PAGE_ONLY=1 walks nothing and takes what FOLDER holds; NO_COPY=1 leaves results/paper alone.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -35,28 +35,20 @@ mkdir -p "$results/figures" "$results/cases"
 cp "$out/report.html" "$out/statements.csv" "$results/"
 cp "$out"/figures/*.svg "$results/figures/"
 {
-    echo "# The paper's reproduction, $(date -u +%F)"
-    echo
-    echo "Made by \`scripts/paper/paper.sh\` on $(nproc) cores, $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs). Seeds: in the plans,"
-    echo "\`scripts/campaigns\`; each case's own in \`cases/*.csv\`."
-    echo
-    echo "- [\`report.html\`](report.html): the page, with every figure and statement."
-    echo "- [\`statements.csv\`](statements.csv): every number that the paper states, ours in every campaign, and the judgement."
-    echo "- \`figures/\`: the figures. \`cases/\`: the ledger of each plan as a table."
-    echo
-    echo "| plan | cases walked | of | replicates | walks, minutes | commit |"
-    echo "|---|---|---|---|---|---|"
+    echo "plan,cases_walked,of,replicates,minutes,commit"
     for plan in $plans; do
         [ -f "$out/$plan/ledger.jsonl" ] || continue
         cp "$out/$plan/cases.csv" "$results/cases/$plan.csv"
         python3 - "$plan" "$out/$plan/ledger.jsonl" "$("$voidwalk" campaign "scripts/campaigns/$plan.toml" --list | wc -l)" <<'PY'
-import json, sys
+import csv, json, sys
 lines = [json.loads(line) for line in open(sys.argv[2])]
 minutes = sum(line["made"]["seconds"] for line in lines) / 60
 commits = ", ".join(sorted({str(line["commit"]) for line in lines}))
-print(f"| {sys.argv[1]} | {len(lines)} | {sys.argv[3]} | {min(line['replicates'] for line in lines)} | {minutes:.1f} | {commits} |")
+row = [sys.argv[1], len(lines), sys.argv[3], min(line["replicates"] for line in lines), f"{minutes:.1f}", commits]
+csv.writer(sys.stdout, lineterminator="\n").writerow(row)
 PY
     done
-} >"$results/README.md"
+} >"$results/plans.csv"
+echo "results/paper.md names day and machine: $(date -u +%F), $(nproc) cores, $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs)"
 cp "$out/percolation/percolation.csv" "$results/cases/percolation.csv" 2>/dev/null || true
 du -sh "$results"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Prints where the time of `judge`, `boundary`, `judge --each` and `serve` goes, from the sheets to the page: all tables of
-`results/where-time-goes.md`, in Markdown.
+"""Prints where the time of `judge`, `boundary`, `judge --each` and `serve` goes, from the sheets to the page: all its tables (some are in
+`results/speed.md`), in Markdown.
 
     scripts/peers/where_time_goes.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 5] [--first]
         [--soil 1] [--filter "C33 sand"] [--samples 8] [--pairs 12] [--only aims parts kinds disk serve]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Largest eroded particle over ten networks for a base of size classes, beside a continuous one: the table of `results/paper-findings.md`.
+"""Largest eroded particle over ten networks for a base of size classes, beside a continuous one: the table of `results/paper.md`.
 
     scripts/studies/base_classes.py [--binary target/release/voidwalk] [--threads 2]
 

@@ -34,7 +34,7 @@ from xml.sax.saxutils import escape
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BOUNDARIES = {"no_erosion": "no erosion up to", "continuing": "continuing erosion from"}
-# Curves that ship with the program, each of a packing of this Cu and density (results/filters.md). The loosest Cu 6 that was
+# Curves that ship with the program, each of a packing of this Cu and density (results/packing.md). The loosest Cu 6 that was
 # packed had friction 0.7 between its grains.
 SHIPPED = {
     (1.2, "dense"): "cu1.2-dense",

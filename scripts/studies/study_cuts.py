@@ -4,7 +4,7 @@
     python3 scripts/studies/study_cuts.py --binary target/release/voidwalk [--seeds 1,2,3] [--work DIR] [--only NAME,...]
 
 Packs each gradation below with each seed (density "loose", one thread; a packing that is in DIR already is not made again; --only packs
-those alone) and prints the tables of results/cuts.md from what is there. A linear gradation cut at a percentage of its mass is a linear
+those alone) and prints the tables of results/packing.md from what is there. A linear gradation cut at a percentage of its mass is a linear
 gradation of smaller Cu, so Cu 1.5 to 4.5 are the finer parts of Cu 6. Gap-graded filters: so many percent between 1 and 1.5 mm, the
 others between 8 and 10 mm. C33: fine aggregate by ASTM C33, the middle of its band, up to 2.36 mm as the whole. Differences are of means over
 the seeds, in percent of the whole's size; ± is the standard error of the difference. The last column is the largest difference of Dc5 to

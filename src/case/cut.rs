@@ -3,7 +3,7 @@
 //! A cell must be wider than two of its largest grains, so that a broad gradation asks for millions of
 //! grains, most of them of the finest sizes. The constrictions are those between the finer grains; coarser
 //! ones are walls to them. What leaving the coarser ones out does was measured on filters that can be packed
-//! whole (`results/cuts.md`): all constrictions become finer, from Dc5 to Dc90 by no more than 0.6
+//! whole (`results/packing.md`): all constrictions become finer, from Dc5 to Dc90 by no more than 0.6
 //! of the share of the grains' surface that is left out.
 
 use crate::gradation::Gradation;

@@ -18,7 +18,7 @@ const MANY_MOVES: f64 = 1e5;
 /// A larger share of grains without load is worth a word ...
 const MANY_LOOSE: f64 = 0.5;
 /// ... and where it is as large as this, coarse grains carry each other: of two sizes far apart 98 % were
-/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/cuts.md`).
+/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/packing.md`).
 const SKELETON: f64 = 0.9;
 
 /// Constrictions that are looked at to find that out, each as often as it is looked at.

@@ -19,12 +19,12 @@ pub const RECORD: &str = "packing.json";
 pub const GRAINS: &str = "grains.csv";
 
 /// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
-/// (`results/filters.md`).
+/// (`results/packing.md`).
 pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
 
 /// Grains per void of packings without friction: 0.49.
 const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
-/// The same at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6 (`results/cuts.md`).
+/// The same at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6 (`results/packing.md`).
 const ROUGH_GRAINS_PER_VOID: f64 = 0.65;
 /// How far the constrictions of a packing with friction lie between circles of three and of four touching
 /// grains, from the 25th percentile on: 0.19 to 0.22 there in linear gradations and parts of C33 sand, 0.16

@@ -10,7 +10,7 @@
 //! Nothing of the packing but three or four grains is looked at. In a filter of wide gradation coarse grains
 //! meet through many fine ones, and fine grains hide in the gaps of coarse ones, so the guess gets worse the
 //! wider the gradation: beside the triangulation of the same filters its Dc50 is off by the percentages in
-//! `results/filters.md`.
+//! `results/packing.md`.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::tangent::circle;

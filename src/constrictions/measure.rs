@@ -24,7 +24,7 @@ pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
 /// after Reboul et al.) does not count every facet between two voids: it takes the convex hull of the
 /// grains of each void and counts a triangle that is on two such hulls. With its overlap of 0.5 this
 /// gives, on packings of Cu 1.5 and Cu 3, the curve that all facets give at an overlap of 0.1, within 1 %
-/// from Dc5 to Dc75 (`results/triangulation.md`).
+/// from Dc5 to Dc75 (`results/packing.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]

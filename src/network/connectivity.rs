@@ -21,7 +21,7 @@
 //! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where
 //!   connectivities below 4 are wanted. The paper's Table 3 speaks for two: a void that one particle can
 //!   close retains so much that those of connectivity 4 would hold three times as much each as those of 5,
-//!   while the paper has them alike (397 and 444; see `results/connectivity.md`).
+//!   while the paper has them alike (397 and 444; see `results/paper.md`).
 //! - The wanted numbers of voids are the percentages rounded by largest remainder. A sum that stays above 0
 //!   (parity, or a distribution that no such network has) is accepted when every number is within
 //!   [`TOLERANCE_PERCENT`] of all voids, or one void, of what is wanted; otherwise the distribution is

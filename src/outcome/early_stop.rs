@@ -14,7 +14,7 @@
 //! - In every replicate, each run lies above the threshold, as the scene's does on the same network, and
 //!   keeps at least a third of its distance from it. A point that moves more may scatter more.
 //!
-//! That the scatter of a point is at most twice that of the scene is an assumption; `results/studies.md`
+//! That the scatter of a point is at most twice that of the scene is an assumption; `results/precision.md`
 //! counts how often it does not hold, and how often it misled.
 //!
 //! # The ends of the curve's range

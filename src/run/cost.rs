@@ -3,8 +3,8 @@
 //! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
 //! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
 //! processor of 2024 that is shared with other work; only what ends in `_here` asks how fast the machine is
-//! on which it runs. `results/check.md` and `results/slurm.md` hold estimates against measured
-//! times (`scripts/checks/check_times.py`).
+//! on which it runs. `results/speed.md` holds estimates against measured times
+//! (`scripts/checks/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
 use super::planned::{first_replicates, likely_replicates, replicates_of_end};

@@ -56,7 +56,7 @@ impl Engine {
 
 /// Twice the passive particles inserted on a start node in an increment from which counts of them are faster
 /// than one by one: both take as long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
-/// `results/auto.md`.
+/// `results/speed.md`.
 const WORTH_TWICE: u128 = 13;
 
 /// What one run needs: an engine, and how much of the base is passive.
