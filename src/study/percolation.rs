@@ -36,7 +36,7 @@ impl Default for PercolationOptions {
 }
 
 /// What a study is asked for; the same seed gives the same bits.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PercolationPlan {
     /// Voids along x and y, and layers, of one lattice after another.
     pub shapes: Vec<[u32; 3]>,
@@ -70,7 +70,8 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
     let plan = options.plan.clone().checked().map_err(RunError::refused)?;
     let kind = FolderKind::Percolation;
     let folder = claim(&options.out, kind, options.overwrite)?;
-    kept::study((&folder, kind, options.overwrite), format!("{plan:?}"), callbacks, |kept, found| {
+    let work = serde_json::to_string(&plan)?;
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, found| {
         let found = on_threads(options.threads, || plan.run(found.unwrap_or_default(), Some(kept)))?;
         folder.write("percolation.csv", &csv(&found))?;
         Ok(PercolationStudy::new(plan.seed, &found.thresholds, found.seconds))
