@@ -106,10 +106,11 @@ fn words(
         notes.iter().for_each(|note| line(format!("note    {whose}: {note}")));
     }
     let notes = |notes: &[RuleNote]| rule_notes(notes, SizeUnit::Mm);
+    let listed = decision.listed();
     for (role, heading) in PARTS {
         line(String::new());
         line(heading.to_owned());
-        for rule in decision.listed.iter().filter(|rule| rule.role == role) {
+        for rule in listed.iter().filter(|rule| rule.role == role) {
             line(row(rule));
             let curves = [("filter", &rule.filter_curve), ("base", &rule.base_curve)];
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());

@@ -46,7 +46,7 @@ pub(super) fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
         return String::new();
     }
     // Design and no erosion are one number of a dispersive base.
-    let is_one = decision.without_margin.is_some();
+    let is_one = decision.without_margin().is_some();
     let name = |(place, ..): &Boundary| match LIMITS[*place] {
         (DESIGN, ..) if is_one => "design and no erosion",
         (.., name) => name,

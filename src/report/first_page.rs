@@ -100,7 +100,8 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
 
 /// The rules of practice that decide or are not met, and how many others there are.
 pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
-    let rules = decision.listed.iter();
+    let listed = decision.listed();
+    let rules = listed.iter().map(AsRef::as_ref);
     let mut practice: Vec<&AppliedRule> = rules.filter(|rule| rule.role != RuleRole::Walk).collect();
     practice.sort_by_key(|rule| place(rule));
     let mut roles: Vec<RuleRole> = Vec::new();

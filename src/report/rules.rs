@@ -1,5 +1,7 @@
 //! The section on filter rules of a report page.
 
+use std::borrow::Cow;
+
 use maud::{Markup, html};
 
 use super::quantity::{SizeUnit, length};
@@ -13,8 +15,8 @@ use crate::words::rule_note::rule_notes;
 
 /// Every rule with its value, limit, result, source and what it was made for.
 pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
-    let [practice, walk] = of_practice_and_walk(&decision.listed);
-    let sources = distinct_sources(&decision.listed);
+    let listed = decision.listed();
+    let ([practice, walk], sources) = (of_practice_and_walk(&listed), distinct_sources(&listed));
     html! {
         h2 { "All rules" }
         @if decision.rules.is_empty() { p { "No rule was applied." } } @else {
@@ -41,7 +43,8 @@ fn numbered(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup 
 
 /// The sources of all rules, by the numbers that stand in the table.
 pub(super) fn sources(decision: &Decision) -> Markup {
-    let sources = distinct_sources(&decision.listed);
+    let listed = decision.listed();
+    let sources = distinct_sources(&listed);
     let is_of_walk = |source: &str| {
         let citing = decision.rules.iter().filter(|rule| rule.source == source);
         citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
@@ -60,13 +63,13 @@ pub(super) fn sources(decision: &Decision) -> Markup {
 }
 
 /// The rules of practice, and those that check the walk.
-fn of_practice_and_walk(rules: &[AppliedRule]) -> [Vec<&AppliedRule>; 2] {
-    let (walk, practice) = rules.iter().partition(|rule| rule.role == RuleRole::Walk);
+fn of_practice_and_walk<'a>(rules: &'a [Cow<AppliedRule>]) -> [Vec<&'a AppliedRule>; 2] {
+    let (walk, practice) = rules.iter().map(AsRef::as_ref).partition(|rule| rule.role == RuleRole::Walk);
     [practice, walk]
 }
 
 /// Each source once, those of practice first.
-fn distinct_sources(rules: &[AppliedRule]) -> Vec<&str> {
+fn distinct_sources<'a>(rules: &'a [Cow<AppliedRule>]) -> Vec<&'a str> {
     let mut sources: Vec<&str> = Vec::new();
     for rule in of_practice_and_walk(rules).into_iter().flatten() {
         if !rule.source.is_empty() && !sources.contains(&&*rule.source) {
@@ -127,7 +130,8 @@ mod tests {
         assert_eq!(terzaghi(3.9998), ["3.9998", "4"]);
         assert_eq!(terzaghi(3.52), ["3.52", "4"]);
         let broken = [rule(TERZAGHI, 4.0003, 4.0)];
-        let listed = Decision::new(&broken, None, None).listed;
+        let decision = Decision::new(&broken, None, None);
+        let listed = decision.listed();
         let page = table_with(&[&listed[0]], SizeUnit::Mm, |_| html! {}).into_string();
         assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
         // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.

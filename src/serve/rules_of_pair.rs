@@ -16,8 +16,9 @@ const SHOWN: [&str; 7] = ["result", "rule", "authority", "quantity", "value", "l
 /// The rules part by part with what they say of the pair: the page works nothing out.
 pub fn rules_of_pair(pair: &PairRules) -> Value {
     let decision = pair.decision();
+    let listed = decision.listed();
     let part = |(role, title)| {
-        let rules = decision.listed.iter().filter(|rule| rule.role == role);
+        let rules = listed.iter().map(AsRef::as_ref).filter(|rule| rule.role == role);
         let mut part = table(columns(SizeUnit::Mm).only(&SHOWN), rules, |rule| match result_of(rule) {
             RuleResult::Met => Some("keeps"),
             RuleResult::NotMet => Some("breaks"),
@@ -27,7 +28,7 @@ pub fn rules_of_pair(pair: &PairRules) -> Value {
         part
     };
     let named = |result| -> Vec<&str> {
-        let rules = decision.listed.iter().filter(|rule| result_of(rule) == result);
+        let rules = listed.iter().map(AsRef::as_ref).filter(|rule| result_of(rule) == result);
         rules.map(|rule| rule.name.as_str()).collect()
     };
     json!({

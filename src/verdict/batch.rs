@@ -169,7 +169,7 @@ impl BatchRow {
             return Self { is_refused, ..row };
         }
         let (rules, decision) = (&pair.rules, pair.decision());
-        let strictest = decision.strictest.as_ref().map(|(rule, limit)| (rule, *limit, rule.limit_at_most));
+        let strictest = decision.strictest().map(|(rule, limit)| (rule, limit, rule.limit_at_most));
         let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
         let open_base = is_open.then(|| OpenBase::of(base, false));
         // The strictest that a limit can be which hangs on sieves of the base that stand far apart.

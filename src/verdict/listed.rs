@@ -1,12 +1,14 @@
 //! Rules of practice in the rows of a table.
 
+use std::borrow::Cow;
+
 use super::rule_result::without_margin;
 use crate::outcome::record::AppliedRule;
 use crate::outcome::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 
 /// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
 /// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
-pub(super) fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
+pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
             |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
@@ -14,7 +16,11 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<AppliedRule> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    once.map(|rule| if is_one && rule.id == DESIGN { of_dispersive(rule) } else { rule.clone() }).collect()
+    once.map(|rule| match is_one && rule.id == DESIGN {
+        true => Cow::Owned(of_dispersive(rule)),
+        false => Cow::Borrowed(rule),
+    })
+    .collect()
 }
 
 /// The limit of a dispersive base under its own name.

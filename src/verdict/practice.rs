@@ -1,5 +1,7 @@
 //! The decision of filter practice on a pair: made once, of its rules, for records, notes and every face.
 
+use std::borrow::Cow;
+
 use super::dispersion::BeyondDispersive;
 use super::listed::listed;
 use super::rule_result::{has_no_margin, met_of, without_margin};
@@ -17,10 +19,8 @@ use crate::outcome::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_ERO
 pub struct Decision {
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// Rules as a sheet lists them.
-    pub listed: Vec<AppliedRule>,
-    /// Rules that were made for these soils and are not kept; of retention those by which practice goes.
-    broken: Vec<AppliedRule>,
+    /// D15F in the unit of the rules, or 1.
+    d15f: f64,
     /// Where the filter stands.
     pub standing: Standing,
     /// The answer, which is on the condition that the base is not dispersive where the filter would not hold
@@ -35,15 +35,8 @@ pub struct Decision {
     pub is_beyond_tests: bool,
     /// Whether it is beyond a boundary of continuing erosion that tests leave unclear.
     pub is_beyond_unclear: bool,
-    /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
-    /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
-    pub boundary: Option<AppliedRule>,
     /// What is left of a filter that is too coarse without its finer part.
     pub washout: Option<Washout>,
-    /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
-    pub without_margin: Option<AppliedRule>,
-    /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
-    pub strictest: Option<(AppliedRule, f64)>,
     /// Whether the strictest limit may be lower than that and is not known.
     pub is_strictest_open: bool,
     /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
@@ -93,22 +86,17 @@ impl Decision {
     /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
     /// `None` where D15F lies in the filter's finest part.
     pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
-        let others = rules.iter().filter(|rule| rule.role != RuleRole::Retention);
         let facts = Self {
             rules: rules.to_vec(),
-            listed: listed(rules),
-            broken: retaining(rules).chain(others).filter(|rule| rule.is_broken()).cloned().collect(),
+            // A D15F that lies in a finest tail has the limits in mm all the same.
+            d15f: d15f_mm.unwrap_or(1.0),
             standing: Standing::NoRules,
             headline: None,
             counts_as: None,
             tests: tested(rules),
             is_beyond_tests: is_beyond_tests(rules),
             is_beyond_unclear: is_beyond_unclear(rules),
-            boundary: None,
             washout: washout(rules),
-            without_margin: without_margin(rules).cloned(),
-            // A D15F that lies in a finest tail has the limits in mm all the same.
-            strictest: retention(rules, d15f_mm.unwrap_or(1.0)).map(|(rule, limit)| (rule.clone(), limit)),
             is_strictest_open: open_retention(rules).is_some(),
             if_dispersive,
             beyond_dispersive: if_dispersive.and_then(|limit| limit.broken_by(rules, d15f_mm)),
@@ -117,7 +105,6 @@ impl Decision {
         };
         let facts = Self {
             standing: facts.stand(),
-            boundary: facts.telling_boundary().cloned(),
             is_drainage_unknown: facts.applied(PERMEABILITY).is_some_and(|rule| rule.met.is_none()),
             ..facts
         };
@@ -135,9 +122,27 @@ impl Decision {
         self.rules.iter().find(|rule| rule.id == id && rule.applies)
     }
 
-    /// The rules of a role that were made for these soils and are not kept.
+    /// Rules as a sheet lists them.
+    pub fn listed(&self) -> Vec<Cow<'_, AppliedRule>> {
+        listed(&self.rules)
+    }
+
+    /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+    pub fn without_margin(&self) -> Option<&AppliedRule> {
+        without_margin(&self.rules)
+    }
+
+    /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
+    pub fn strictest(&self) -> Option<(&AppliedRule, f64)> {
+        retention(&self.rules, self.d15f)
+    }
+
+    /// The rules of a role that were made for these soils and are not kept; of retention those by which
+    /// practice goes.
     pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &AppliedRule> {
-        self.broken.iter().filter(move |rule| rule.role == role)
+        let others = self.rules.iter().filter(|rule| rule.role != RuleRole::Retention);
+        let broken = retaining(&self.rules).chain(others).filter(|rule| rule.is_broken());
+        broken.filter(move |rule| rule.role == role)
     }
 
     /// Whether a rule of a role is not kept.
@@ -197,7 +202,9 @@ impl Decision {
         }
     }
 
-    fn telling_boundary(&self) -> Option<&AppliedRule> {
+    /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
+    /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
+    pub fn boundary(&self) -> Option<&AppliedRule> {
         let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
         let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
         match self.tests {

@@ -125,7 +125,7 @@ impl Pair<'_> {
     /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
     /// not known.
     fn greatest(&self) -> Option<(f64, bool)> {
-        self.decision.strictest.as_ref().map(|(_, limit)| (*limit, self.decision.is_strictest_open))
+        self.decision.strictest().map(|(_, limit)| (limit, self.decision.is_strictest_open))
     }
 
     fn drainage_rule(&self) -> Option<&AppliedRule> {

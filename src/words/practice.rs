@@ -76,7 +76,7 @@ fn of_other_retention(decision: &Decision, unit: SizeUnit) -> impl Iterator<Item
 /// The class of such pairs in tests, with the boundary beyond which the filter lies.
 fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
     // Within the one limit of a dispersive base tests have no other.
-    if decision.without_margin.as_ref().is_some_and(|rule| rule.met == Some(true)) {
+    if decision.without_margin().is_some_and(|rule| rule.met == Some(true)) {
         return None;
     }
     let class = match decision.tests {
@@ -86,7 +86,7 @@ fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
         TestedClass::Unknown if !decision.is_beyond_tests => return None,
         class => tested_in_brief(class, decision.is_beyond_tests),
     };
-    let boundary = decision.boundary.as_ref().and_then(|rule| {
+    let boundary = decision.boundary().and_then(|rule| {
         let at_most = if rule.limit_at_most { "at most " } else { "" };
         let [_, limit] = value_and_limit(rule, unit);
         let limit = limit.map(|limit| format!("{at_most}{limit}"))?;
