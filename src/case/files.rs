@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::error::CaseError;
 use super::input::Input;
@@ -140,7 +141,8 @@ impl Files {
         bytes: Vec<u8>,
     ) -> Result<(), CaseError> {
         debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
-        let (name, kept_as) = (first_name(path, None)?, format!("{INPUTS}/{kept_as}"));
+        let (name, kept_as, bytes) =
+            (first_name(path, None)?, format!("{INPUTS}/{kept_as}"), Arc::new(bytes));
         self.inputs.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! A file that went into a case.
 
+use std::sync::Arc;
+
 use crate::outcome::record::InputFile;
 
 /// A file that was read, and the name under which a run folder keeps it.
@@ -12,8 +14,8 @@ pub struct Input {
     pub name: String,
     /// Name inside the run folder.
     pub kept_as: String,
-    /// Its bytes.
-    pub bytes: Vec<u8>,
+    /// Its bytes, which copies of a case share.
+    pub bytes: Arc<Vec<u8>>,
     /// Which of its soils is meant, where it holds several.
     pub soil: Option<String>,
     /// What was assumed to understand it.

@@ -167,7 +167,7 @@ pub fn run_in_memory<'py>(
         let (outcome, recorded) = pool.install(|| runs::walk_case_recorded(&case, &callbacks.run))?;
         let threads = pool.current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
-        let packing = case.packing_record().and_then(|kept| String::from_utf8(kept.bytes.clone()).ok());
+        let packing = case.packing_record().and_then(|kept| String::from_utf8(kept.bytes.to_vec()).ok());
         let texts = (serde_json::to_string(&manifest)?, case.resolved().to_toml(), packing);
         Ok((outcome, recorded, texts))
     })?;
