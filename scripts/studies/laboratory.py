@@ -4,7 +4,7 @@
     scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
         [--experiment results/laboratory-experiment.csv] [--binary target/release/voidwalk] [--minutes 40]
 
-Walks the cells of PLAN in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
+Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
 again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
 
 Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
@@ -54,71 +54,37 @@ BY_AREA = "area-along-flow"
 
 
 def plan():
-    """The cells, the most telling first, each once."""
+    """The cells of the page, each once."""
     return dict.fromkeys(cells())
 
 
 def cells():
-    """Models and tests; a group that comes again is filled in."""
-    def lattice(filters, bases, law=NONE, exit="area", blocked="closed", measure="boundary"):
+    """Largest particles, then boundaries: by area on the lattice, with water, and by area on graphs."""
+    def walked(filters, bases, network="lattice", exit="area", law=NONE, blocked="closed", measure="boundary"):
         for of in filters:
             for base in bases:
                 for concentration in concentrations(law):
-                    yield measure, *of, base, "lattice", exit, law, concentration, blocked
+                    yield measure, *of, base, network, exit, law, concentration, blocked
 
-    def graph(filters, bases, law=NONE, blocked="closed", exit="flux"):
-        for of in filters:
-            for base in bases:
-                for concentration in concentrations(law):
-                    yield "boundary", *of, base, "graph", exit, law, concentration, blocked
-
-    tested = [("1.2", "dense"), ("3", "loose"), ("6", "loose")]
     for law in (NONE, MARIN):
-        yield from lattice(tested, ["1.2"], law, measure="largest")
-    # What one run of the first column says of every model.
-    yield from lattice([LOOSE], ["1.5"])
-    yield from lattice([LOOSE], ["1.5"], NONE, "flux")
-    yield from lattice([LOOSE], ["1.5"], NONE, "flux", "open")
-    yield from lattice([LOOSE], ["1.5"], MARIN, "flux")
-    yield from graph([LOOSE], ["1.5"])
-    yield from graph([LOOSE], ["1.5"], MARIN)
-    # By area, which costs little: broader bases, broader and denser filters.
-    yield from lattice([*SANDS, BROAD], BASES)
-    yield from lattice([BEADS], ["1.2"])
-    yield from lattice([BEADS], ["1"])
-    for base in ("3", "4.5"):
-        yield from lattice(SANDS, [base], MARIN)
-    yield from lattice([BROAD], BASES, MARIN)
-    yield from lattice([("1.5", "dense")], ["1.5"], NONE, "area", "open")
-    yield from lattice([("3", "loose")], ["3"], NONE, "area", "open")
-    # With water, the models in which a filter is not sealed last, as they cost the most.
-    yield from lattice([LOOSE], ["3"], NONE, "flux")
-    yield from lattice([LOOSE], ["1.5"], MARIN, "flux", "open")
-    yield from graph([LOOSE], ["1.5"], NONE, "open")
-    yield from graph([LOOSE], ["3"])
-    yield from lattice([BEADS], ["1"], MARIN)
-    yield from lattice([BEADS], ["1.2"], NONE, "flux")
-    yield from graph([LOOSE], ["1.5"], MARIN, "open")
-    yield from lattice([LOOSE], ["3"], NONE, "flux", "open")
-    yield from graph([LOOSE], ["3"], MARIN)
-    yield from graph([LOOSE], ["3"], MARIN, "open")
-    yield from lattice([LOOSE], ["3"], MARIN, "flux")
-    yield from graph([("3", "loose")], ["3"])
-    yield from lattice([BEADS], ["1.2"], NONE, "area", "open")
-    yield from lattice([BEADS], ["1.2"], MARIN, "flux")
-    yield from lattice([("1.5", "dense")], ["1.5"], MARIN, "flux")
-    yield from lattice([BROAD_DENSE], BASES, MARIN)
-    # Every filter and base on the voids of its packing, by area.
+        yield from walked([BEADS, ("3", "loose"), BROAD], ["1.2"], law=law, measure="largest")
+    yield from walked([*SANDS, BROAD], BASES)
+    yield from walked([BEADS], ["1", "1.2"])
+    yield from walked(SANDS, ["3", "4.5"], law=MARIN)
+    yield from walked([BROAD], BASES, law=MARIN)
+    for of, base in ((("1.5", "dense"), "1.5"), (("3", "loose"), "3"), (BEADS, "1.2")):
+        yield from walked([of], [base], blocked="open")
+    for blocked in ("closed", "open"):
+        yield from walked([LOOSE], ["1.5", "3"], exit="flux", blocked=blocked)
+        yield from walked([LOOSE], ["1.5"], "graph", "flux", blocked=blocked)
+    yield from walked([BEADS], ["1.2"], exit="flux")
+    yield from walked([LOOSE], ["3"], "graph", "flux")
+    yield from walked([("3", "loose")], ["3"], "graph", "flux")
+    for network in ("lattice", "graph"):
+        yield from walked([LOOSE], ["1.5"], network, "flux", MARIN)
+    yield from walked([*SANDS, BROAD, BROAD_DENSE], BASES, "graph", BY_AREA)
     for law in (CRITICAL, ZURIGUEL):
-        yield from graph([LOOSE], ["1.5"], law, exit=BY_AREA)
-    for law in (NONE, MARIN, CRITICAL, ZURIGUEL):
-        for base in BASES:
-            yield from graph([*SANDS, BROAD, BROAD_DENSE], [base], law, exit=BY_AREA)
-    yield from lattice([LOOSE], ["3"], MARIN, "flux", "open")
-    yield from graph([("3", "loose")], ["3"], MARIN)
-    for law in (ZURIGUEL, CRITICAL):
-        yield from lattice([LOOSE], ["1.5", "3"], law)
-    yield from lattice(tested, ["1.2"], ZURIGUEL, measure="largest")
+        yield from walked(SANDS[:2], BASES, "graph", BY_AREA, law)
 
 
 INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "d15f_over_d85b", "inject_share"]
@@ -283,13 +249,11 @@ def guess(cell):
     """The ratio at which a cell's search begins."""
     exit, law = cell[5:7]
     if exit == BY_AREA:
-        # What sieving holds of a narrow base, and laws by that; `marin-2018` the more, the denser the base arrives.
+        # The boundary of a narrow base by sieving; laws of dense flow hold some three times as coarse a filter.
         sieved = {("1.5", "dense"): 3.5, ("3", "dense"): 3.5, BROAD: 3.4, BROAD_DENSE: 4.1}.get(cell[1:3], 2.9)
-        return sieved * {NONE: 1.0, MARIN: 2.0 if cell[1:3] == LOOSE else 2.8, CRITICAL: 3.0, ZURIGUEL: 3.0}[law]
+        return sieved if law == NONE else 3.0 * sieved
     without = 3.2 if exit == "flux" else 4.6
-    # Openings with water let arches hold less, and every particle is walked.
-    with_arches = 5.0 if exit == "flux" and cell[8] == "open" else 8.0
-    return without if law == NONE else with_arches
+    return without if law == NONE else 8.0
 
 
 def next_ratio(walked, begin, step):
