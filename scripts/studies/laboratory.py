@@ -85,6 +85,9 @@ def cells():
     yield from walked([*SANDS, BROAD, BROAD_DENSE], BASES, "graph", BY_AREA)
     for law in (CRITICAL, ZURIGUEL):
         yield from walked(SANDS[:2], BASES, "graph", BY_AREA, law)
+    # Of laws and Cu 3 those that there was time for.
+    yield from walked(SANDS[2:], ["1.5"], "graph", BY_AREA, CRITICAL)
+    yield from walked(SANDS[2:3], ["3"], "graph", BY_AREA, CRITICAL)
 
 
 INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "d15f_over_d85b", "inject_share"]
