@@ -88,6 +88,7 @@ def cells():
     # Of laws and Cu 3 those that there was time for.
     yield from walked(SANDS[2:], ["1.5"], "graph", BY_AREA, CRITICAL)
     yield from walked(SANDS[2:3], ["3"], "graph", BY_AREA, CRITICAL)
+    yield from walked(SANDS[2:], ["4.5"], "graph", BY_AREA, ZURIGUEL)
 
 
 INCREMENTS_CELL = ["filter_cu", "density", "base_cu", "law", "concentration", "d15f_over_d85b", "inject_share"]

@@ -358,7 +358,7 @@ whatever retains more at a higher concentration has the same sign, and its numbe
 
 - Graphs by area: `marin-2018`, the other cells of laws of dense flow, and second runs. With water: one size, and `marin-2018` but for one pair; in
   it, on the graph, the base erodes at {no_time}, the least ratios for which there was time.
-- No cell here is of the schedule before 2026-11-29, which solved the flow less often. In 41 cells walked with both the first boundary differs by up
+- No cell here is of the schedule before 2026-11-29, which solved the flow less often. In 42 cells walked with both the first boundary differs by up
   to 5.9 %, the second by up to 6.1 %.
 - Bases with more than 15 % fines: the walk has no cohesion. Without arches: [real soils](real-soils.md).
 - Single tests: no table could be read; of Honjo (1985), Raut (2006) and Indraratna et al. (2007) only first pages.
