@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One archive of the program for one system, with its checksum: the binary, its completions and manual pages, the texts that
-# belong to it, and the licences of the crates in it.
+# belong to it, and the licences of the crates in it, which cargo and Python 3 gather.
 #
 #     scripts/install/archive.sh target/dist/voidwalk voidwalk-0.1.0-x86_64-unknown-linux-gnu [FOLDER]
 #
@@ -19,7 +19,8 @@ trap 'rm -rf "$work"' EXIT
 to=$work/$name
 mkdir -p "$to/completions"
 cp "$binary" README.md CHANGELOG.md CITATION.cff LICENSE-APACHE LICENSE-MIT "$to"
-cp scripts/install/third-party.txt "$to/LICENSES-THIRD-PARTY.txt"
+python=$(command -v python3 || command -v python)
+"$python" scripts/install/third_party.py "$to/LICENSES-THIRD-PARTY.txt"
 "$binary" man "$to/man" >/dev/null
 "$binary" completions bash >"$to/completions/voidwalk.bash"
 "$binary" completions elvish >"$to/completions/voidwalk.elv"
@@ -28,7 +29,7 @@ cp scripts/install/third-party.txt "$to/LICENSES-THIRD-PARTY.txt"
 "$binary" completions zsh >"$to/completions/_voidwalk"
 
 # Python packs: it is on every runner, and tar and zip differ between systems.
-"$(command -v python3 || command -v python)" - "$work" "$name" "$folder" "$binary" <<'END'
+"$python" - "$work" "$name" "$folder" "$binary" <<'END'
 import gzip
 import hashlib
 import sys

@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
-"""The licence texts of the crates that come inside voidwalk: `scripts/install/third-party.txt`, which goes with every
-binary and wheel.
+"""Writes the licence texts of the crates inside voidwalk into a file, which every archive, wheel and image holds.
 
-    scripts/install/third_party.py            writes it anew, after a change of Cargo.lock
-    scripts/install/third_party.py --check    whether it is that of Cargo.lock
+    scripts/install/third_party.py FILE
 
 The texts are those in the crates' own archives. A crate that brings none gets the text of its licence from this checkout,
 with its authors in place of ours.
@@ -16,7 +14,6 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FILE = Path(__file__).with_name("third-party.txt")
 #: The systems that binaries and wheels are made for.
 TARGETS = [
     "x86_64-unknown-linux-gnu",
@@ -96,14 +93,9 @@ def whole():
 
 
 def main():
-    text = whole().encode()
-    if sys.argv[1:] == ["--check"]:
-        if not FILE.exists() or FILE.read_bytes() != text:
-            sys.exit(f"{FILE.relative_to(ROOT)} is not that of Cargo.lock: run scripts/install/third_party.py")
-    elif sys.argv[1:]:
+    if len(sys.argv) != 2:
         sys.exit(__doc__)
-    else:
-        FILE.write_bytes(text)
+    Path(sys.argv[1]).write_bytes(whole().encode())
 
 
 if __name__ == "__main__":
