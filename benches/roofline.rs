@@ -4,7 +4,7 @@
 //! First the machine's limits: what it copies a second by size of what it copies, a random read,
 //! multiplications and additions a second. Then the kernels, all of them in each of seven turns. Prints a line
 //! of JSON for each, with nanoseconds of processor time an item in every turn; `scripts/peers/roofline.py` puts
-//! bytes and operations beside them, and `scripts/peers/kernel_parts.py` names the functions they spend it in.
+//! bytes and operations beside them.
 
 use std::hint::black_box;
 use std::rc::Rc;

@@ -17,7 +17,7 @@ from statistics import median
 
 CACHE = {"second": "second cache", "third": "third cache"}
 
-INSERTED = "the inverse cube root, then random words and the sum of masses (parts below)"
+INSERTED = "the inverse cube root, then random words and the sum of masses"
 STEP = "random reads of the table; portable code: arithmetic in vectors of four, which hand-written SSE2 has 2 to 6 % faster"
 
 #: Kernel: what an item is; what it takes; what holds it up next.
@@ -36,27 +36,27 @@ KERNELS = {
     "counts": (
         "void and increment",
         {"bytes": 36, "cache": "third", "operations": 150, "divisions": 2, "roots": 2, "words": 2},
-        "two binomial draws a void and where they go (parts below)",
+        "two binomial draws a void and where they go",
     ),
     "expected": ("void and increment", {"bytes": 32, "cache": "third", "operations": 9}, "bytes from the third cache"),
     "expected, small": ("void and increment", {"bytes": 32, "cache": "second", "operations": 9}, "not taken apart: rows of 20 voids in the second cache"),
     "lattice": (
         "constriction",
         {"bytes": 11, "cache": "third", "operations": 6, "divisions": 2, "words": 1},
-        "words that wait for one another, a look-up in the curve, memory written for the first time (parts below)",
+        "words that wait for one another, a look-up in the curve, memory written for the first time",
     ),
     "flow, from nothing": (
         "constriction",
         {"bytes": 108, "cache": "third", "operations": 16, "a round": True},
-        "down and up through the factor (parts below)",
+        "down and up through the factor",
     ),
     "contacts of grains": (
         "grain and step",
         {"bytes": 320, "cache": "second", "operations": 460, "divisions": 18, "roots": 12},
-        "which pairs touch, gathers and scatters, motion: the law is a tenth (parts below)",
+        "which pairs touch, gathers and scatters, motion: the law is a tenth",
     ),
-    "triangulation": ("grain", None, "which facets meet, and the cavity of each grain: exact tests are a quarter (parts below)"),
-    "constrictions": ("grain", None, "discs between grains, and which voids they join (parts below)"),
+    "triangulation": ("grain", None, "which facets meet, and the cavity of each grain: exact tests are a quarter"),
+    "constrictions": ("grain", None, "discs between grains, and which voids they join"),
 }
 
 SHOWN = ["bytes", "reads", "operations", "divisions", "roots", "in order", "words"]

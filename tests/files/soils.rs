@@ -1,5 +1,7 @@
-//! Every file of `tests/soils` is understood or refused as the `.txt` beside it says; `scripts/checks/make_soils.py`
-//! writes them.
+//! Every file of `tests/soils` is understood or refused as the `.txt` beside it says. Of a file that is understood it
+//! has a line for each soil, `NAME | size percent, size percent, ...` (mm, percent finer), and `note:` lines, each of
+//! which must be in a note of the first soil; of a file that is refused `refused:` lines, each of which must be in the
+//! message. Commit 16af1d7a has the script that made the workbooks.
 
 use std::path::{Path, PathBuf};
 use voidwalk::gradation::Soil;
