@@ -1,6 +1,6 @@
-"""Measures what the Python package costs: handing arrays in and out beside the walk, memory beside the command line's, calls.
+"""Measures what the Python package costs: handing arrays in and out beside the walk, memory beside the command line's.
 
-    target/python/bin/python scripts/python/measure.py [handing memory calls]
+    target/python/bin/python scripts/python/measure.py [handing memory]
 
 Every figure is the median of several runs (RUNS of the environment, else 3), each of handing and of memory in a process of
 its own. The program is target/release/voidwalk, or what VOIDWALK_PROGRAM names.
@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 from statistics import median
-from typing import Any, Callable, Dict, List
+from typing import Any, Dict, List
 
 import numpy as np
 
@@ -33,12 +33,6 @@ LATTICES = {"1e6": (69, 69, 70), "1e7": (408, 408, 20)}
 #: The base that is walked, and what Eq. (2) takes of the filter.
 FILTER, BASE = vw.Gradation.linear(1.5), vw.Gradation.linear(1.5, 0.2, 85)
 GRAINS_PER_VOID = vw.Curve.shipped("cu1.5-loose").grains_per_void
-
-
-def seconds_of(call: Callable[[], object]) -> float:
-    begun = time.perf_counter()
-    call()
-    return time.perf_counter() - begun
 
 
 def said_by(*arguments: str) -> Dict[str, Any]:
@@ -126,32 +120,14 @@ def memory() -> None:
         print(f"  {name}: {said}: {ratios} times")
 
 
-def calls() -> None:
-    small = vw.Network.cubic([4, 4, 4])
-    walk = lambda: vw.walk(small, 0.1, n_base=10, increments=1, runs=1, replicates=1, threads=1)
-    print(f"the smallest walk: {1e3 * median(seconds_of(walk) for _ in range(200)):.2f} ms a call")
-    soil = vw.Gradation.linear(1.5)
-    many = lambda: [soil.d(15) for _ in range(1000)]
-    print(f"Gradation.d: {1e3 * median(seconds_of(many) for _ in range(11)):.2f} us a call")
-    million = 10_000_000
-    draw = np.random.default_rng(1)
-    diameter, coords = draw.uniform(0.5, 1.0, million), draw.uniform(0, 500, (million, 3))
-    seconds = median(seconds_of(lambda: vw.Packing(coords, diameter, 500.0)) for _ in range(RUNS))
-    shared = np.shares_memory(vw.Packing(coords, diameter, 500.0).diameter, diameter)
-    print(f"Packing of 1e7 grains: {1e3 * seconds:.0f} ms to look through, memory shared: {shared}")
-    for module in ("voidwalk", "numpy"):
-        line = [sys.executable, "-c", f"import {module}"]
-        print(f"import {module}: {median(seconds_of(lambda: subprocess.run(line, check=True)) for _ in range(5)):.2f} s")
-
-
 def main() -> None:
     if sys.argv[1:2] == ["one_handing"]:
         print(json.dumps(one_handing(json.loads(sys.argv[2]))))
         return
     load = ", ".join(f"{of:.1f}" for of in os.getloadavg())
     print(f"voidwalk {vw.__version__}, Python {platform.python_version()}, NumPy {np.__version__}, load {load}")
-    for part in sys.argv[1:] or ["handing", "memory", "calls"]:
-        {"handing": handing, "memory": memory, "calls": calls}[part]()
+    for part in sys.argv[1:] or ["handing", "memory"]:
+        {"handing": handing, "memory": memory}[part]()
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     print(f"load {os.getloadavg()[0]:.1f} at the end; the largest child took {peak:.0f} MB")
 

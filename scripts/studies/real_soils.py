@@ -2,12 +2,12 @@
 """How coarse may a filter be for real soils? The walk's boundaries beside practice and the range of tests.
 
     scripts/studies/real_soils.py SOILS.json --out FOLDER [--binary voidwalk] [--minutes 60] [--part 1/2]
-    scripts/studies/real_soils.py SOILS.json --out FOLDER --summary [--csv results]
+    scripts/studies/real_soils.py SOILS.json --out FOLDER --minutes 0 --csv results
 
 SOILS.json is a list of {"id", "points_mm_percent"}. Needs the Python package, NumPy, and the program for the
 constrictions of the filters. Soils come in a seeded order, stage after stage (`STAGES`), so that a stop at any time
 leaves the same share of every kind of soil. FOLDER holds one line a boundary; what is there is not walked again, and
-several parts (`--part 1/2`, `--part 2/2`) may work beside each other. `--summary` prints the tables, and walks nothing.
+several parts (`--part 1/2`, `--part 2/2`) may work beside each other. `real_soils_tables.py` makes tables of the CSV files.
 """
 
 import argparse
@@ -63,7 +63,6 @@ STAGES = [
     ("cu1.5", "loose", "continuing", "", 639, 1),
     ("cu1.5", "dense", "continuing", "", 200, 1),
 ]
-GROUPS = ["1", "2 55-85", "2 35-55", "3", "4"]
 DECILES = [10, 15, 20, 30, 40, 50, 60, 70, 80]
 KEY = ["soil", "filter", "density", "boundary", "base", "network"]
 
@@ -388,24 +387,6 @@ def size_of(soil, percent):
         return None
 
 
-def summary(soils, rows):
-    """Quantiles of boundary / centre of the tests' range, by stage and group."""
-    by_id = {soil.id: soil for soil in soils}
-    stages = sorted({tuple(row[key] for key in KEY[1:]) for row in rows})
-    print("| filter, density, boundary, base, network | group | soils | none | 5 % | 25 % | median | 75 % | 95 % |")
-    print("|---|---|---|---|---|---|---|---|---|")
-    for stage in stages:
-        of = [row for row in rows if tuple(row[key] for key in KEY[1:]) == stage]
-        for group in GROUPS:
-            here = [row for row in of if by_id[row["soil"]].group == group]
-            ratios = sorted(row["d15f_mm"] / by_id[row["soil"]].centre for row in here if row.get("d15f_mm"))
-            if ratios:
-                at = [ratios[round(share * (len(ratios) - 1))] for share in (0.05, 0.25, 0.5, 0.75, 0.95)]
-                cells = " | ".join(f"{value:.2f}" for value in at)
-                name = ", ".join(str(part) for part in stage if part != "")
-                print(f"| {name} | {group} | {len(here)} | {len(here) - len(ratios)} | {cells} |")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("soils", type=Path)
@@ -413,19 +394,15 @@ def main():
     parser.add_argument("--binary", default="voidwalk")
     parser.add_argument("--minutes", type=float, default=75)
     parser.add_argument("--part", default="1/1")
-    parser.add_argument("--summary", action="store_true")
     parser.add_argument("--csv", type=Path, help="folder for real-soils.csv and real-soils-bases.csv")
     options = parser.parse_args()
     import voidwalk as vw
 
     options.out.mkdir(parents=True, exist_ok=True)
     soils = [Soil(vw, one) for one in json.loads(options.soils.read_text())]
-    if not options.summary:
-        walk_all(vw, options, soils, rows_of(options.out))
-    rows = rows_of(options.out)
-    summary(soils, rows)
+    walk_all(vw, options, soils, rows_of(options.out))
     if options.csv:
-        write(soils, rows, options.csv)
+        write(soils, rows_of(options.out), options.csv)
 
 
 if __name__ == "__main__":
