@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Reads what `voidwalk export` wrote for ParaView with two other readers, and draws it.
+"""Reads what `voidwalk export` wrote for ParaView with two other readers.
 
     pip install meshio vtk
-    scripts/checks/check_paraview.py RUN/export [--image FILE.png]
+    scripts/checks/check_paraview.py RUN/export
 
 RUN has kept its voids (`record.voids`). Every moment that `voids.pvd` and `constrictions.pvd` name is read by VTK and by meshio; both must
 see the same points, cells and numbers, lines of two ends, as many constrictions blocked as `blocked_at` says, and none that opens
-again. The image is the last moment: voids that hold particles, coloured by how many, and the blocked constrictions. Not part of
-the tests: VTK is large.
+again. Not part of the tests: VTK is large.
 """
 
 import argparse
@@ -47,8 +46,8 @@ def read(path):
 
 
 def check(folder):
-    """Both series; their last grids."""
-    before, last = None, {}
+    """Both series."""
+    before = None
     for kind, cell in [("voids", vtk.VTK_VERTEX), ("constrictions", vtk.VTK_LINE)]:
         times = moments(folder / f"{kind}.pvd")
         if [t for t, _ in times] != sorted({t for t, _ in times}):
@@ -68,70 +67,12 @@ def check(folder):
             else:
                 held = columns["retained_in_constrictions_in_this_run"] + columns["retained_in_voids_in_this_run"]
                 print(f"{path.name}: time {time:g}, {len(held)} voids, {held.sum():g} particles in {(held > 0).sum()} of them")
-            last[kind] = grid
-    return last
-
-
-def over(grid, name, least):
-    """The cells of a grid with at least so much of a column."""
-    threshold = vtk.vtkThreshold()
-    threshold.SetInputData(grid)
-    threshold.SetInputArrayToProcess(0, 0, 0, vtk.vtkDataObject.FIELD_ASSOCIATION_CELLS, name)
-    threshold.SetUpperThreshold(least)
-    threshold.SetThresholdFunction(vtk.vtkThreshold.THRESHOLD_UPPER)
-    threshold.Update()
-    return threshold.GetOutput()
-
-
-def actor(grid, name, scale, size, opacity):
-    mapper = vtk.vtkDataSetMapper()
-    mapper.SetInputData(grid)
-    mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray(name)
-    mapper.SetScalarRange(*scale)
-    made = vtk.vtkActor()
-    made.SetMapper(mapper)
-    made.GetProperty().SetPointSize(size)
-    made.GetProperty().SetLineWidth(size / 3)
-    made.GetProperty().SetOpacity(opacity)
-    made.GetProperty().SetRenderPointsAsSpheres(True)
-    return made
-
-
-def draw(last, image):
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
-    lines, voids = last["constrictions"], last["voids"]
-    blocked, held = over(lines, "blocked", 1), over(voids, "retained_in_constrictions_in_this_run", 1)
-    renderer.AddActor(actor(lines, "diameter_mm", lines.GetCellData().GetArray("diameter_mm").GetRange(), 2, 0.12))
-    renderer.AddActor(actor(blocked, "blocked_at", (0, max(1, lines.GetCellData().GetArray("blocked_at").GetRange()[1])), 6, 1))
-    most = voids.GetCellData().GetArray("retained_in_constrictions_in_this_run").GetRange()[1]
-    renderer.AddActor(actor(held, "retained_in_constrictions_in_this_run", (1, max(2, most)), 6, 1))
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(0.3, -2, -0.3)
-    camera.SetViewUp(0, 0, -1)
-    renderer.ResetCamera()
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetSize(900, 1200)
-    window.AddRenderer(renderer)
-    window.Render()
-    shot = vtk.vtkWindowToImageFilter()
-    shot.SetInput(window)
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(str(image))
-    writer.SetInputConnection(shot.GetOutputPort())
-    writer.Write()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--image", type=pathlib.Path)
-    options = parser.parse_args()
-    last = check(options.folder)
-    if options.image:
-        draw(last, options.image)
+    check(parser.parse_args().folder)
 
 
 if __name__ == "__main__":
