@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Charts of how coarse a filter may be: both boundaries of `voidwalk boundary` against Cu of filter and base.
 
-    scripts/studies/charts.py [--out target/charts-DATE] [--binary target/release/voidwalk] [--threads N] [--until 13:05]
+    scripts/studies/charts.py [--out target/charts-DATE] [--binary target/release/voidwalk] [--threads N]
     scripts/studies/charts.py --cu-f 1.5 --cu-b 1.5,3 --densities loose --thicknesses 60layers --networks 3     # a part of it
     scripts/studies/charts.py --collect                                                                        # tables and charts alone
 
 The program is called once a row: Cu of the filter (1.2, 1.5, 2, 3, 4, 6) and of the base (1.5, 2, 3, 4.5, 6), density (loose, dense),
 thickness (60 layers, 500 mm), into OUT/cases/cuF-cuB-DENSITY-THICKNESS; the coarsest useful grid (Cu 1.5, 3, 6) comes first. A row that
-is done is not walked again, one that was stopped goes on: the same command continues. With --until no row is begun after that time of
-day. A filter whose curve ships with the program (SHIPPED) is not packed; the others are, once, into OUT/packings.
+is done is not walked again, one that was stopped goes on: the same command continues. A filter
+whose curve ships with the program (SHIPPED) is not packed; the others are, once, into OUT/packings.
 
 Smaller than the program's defaults, so that a row costs seconds and not minutes: --across 20 voids (40), --networks 10. What that
 changes stands in the page beside the charts. --d85-mm is D85 of the base: it says how many layers a thickness in mm has, and nothing
@@ -16,7 +16,7 @@ else. --set KEY=VALUE is handed on to the program. A row that was walked with ot
 
 Writes OUT/charts.csv (two lines a row, one a boundary: median, 5 and 95 % of networks in D15F/D85B, networks that were not monotone,
 settings, processor time, what was said) and, for each density and thickness, OUT/charts-DENSITY-THICKNESS.svg: D15F/D85B against Cu of
-the base, a line for each Cu of the filter, no erosion on the left, continuing on the right. Python 3's standard library only.
+the base, a line for each Cu of the filter, no erosion on the left, continuing on the right. Needs Matplotlib.
 """
 
 import argparse
@@ -30,7 +30,12 @@ import re
 import resource
 import subprocess
 import sys
-from xml.sax.saxutils import escape
+
+import matplotlib
+from matplotlib import pyplot
+
+matplotlib.use("svg")
+matplotlib.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9}
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BOUNDARIES = {"no_erosion": "no erosion up to", "continuing": "continuing erosion from"}
@@ -63,13 +68,6 @@ def words(text):
     return [part for part in text.split(",") if part]
 
 
-def time_of_day(text):
-    try:
-        return datetime.datetime.combine(datetime.date.today(), datetime.time.fromisoformat(text))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text}: allowed: a time of day, as 13:05") from None
-
-
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     date = datetime.date.today().isoformat()
@@ -82,7 +80,6 @@ def arguments():
     parser.add_argument("--networks", type=int, default=10)
     parser.add_argument("--across", type=int, default=20, help="voids across the filter, each way")
     parser.add_argument("--d85-mm", type=float, default=0.2)
-    parser.add_argument("--until", type=time_of_day, metavar="HH:MM", help="begin no row after this time of today")
     parser.add_argument("--threads", type=int)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--collect", action="store_true", help="walk nothing: tables and charts of the pairs that are done")
@@ -188,89 +185,30 @@ def collect(args):
     return lines
 
 
-def apart(places, least):
-    """Places (rising) moved as little downwards as keeps them this far apart."""
-    moved = []
-    for place in places:
-        moved.append(max(place, moved[-1] + least) if moved else place)
-    return moved
-
-
-def chart(rows, title, below):
+def chart(path, rows, title, below):
     """Two panels, one a boundary, as SVG."""
-    width, height, left, top, panel, between = 900, 486, 50, 66, 330, 90
-    bottom = height - 92
-    values = [row[of] for row in rows for of in ("median", "low", "high") if row[of] is not None]
-    if not values:
-        return None
-    low, high = min(3, math.floor(min(values) - 0.1)), math.ceil(max(values) + 0.1)
-    cu_b = sorted({row["cu_b"] for row in rows})
-    span = math.log(cu_b[-1] / cu_b[0]) or 1.0
-    step = 0.5 if high - low <= 8 else 1
-
-    def y(value):
-        return bottom - (value - low) / (high - low) * (bottom - top)
-
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
-        'font-family="Helvetica, Arial, sans-serif" font-size="12">',
-        f"<title>{escape(title)}</title>",
-        f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
-        f'<text x="{left}" y="22" font-size="15" font-weight="bold">{escape(title)}</text>',
-        *(f'<text x="{left}" y="{bottom + 52 + 15 * at}" fill="#444444">{escape(line)}</text>' for at, line in enumerate(below)),
-    ]
-    for index, (name, heading) in enumerate(BOUNDARIES.items()):
-        start = left + index * (panel + between)
-
-        def x(cu, start=start):
-            return start + 15 + (panel - 30) * (math.log(cu / cu_b[0]) / span if len(cu_b) > 1 else 0.5)
-
-        parts.append(f'<text x="{start}" y="{top - 12}">{escape(heading)}: D15F/D85B</text>')
-        parts.append(f'<text x="{start + panel + 8}" y="{top - 12}">filter</text>')
-        parts.append(
-            f'<rect x="{start}" y="{top}" width="{panel}" height="{bottom - top}" fill="none" stroke="#767676"/>'
-        )
-        for at in range(round((high - low) / step) + 1):
-            tick = low + at * step
-            is_whole = tick == int(tick)
-            parts.append(f'<line x1="{start}" x2="{start + panel}" y1="{y(tick):.1f}" y2="{y(tick):.1f}" '
-                         f'stroke="{"#c8c8c8" if is_whole else "#ececec"}"/>')
-            if is_whole:
-                parts.append(f'<text x="{start - 6}" y="{y(tick) + 4:.1f}" text-anchor="end">{tick:g}</text>')
-        for cu in cu_b:
-            parts.append(f'<line x1="{x(cu):.1f}" x2="{x(cu):.1f}" y1="{top}" y2="{bottom}" stroke="#ececec"/>')
-            parts.append(f'<text x="{x(cu):.1f}" y="{bottom + 16}" text-anchor="middle">{cu:g}</text>')
-        parts.append(f'<text x="{start + panel / 2}" y="{bottom + 33}" text-anchor="middle">Cu of the base</text>')
-        if index == 0 and low <= PRACTICE <= high:
-            parts.append(f'<line x1="{start}" x2="{start + panel}" y1="{y(PRACTICE):.1f}" y2="{y(PRACTICE):.1f}" stroke="#555555" '
-                         'stroke-dasharray="6 4"/>')
-            parts.append(f'<text x="{start + 20}" y="{y(PRACTICE) + 14:.1f}" fill="#555555">practice: 4 (Terzaghi)</text>')
-        ends = []
+    drawn, panels = pyplot.subplots(1, 2, figsize=(9, 4.9), sharey=True)
+    for ax, (name, heading) in zip(panels, BOUNDARIES.items()):
         for cu_f in sorted({row["cu_f"] for row in rows}):
-            colour = COLOURS.get(cu_f, "#555555")
             of = [row for row in rows if row["boundary"] == name and row["cu_f"] == cu_f and row["low"] is not None]
-            if not of:
-                continue
-            points = " ".join(f'{x(row["cu_b"]):.1f},{y(row["low"]):.1f}' for row in of)
-            parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
-            for row in of:
-                at = x(row["cu_b"])
-                if row["high"] is not None:
-                    parts.append(
-                        f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{y(row["low"]):.1f}" y2="{y(row["high"]):.1f}" '
-                        f'stroke="{colour}"/>'
-                    )
-                parts.append(f'<circle cx="{at:.1f}" cy="{y(row["low"]):.1f}" r="3" fill="{colour}"/>')
-            if of[-1]["cu_b"] < cu_b[-1]:
-                # The line ends within the panel.
-                parts.append(f'<text x="{x(of[-1]["cu_b"]) + 8:.1f}" y="{y(of[-1]["low"]) + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
-                continue
-            ends.append((y(of[-1]["low"]), cu_f, colour))
-        ends.sort()
-        for (_, cu_f, colour), place in zip(ends, apart([end[0] for end in ends], 14)):
-            parts.append(f'<text x="{start + panel + 8}" y="{place + 4:.1f}" fill="{colour}">Cu {cu_f:g}</text>')
-    parts.append("</svg>")
-    return "\n".join(parts) + "\n"
+            if of:
+                x, low = [row["cu_b"] for row in of], [row["low"] for row in of]
+                up = [(row["high"] or row["low"]) - row["low"] for row in of]
+                ax.errorbar(x, low, [[0] * len(of), up], fmt="o-", ms=4, color=COLOURS.get(cu_f, "#555555"), label=f"filter Cu {cu_f:g}")
+        if name == "no_erosion":
+            ax.axhline(PRACTICE, color="#555555", ls="--", label="practice: 4 (Terzaghi)")
+        ax.set(xscale="log", xlabel="Cu of the base", title=f"{heading}: D15F/D85B")
+        ticks = sorted({row["cu_b"] for row in rows})
+        ax.set_xticks(ticks, [f"{cu:g}" for cu in ticks])
+        ax.minorticks_off()
+        ax.grid(color="0.9")
+    handles, labels = panels[0].get_legend_handles_labels()
+    drawn.legend(handles, labels, frameon=False, loc="center left", bbox_to_anchor=(1, 0.6))
+    drawn.suptitle(title, fontweight="bold")
+    drawn.text(0.01, 0.0, "\n".join(below), va="top", color="#444444")
+    drawn.tight_layout()
+    drawn.savefig(path, bbox_inches="tight", metadata={"Date": None})
+    pyplot.close(drawn)
 
 
 def told(rows):
@@ -287,40 +225,26 @@ def told(rows):
     return lines
 
 
-def write(path, text):
-    """Whole or not at all."""
-    part = path.with_name(path.name + ".part")
-    part.write_text(text)
-    part.replace(path)
-
-
 def main():
     args = arguments()
     if not args.collect:
         for row in rows_of(args):
-            if args.until and datetime.datetime.now() >= args.until:
-                print("the time is over; the same command goes on", file=sys.stderr)
-                break
             walk(args, row)
     rows = collect(args)
     if not rows:
         sys.exit(f"{args.out}: no row is done")
     table = args.out / "charts.csv"
-    part = table.with_name("charts.csv.part")
-    with part.open("w", newline="") as file:
+    with table.open("w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    part.replace(table)
     print(table)
     for density, thickness in dict.fromkeys((row["density"], row["thickness"]) for row in rows):
         of = [row for row in rows if (row["density"], row["thickness"]) == (density, thickness)]
         thick = {"60layers": "60 layers"}.get(thickness, thickness.replace("mm", " mm"))
-        text = chart(of, f"How coarse may a {density} filter be, {thick} thick?", told(of))
-        if text:
-            path = args.out / f"charts-{density}-{thickness}.svg".replace(" ", "")
-            write(path, text)
-            print(path)
+        path = args.out / f"charts-{density}-{thickness}.svg".replace(" ", "")
+        chart(path, of, f"How coarse may a {density} filter be, {thick} thick?", told(of))
+        print(path)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ exact     Probabilities of leaving that this script works out by itself, on rand
 sampling  The scatter of the eroded mass over replicates, on new networks and on one, and how the error of a mean falls with replicates.
 bias      One setting changed at a time: share of the base, caps, width, length, injection. Paired by replicate where the networks stay.
 
-Python 3's standard library only.
+Needs Matplotlib.
 """
 
 import argparse
@@ -36,7 +36,9 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from xml.sax.saxutils import escape
+
+import matplotlib
+from matplotlib import pyplot
 
 from study_stops import student
 
@@ -57,6 +59,8 @@ CAPS = [100_000, 1_000_000, 10_000_000, 50_000_000, 200_000_000]
 WIDTHS, LENGTHS, INJECTED = [10, 20, 40], [15, 30, 60, 120], [0.002, 0.01, 0.05, 0.1, 1.0]
 # Okabe and Ito.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000", "#56B4E9"]
+matplotlib.use("svg")
+matplotlib.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9}
 
 
 class Program:
@@ -314,47 +318,23 @@ def bias(args, program):
     return {"bias": rows}
 
 
-def figure(title, labels, points, joined=True):
+def figure(path, title, labels, points, joined=True):
     """Points (series, x, y, low, high) along two logarithmic axes, as SVG, with a guide of slope -1/2 through the first."""
     points = [point for point in points if point[1] > 0 and point[2] > 0]
-    left, top, width, height, out = 84, 44, 460, 380, 808
-    logs = [[math.log10(point[axis]) for point in points] for axis in (1, 2)]
-    decades = [(math.floor(min(each)), max(math.ceil(max(each)), math.floor(min(each)) + 1)) for each in logs]
-
-    def at(value, axis):
-        low, high = decades[axis]
-        part = (math.log10(max(value, 10**low)) - low) / (high - low)
-        return left + width * part if axis == 0 else top + height * (1 - min(part, 1.0))
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{out}" height="{top + height + 56}" viewBox="0 0 {out} {top + height + 56}" '
-             'font-family="Helvetica, Arial, sans-serif" font-size="12">', f"<title>{escape(title)}</title>",
-             '<rect width="100%" height="100%" fill="#ffffff"/>',
-             f'<text x="{left}" y="22" font-size="15" font-weight="bold">{escape(title)}</text>',
-             f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="#767676"/>',
-             f'<text x="{left + width / 2}" y="{top + height + 42}" text-anchor="middle">{escape(labels[0])}</text>',
-             f'<text transform="translate(16 {top + height / 2}) rotate(-90)" text-anchor="middle">{escape(labels[1])}</text>']
-    for x, tick in [(at(10.0**power, 0), 10.0**power) for power in range(decades[0][0], decades[0][1] + 1)]:
-        parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{top + height}" stroke="#d8d8d8"/>'
-                     f'<text x="{x:.1f}" y="{top + height + 18}" text-anchor="middle">{tick:g}</text>')
-    for y, tick in [(at(10.0**power, 1), 10.0**power) for power in range(decades[1][0], decades[1][1] + 1)]:
-        parts.append(f'<line x1="{left}" x2="{left + width}" y1="{y:.1f}" y2="{y:.1f}" stroke="#d8d8d8"/>'
-                     f'<text x="{left - 6}" y="{y + 4:.1f}" text-anchor="end">{tick:g}</text>')
+    drawn, ax = pyplot.subplots(figsize=(8.4, 5))
+    for number, name in enumerate(dict.fromkeys(point[0] for point in points)):
+        x, y, low, high = zip(*(point[1:] for point in points if point[0] == name))
+        reach = [[max(b - a, 0) for a, b in zip(low, y)], [max(b - a, 0) for a, b in zip(y, high)]]
+        ax.errorbar(x, y, reach, fmt="o-" if joined else "o", ms=4, lw=1.2, color=COLOURS[number % len(COLOURS)], label=name)
     if joined:
         _, x0, y0, _, _ = points[0]
-        guide = " ".join(f"{at(10**x, 0):.1f},{at(y0 * math.sqrt(x0 / 10**x), 1):.1f}" for x in (min(logs[0]), max(logs[0])))
-        parts.append(f'<polyline points="{guide}" fill="none" stroke="#767676" stroke-dasharray="6 4"/>')
-        parts.append(f'<text x="{left + width + 26}" y="{top + height}" fill="#767676">dashed: slope −1/2</text>')
-    for number, name in enumerate(dict.fromkeys(point[0] for point in points)):
-        colour, of = COLOURS[number % len(COLOURS)], [point for point in points if point[0] == name]
-        if joined:
-            line = " ".join(f"{at(x, 0):.1f},{at(y, 1):.1f}" for _, x, y, _, _ in of)
-            parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.5"/>')
-        for _, x, y, low, high in of:
-            x, y, low, high = (f"{each:.1f}" for each in (at(x, 0), at(y, 1), at(max(low, 1e-300), 1), at(high, 1)))
-            parts.append(f'<line x1="{x}" x2="{x}" y1="{low}" y2="{high}" stroke="{colour}"/>')
-            parts.append(f'<circle cx="{x}" cy="{y}" r="3.5" fill="{colour}"/>')
-        parts.append(f'<circle cx="{left + width + 16}" cy="{top + 12 + 18 * number}" r="3.5" fill="{colour}"/>')
-        parts.append(f'<text x="{left + width + 26}" y="{top + 16 + 18 * number}">{escape(name)}</text>')
-    return "\n".join([*parts, "</svg>"]) + "\n"
+        ends = [get(point[1] for point in points) for get in (min, max)]
+        ax.plot(ends, [y0 * math.sqrt(x0 / x) for x in ends], "--", color="0.5", label="slope −1/2")
+    ax.set(xscale="log", yscale="log", xlabel=labels[0], ylabel=labels[1], title=title)
+    ax.grid(color="0.85")
+    ax.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
+    drawn.savefig(path, bbox_inches="tight", metadata={"Date": None})
+    pyplot.close(drawn)
 
 
 def table(path, rows):
@@ -384,7 +364,7 @@ def arguments():
 def main():
     args = arguments()
     (args.out / "figures").mkdir(parents=True, exist_ok=True)
-    args.figure = lambda name, *what, **how: (args.out / "figures" / f"{name}.svg").write_text(figure(*what, **how))
+    args.figure = lambda name, *what, **how: figure(args.out / "figures" / f"{name}.svg", *what, **how)
     with tempfile.TemporaryDirectory() as args.folder, concurrent.futures.ThreadPoolExecutor(args.jobs) as args.pool:
         program = Program(args)
         args.narrow = [*args.set, f"network.nx={args.across}", f"network.ny={args.across}"]
