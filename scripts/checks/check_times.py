@@ -26,7 +26,6 @@ SHEETS = {
     "coarse": [(4, 100), (2, 45), (1.1, 15), (0.9, 0)],
 }
 
-NO_CURVE = ["filter.curve=none"]
 # Scenes by what they set in the built-in one; a scene with `toml` is written whole.
 SCENES = {
     "built-in": ["replicates=4"],

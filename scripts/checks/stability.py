@@ -73,8 +73,6 @@ def refusals(folder, cases):
     return f"{len(cases)} refused, the slowest in {slowest * 1000:.0f} ms"
 
 
-# Walk
-
 @case("Walk", "every base particle passive", "100 % eroded, nothing blocked, 3 moves a layer, the report says that no walk was needed")
 def _(folder):
     outcome = call(folder, "run", "base.single_mm=0.01", "base.n_base=1e6", "engine=counts", "replicates=1",
@@ -189,51 +187,6 @@ def _(folder):
     return "; ".join(said)
 
 
-@case("Walk", "sieve table with nan, inf, 1e400, negative, zero, unsorted, above 100 %, falling, coarsest not 100, comma decimals, BOM, CRLF, "
-      "descending, empty, header only", "the unusual read right, the bad refused with file, line, field and value")
-def _(folder):
-    good = {
-        "BOM": b"\xef\xbb\xbfopening_mm,percent_finer\n0.1,10\n1,100\n",
-        "CRLF": b"opening_mm,percent_finer\r\n0.1,10\r\n1,100\r\n",
-        "descending": b"opening_mm,percent_finer\n1,100\n0.1,10\n",
-        "comma decimals": b"opening_mm;percent_finer\n0,1;10\n1;100\n",
-    }
-    rows = {"nan": "nan,10\n1,100", "inf": "0.1,inf\n1,100", "1e400": "0.1,10\n1e400,100", "negative": "-0.1,10\n1,100",
-            "zero": "0,10\n1,100", "unsorted": "0.1,10\n2,50\n1,100", "above 100": "0.1,10\n1,101", "falls": "0.1,50\n0.2,10\n1,100",
-            "not 100": "0.1,10\n1,99", "empty": "", "header only": None}
-    tails = ["base.d0_mm=0.05"]
-    seen = set()
-    for name, bytes_ in good.items():
-        at = folder / name.replace(" ", "-")
-        at.mkdir()
-        write(at, "base.csv", bytes_)
-        seen.add(json.dumps(first(call(at, "run", *LATTICE, "base.sieve=base.csv", *tails, "base.n_base=5000"))["eroded_mass_fraction"]))
-    assert len(seen) == 1, seen
-    slowest = 0.0
-    for name, body in rows.items():
-        text = "" if name == "empty" else "opening_mm,percent_finer\n" + (body + "\n" if body else "")
-        write(folder, "bad.csv", text)
-        begun = time.time()
-        message = call(folder, "run", *LATTICE, "base.sieve=bad.csv", *tails, code=2)
-        slowest = max(slowest, time.time() - begun)
-        assert "bad.csv" in message, message
-    assert slowest < 1
-    return f"{len(good)} unusual tables give one and the same answer, {len(rows)} bad ones refused (slowest {slowest * 1000:.0f} ms)"
-
-
-@case("Walk", "unknown key, wrong unit, missing file, folder instead of file", "refused, nearest valid key named")
-def _(folder):
-    (folder / "folder").mkdir()
-    return refusals(folder, [
-        (["base.uc=3"], "did you mean `base.cu`"), (["base.d85_m=3"], "did you mean `base.d85_mm`"),
-        (["filter.curve=none.csv"], "none.csv"), (["base.sieve=folder"], "folder"), (["network.nx=-1"], "network.nx"),
-        (["base.cu=nan"], "base.cu"), (["inject_share=0.3"], "inject_share"),
-    ])
-
-
-# Packing
-
-
 def pack(folder, name, gradation, *sets):
     """Packs; the record and the seconds, or what it said where it could not."""
     at = folder / name
@@ -251,12 +204,7 @@ def pack(folder, name, gradation, *sets):
 
 def final(record):
     """The state of a packing after its last friction."""
-    state = record["after"] if record.get("after") else record["before"]
-    return state
-
-
-def table_of(rows):
-    return "; ".join(rows)
+    return record["after"] or record["before"]
 
 
 @case("Packing", "stiffness over six decades, Cu 1.5, 600 grains, friction 0 (ratio 1 is the paper's 27 GPa)",
@@ -272,7 +220,7 @@ def _(folder):
             ratios[ratio] = final(record)["void_ratio"]
             rows.append(f"{ratio}: e {final(record)['void_ratio']:.4f}, {seconds:.0f} s")
     assert abs(ratios["1"] - ratios["0.1"]) < 0.01, ratios
-    return table_of(rows)
+    return "; ".join(rows)
 
 
 @case("Packing", "friction 0 to 1, Cu 1.5, 600 grains", "the void ratio rises with friction, and hardly above 0.5; friction 0 has no torque and a coordination near 6")
@@ -286,7 +234,7 @@ def _(folder):
         rows.append(f"{friction}: e {e:.4f}, {seconds:.0f} s")
         assert e > last - 0.02, rows
         last = e
-    return table_of(rows)
+    return "; ".join(rows)
 
 
 @case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
@@ -300,9 +248,6 @@ def _(folder):
         assert "not settled" in said[0], said[0]
         return f"not settled in {seconds:.0f} s: {said[0][:200]}"
     return f"e {final(record)['void_ratio']:.4f} in {seconds:.0f} s"
-
-
-# Triangulation
 
 
 @case("Triangulation", "simple cubic, FCC, HCP, BCC: exact, scaled by 1e-6 and 1e6, jittered by 1e-16, 1e-12, 1e-6",

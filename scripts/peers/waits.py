@@ -2,12 +2,14 @@
 """Prints how long a user waits for `judge` and `boundary` of real pairs, from two sheets to the page, in Markdown.
 
     scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
+        [--samples 50]
 
 The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
 programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
 which asks for the right to), so that other work takes no turns from them, though it shares their caches. `judge` with three filters takes the soil and the
-first three of the six filters.
+first three of the six filters. --samples also times `judge --each` of so many samples of one AGS4 file, drawn by a seed of its own (38),
+against three graded filters.
 """
 
 import argparse
@@ -27,6 +29,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
 from real_pairs import FILTERS, table  # noqa: E402
 
 BEFORE_OTHERS = ("chrt", "-f", "5")
+# Percent finer of a graded filter at multiples of its D15, and three such D15 (mm).
+GRADED = [(8, 100), (4, 80), (2, 50), (1, 15), (0.6, 3), (0.4, 0)]
+D15F_MM = {"fine": 0.3, "usual": 0.6, "coarse": 2.0}
 
 
 def commands(folder):
@@ -88,6 +93,24 @@ def measured(pairs, binaries, turns, only=(), first=()):
     return found
 
 
+def each_of_many(soils, samples, binaries, turns, first):
+    """By program the median seconds of a table of samples against three filters."""
+    with tempfile.TemporaryDirectory() as work:
+        folder = Path(work)
+        lines = ['"GROUP","PROJ"', '"HEADING","PROJ_ID"', '"DATA","P1"', ""]
+        lines += ['"GROUP","GRAT"', '"HEADING","LOCA_ID","SAMP_TOP","SPEC_DPTH","GRAT_SIZE","GRAT_PERP","GRAT_TYPE"']
+        lines += ['"UNIT","","m","m","mm","%",""', '"TYPE","ID","2DP","2DP","3SF","1DP","PA"']
+        for number, soil in enumerate(random.Random(38).sample(soils, samples), 1):
+            rows = sorted(soil["points_mm_percent"], reverse=True)
+            lines += [f'"DATA","BH{number}","1.50","1.50","{mm:g}","{percent:.1f}","WS"' for mm, percent in rows]
+        (folder / "site.ags").write_text("\r\n".join(lines) + "\r\n")
+        for name, d15_mm in D15F_MM.items():
+            table(folder / f"{name}.csv", [(factor * d15_mm, percent) for factor, percent in sorted(GRADED)])
+        words = ["judge", folder / "site.ags", *(folder / f"{name}.csv" for name in D15F_MM), "--each"]
+        took = [[timed(binary, words, folder / f"{turn}-{at}", first)[0] for at, binary in enumerate(binaries)] for turn in range(turns)]
+    return [median(column) for column in zip(*took)]
+
+
 def spread(values):
     return f"{median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
 
@@ -102,11 +125,13 @@ def main():
     parser.add_argument("--seed", type=int, default=5)
     parser.add_argument("--only", nargs="*", default=[])
     parser.add_argument("--first", action="store_true")
+    parser.add_argument("--samples", type=int, default=0)
     options = parser.parse_args()
     binaries = [binary for binary in (options.before, options.binary) if binary]
-    pairs = drawn(json.loads(options.soils.read_text()), options.pairs, options.seed)
+    soils, first = json.loads(options.soils.read_text()), BEFORE_OTHERS if options.first else ()
+    pairs = drawn(soils, options.pairs, options.seed)
     load = os.getloadavg()[0]
-    found = measured(pairs, binaries, options.turns, options.only, BEFORE_OTHERS if options.first else ())
+    found = measured(pairs, binaries, options.turns, options.only, first)
     print(f"Instructions: {os.environ.get('VOIDWALK_ISA', 'the widest of the machine')}; load {load:.1f} before and "
           f"{os.getloadavg()[0]:.1f} after{', these processes before all others' if options.first else ''}.\n")
     heads = ["before", "now"][-len(binaries):]
@@ -115,6 +140,9 @@ def main():
     for command, rows in found.items():
         cells = [spread([row[2][at][0] for row in rows]) for at in range(len(binaries))]
         print(f"| {command} | {len(rows)} of {options.pairs} | " + " | ".join(cells) + " |")
+    if options.samples:
+        seconds = each_of_many(soils, options.samples, binaries, options.turns, first)
+        print(f"| {options.samples} samples, three filters | | " + " | ".join(f"{one:.1f}" for one in seconds) + " |")
     print("\n| soil, filter | " + " | ".join(found) + " |\n|---|" + "---|" * len(found))
     by_pair = {}
     for command, rows in found.items():

@@ -24,7 +24,6 @@ import csv
 import datetime
 import itertools
 import json
-import math
 import pathlib
 import re
 import resource

@@ -12,8 +12,6 @@ import pytest
 
 import voidwalk as vw
 
-Grid = "tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]"
-
 
 def test_a_cubic_packing_has_the_constrictions_of_geometry(grid: Any) -> None:
     found = vw.constrictions(*grid, cell=4.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
-import pickle
 import signal
 import subprocess
 import sys
@@ -155,13 +154,6 @@ def test_threads_change_no_bit() -> None:
         assert other.summary == first.summary and np.array_equal(other.blocked, first.blocked)
 
 
-def test_results_are_pickled_whole() -> None:
-    result = vw.walk(lattice(), 0.25, n_base=2000, replicates=2)
-    again = pickle.loads(pickle.dumps(result))
-    assert again.outcome == result.outcome and np.array_equal(again.blocked, result.blocked)
-    assert repr(again) == repr(result) and again.eroded_mass_fraction(2).shape == (2,)
-
-
 def work(seed: int) -> float:
     """What a child process does."""
     walked = vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=5000, replicates=2, seed=seed)
@@ -176,16 +168,6 @@ def test_processes_walk_as_this_one_does(method: str) -> None:
     context: Any = multiprocessing.get_context(method)
     with context.Pool(2) as pool:
         assert pool.map_async(work, (1, 2, 3)).get(timeout=120) == here
-
-
-def test_threads_of_python_walk_side_by_side() -> None:
-    found: Dict[int, float] = {}
-    threads = [threading.Thread(target=lambda s=seed: found.__setitem__(s, work(s))) for seed in (1, 2, 3, 4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(120)
-    assert found == {seed: work(seed) for seed in (1, 2, 3, 4)}
 
 
 def test_threads_of_python_share_everything() -> None:

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
-import pickle
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any, Dict, Tuple
 
@@ -169,19 +166,3 @@ def test_scenes_and_results_go_from_process_to_process(method: str, small: Dict[
     # What came back has its page, from what was pickled alone.
     for name, result in zip(("run", "walk"), there[:2]):
         assert LEFT_OUT in result.report(tmp_path / f"{name}.html").read_text(encoding="utf-8")
-
-
-def test_a_pickle_is_read_by_another_interpreter(small: Dict[str, Any], tmp_path: Path) -> None:
-    """Written here, read by a process that has nothing of this one but the file."""
-    scene = vw.Scene(small)
-    result = vw.run(scene)
-    (tmp_path / "both.pickle").write_bytes(pickle.dumps((scene, result)))
-    code = (
-        "import pickle, sys\n"
-        "scene, result = pickle.load(open('both.pickle', 'rb'))\n"
-        "import voidwalk as vw\n"
-        "again = vw.run(scene)\n"
-        "print(again.summary == result.summary, result.model['class'])\n"
-    )
-    said = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert said.stdout == f"True {result.model['class']}\n"

@@ -97,11 +97,6 @@ class Packing:
         return self.coords, self.diameter, self.cell
 
     @classmethod
-    def from_arrays(cls, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> Packing:
-        """The class itself, by another name."""
-        return cls(coords, diameter, cell)
-
-    @classmethod
     def from_file(
         cls, path: Union[str, os.PathLike[str]], unit: Optional[str] = None, cell: Union[str, ArrayLike, None] = None
     ) -> Packing:

@@ -162,35 +162,6 @@ class Network:
         return new
 
     @classmethod
-    def from_arrays(
-        cls,
-        conns: ArrayLike,
-        diameter: ArrayLike,
-        inlets: ArrayLike,
-        outlets: ArrayLike,
-        *,
-        exit: str = "flux",
-        conductance: Optional[ArrayLike] = None,
-        rho: float = 0.0,
-        count: Optional[int] = None,
-        coords: Optional[ArrayLike] = None,
-        reference_mm: float = 1.0,
-    ) -> Network:
-        """The class itself, by another name."""
-        return cls(
-            conns,
-            diameter,
-            inlets,
-            outlets,
-            exit=exit,
-            conductance=conductance,
-            rho=rho,
-            count=count,
-            coords=coords,
-            reference_mm=reference_mm,
-        )
-
-    @classmethod
     def cubic(
         cls,
         shape: Sequence[int],
@@ -618,7 +589,7 @@ class Network:
 
 
 def _remade(kind: Type[Network], made: str, arguments: Mapping[str, object]) -> Network:
-    maker: Callable[..., Network] = getattr(kind, made or "from_arrays")
+    maker: Callable[..., Network] = getattr(kind, made) if made else kind
     return maker(**arguments)
 
 
