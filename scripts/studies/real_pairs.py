@@ -16,7 +16,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from pathlib import Path
 from statistics import median
 
@@ -29,7 +28,6 @@ FILTERS = {
     "2-4 mm gravel": [(2, 0), (4, 100)],
     "4.75-37.5 mm gravel": [(4.75, 0), (37.5, 100)],
 }
-MEETS = "meets the rules checked"
 COLUMNS = [
     "soil", "filter", "fines_percent", "model", "headline", "origin", "eroded_percent", "design_met",
     "no_erosion_limit_mm", "no_erosion_met", "d15f_mm", "first_finding", "seconds", "error",
@@ -102,46 +100,19 @@ def by_distance(known):
 
 
 def summary(rows):
-    """The table of a CSV, in Markdown."""
+    """The numbers of `results/real-soils.md`, in Markdown; what is walked was called `verdict` in older CSV files."""
+    rows = [row | {"model": row.get("model") or row.get("verdict", "")} for row in rows]
     done = [row for row in rows if row["model"]]
     decided = [row for row in done if row["model"] != "undecided"]
-    green = [row for row in done if row["headline"] == MEETS]
-    holds = [row for row in decided if row["model"] == "no erosion"]
-    unsafe = [row for row in holds if row["no_erosion_met"] == "False"]
-    seconds = sorted(float(row["seconds"]) for row in done)
-    soils = lambda of: len({row["soil"] for row in of})
-    percent = lambda part, of: f"{100 * part / max(1, of):.0f} %"
-    lines = [
-        ("pairs (soils)", f"{len(rows)} ({soils(rows)})"),
-        ("refused", len(rows) - len(done)),
-        ("decided", f"{len(decided)} ({percent(len(decided), len(done))} of those walked, "
-         f"{percent(len(decided), len(rows))} of all)"),
-        ("no / some / continuing erosion", " / ".join(
-            str(sum(row["model"] == f"{name} erosion" for row in decided)) for name in ["no", "some", "continuing"])),
-        ("green (meets the rules checked) (soils)", f"{len(green)} ({soils(green)})"),
-        ("pairs that meet the limit of design, of these green",
-         f"{sum(row['design_met'] == 'True' for row in done)}, {sum(row['design_met'] == 'True' for row in green)}"),
-        ("green beyond Foster and Fell's boundary of no erosion", sum(row["no_erosion_met"] == "False" for row in green)),
-        ("no erosion in the model beyond that boundary", len(unsafe)),
-        ("seconds: median, most", f"{median(seconds):.1f}, {seconds[-1]:.1f}" if seconds else "-"),
-    ]
-    print("\n".join(f"| {what} | {value} |" for what, value in lines))
     known = [row for row in decided if row["no_erosion_met"] in ("True", "False")]
-    alike = sum((row["model"] == "no erosion") == (row["no_erosion_met"] == "True") for row in known)
-    print(f"| same side of Foster and Fell's boundary of no erosion | {alike} of {len(known)} |")
-    for line in by_distance(known):
-        print(line)
-    for name in FILTERS:
-        here = [row for row in done if row["filter"] == name]
-        none = [row for row in here if row["model"] == "no erosion"]
-        first = Counter(row["first_finding"] for row in here if row["headline"] != MEETS)
-        print(f"{name}: {len(here)} walked, {len(none)} no erosion, {sum(row in green for row in here)} green;",
-              "first note of the others:", first.most_common(4))
-    print("dispersion:", Counter((row["model"], row.get("dispersion", "")) for row in holds).most_common())
-    print("origins:", dict(Counter(row["origin"] for row in done)))
-    undecided = Counter(row["first_finding"] for row in done if row["model"] == "undecided")
-    print("undecided by:", undecided.most_common(8))
-    print("practice:", Counter(row["headline"] for row in done).most_common())
+    unlike = [row for row in known if (row["model"] == "no erosion") != (row["no_erosion_met"] == "True")]
+    less = sum(row["model"] == "no erosion" for row in unlike)
+    print(f"| pairs; walked; decided | {len(rows)}; {len(done)}; {len(decided)} |")
+    print(f"| soils | {len({row['soil'] for row in rows})} |")
+    print(f"| seconds, median | {median(float(row['seconds']) for row in done):.1f} |")
+    print(f"| same side of Foster and Fell's boundary of no erosion | {len(known) - len(unlike)} of {len(known)} |")
+    print(f"| stricter; less strict | {len(unlike) - less}; {less} |")
+    print("\n".join(by_distance(known)))
 
 
 def refuse_other_columns(path):
