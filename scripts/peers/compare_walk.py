@@ -1,11 +1,10 @@
-"""Times the plain walks and the library's in turns and writes target/walk-speed-DATE.md.
+"""Times the plain walks and the library's in turns and prints tables in Markdown.
 
 Called by compare_walk.sh: BUILD BINARY SCALE_BINARY N...
 """
 
 import datetime
 import os
-import platform
 import statistics
 import subprocess
 import sys
@@ -137,39 +136,20 @@ def isas_of(scale):
     return [name for name, tried in zip(names, tries) if tried.returncode == 0]
 
 
-def first_line(*command):
-    return subprocess.run(command, capture_output=True, text=True).stdout.splitlines()[0]
-
-
-def processor():
-    lines = open("/proc/cpuinfo").read().splitlines()
-    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
-
-
 def main():
     build, binary, scale, *sizes = sys.argv[1:]
-    date = datetime.date.today().isoformat()
-    lines = [
-        "# The walk against plain walks",
-        "",
-        f"{date}, commit {first_line('git', 'rev-parse', '--short', 'HEAD')}, {processor()}, "
-        f"{os.cpu_count()} cores, {first_line('rustc', '--version')}, {first_line('g++', '--version')}. Seed {SEED}.",
-        f"Load average when it began {os.getloadavg()[0]:.1f}.",
-        "",
-        "Scene: 40 x 40 x 60 lattice, curve shire2016-cu1.5-loose; `graded` is a base of Cu 4.5 with D85 = Dc5,",
-        "`passive` the same shape, finer than every constriction. A step is an attempted move. One thread: processor",
-        "time; two threads: wall time. Walks are timed in turns; ratios are against the faster of plain C++ and",
-        "plain Rust (one core). Made by `scripts/peers/compare_walk.sh`.",
-    ]
-    lines += counts(build, scale)
+    version = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    print(f"{datetime.date.today()}, commit {version}, {os.cpu_count()} processors, seed {SEED}, load {os.getloadavg()[0]:.1f} at the start.\n\n"
+          "Scene: 40 x 40 x 60 lattice, curve shire2016-cu1.5-loose; `graded` is a base of Cu 4.5 with D85 = Dc5, `passive` the same shape,\n"
+          "finer than every constriction. A step is an attempted move. One thread: processor time; two threads: wall time. Walks are timed\n"
+          "in turns; ratios are against the faster of plain C++ and plain Rust (one core).")
+    print("\n".join(counts(build, scale)))
     for n in map(int, sizes):
         for name in ("graded", "passive"):
             repeats = REPEATS if n < 10_000_000 else 1
-            lines += ["", f"## {name}, N = {n:.0e}, {repeats} repeats", ""]
-            lines += table(scene(build, binary, n, name, repeats))
-            with open(f"target/walk-speed-{date}.md", "w") as out:
-                out.write("\n".join(lines + [f"\nLoad average at the end {os.getloadavg()[0]:.1f}."]) + "\n")
-    print("\n".join(lines))
+            print(f"\n## {name}, N = {n:.0e}, {repeats} repeats\n")
+            print("\n".join(table(scene(build, binary, n, name, repeats))), flush=True)
+    print(f"\nLoad {os.getloadavg()[0]:.1f} at the end.")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds and times the plain walks of benches/baseline beside the library's, in turns, and writes the ratios to
-# target/walk-speed-DATE.md. NumPy and Numba are installed into target/venv-compare.
+# Builds and times the plain walks of benches/baseline beside the library's, in turns, and prints the ratios. NumPy and
+# Numba are installed into target/venv-compare.
 # Usage: scripts/peers/compare_walk.sh [N ...]   (default 2000000 20000000; 200000000 takes half an hour). Whole runs of engine counts
 # are always among them.
 set -eu

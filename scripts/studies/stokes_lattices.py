@@ -400,44 +400,22 @@ def contact_tables(kernel, arguments):
     return grids, limits
 
 
-def grid_size(text):
-    """A multiple of four, so that every lattice's block is a whole number of cells."""
-    size = int(text)
-    if size < 8 or size % 4:
-        raise argparse.ArgumentTypeError(f"{text} is not a multiple of 4 from 8 up")
-    return size
-
-
 def parse_arguments():
-    """Reads the command line."""
+    """Reads the command line. Grids are multiples of four, so that every lattice's block is a whole number of cells."""
     parser = argparse.ArgumentParser(
         description=__doc__.splitlines()[0],
         epilog="Cells are counted per cube edge of the simple cubic lattice; the body-centred one takes 1.5 "
         "times and the face-centred one twice as many, which makes their fluid nodes about equal in number.",
     )
-    parser.add_argument(
-        "--cells", type=grid_size, nargs="+", default=[32, 48, 64, 80], help="grids for touching spheres"
-    )
-    parser.add_argument(
-        "--validation-cells",
-        type=grid_size,
-        nargs="*",
-        default=[16, 24, 32, 40],
-        help="grids for the comparison with known drag; none to leave it out",
-    )
+    grids = dict(type=int, nargs="+", choices=range(8, 1000, 4), metavar="CELLS")
+    parser.add_argument("--cells", default=[32, 48, 64, 80], help="grids for touching spheres", **grids)
+    parser.add_argument("--validation-cells", default=[16, 24, 32, 40], help="grids for the comparison with known drag", **grids)
     parser.add_argument("--shifts", type=int, default=3, help="positions of the spheres relative to the grid")
-    parser.add_argument(
-        "--tolerance",
-        type=float,
-        default=1e-6,
-        help=f"relative change of the mean velocity in {CHECK_EVERY} steps below which the flow is steady",
-    )
-    parser.add_argument("--compiler", default="cc", help="C compiler")
-    parser.add_argument("--out", type=Path, help="file to write the tables to as well")
+    parser.add_argument("--tolerance", type=float, default=1e-6, help=f"relative change of the mean velocity in {CHECK_EVERY} steps at rest")
     arguments = parser.parse_args()
     arguments.cells.sort()
     arguments.validation_cells.sort()
-    if len(arguments.cells) < 4 or len(arguments.validation_cells) in (1, 2, 3):
+    if min(len(arguments.cells), len(arguments.validation_cells)) < 4:
         parser.error("the extrapolation and its uncertainty need four grids or more")
     return arguments
 
@@ -445,17 +423,13 @@ def parse_arguments():
 def main():
     """Prints the tables."""
     arguments = parse_arguments()
-    sections = []
     with tempfile.TemporaryDirectory() as folder:
-        kernel = load_kernel(arguments.compiler, folder)
-        if arguments.validation_cells:
-            sections.append(("Comparison with known drag", validation_table(kernel, arguments)))
+        kernel = load_kernel("cc", folder)
+        validation = validation_table(kernel, arguments)
         grids, limits = contact_tables(kernel, arguments)
-    sections += [("Touching spheres, every grid", grids), ("Touching spheres, extrapolated", limits)]
-    text = "\n\n".join(f"## {title}\n\n" + "\n".join(lines) for title, lines in sections) + "\n"
-    print(text, end="")
-    if arguments.out:
-        arguments.out.write_text(text)
+    sections = {"Comparison with known drag": validation, "Touching spheres, every grid": grids, "Touching spheres, extrapolated": limits}
+    for title, lines in sections.items():
+        print(f"## {title}\n\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
