@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """What a scene does not need: which parts the program leaves out, what that saves, and that the answer is the same.
 
-    scripts/checks/left_out.py
+    scripts/checks/left_out.py [--binary target/release/voidwalk]
 
 Runs scenes as they are and by their full path (every particle one by one, everything recorded, two runs), on the same networks,
 and prints the table of results/stability.md in Markdown. Networks are 12 x 12 x 20, so that the full path can be walked.
 Exit code 1 where an answer differs.
 """
-import datetime
+import argparse
 import itertools
 import json
 import math
@@ -66,9 +66,10 @@ def figures(outcome):
 
 
 def main():
-    subprocess.run(["cargo", "build", "--release", "--quiet"], cwd=ROOT, check=True)
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    load = os.getloadavg()[0]
+    global VOIDWALK
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--binary", type=pathlib.Path, default=VOIDWALK)
+    VOIDWALK, load = parser.parse_args().binary.resolve(), os.getloadavg()[0]
     rows, wrong = [], []
     with tempfile.TemporaryDirectory() as scratch:
         for number, (name, sets) in enumerate(SCENES.items()):
@@ -98,7 +99,7 @@ def main():
             rows.append(f"| {name} | {outcome['engine']} | {seconds:.2f} | {full_seconds:.2f} | {full_seconds / seconds:.1f} | "
                         f"{megabytes:.0f} / {full_megabytes:.0f} | {cells[0]} | {cells[1]} | {less_seconds:.2f}, "
                         f"{'the same bits' if alike else 'DIFFERS'} |")
-    text = [f"{datetime.date.today()}, commit {commit}, load {load:.1f} at the start; processor seconds of whole processes; differences of the eroded mass are "
+    text = [f"Load {load:.1f} at the start; processor seconds of whole processes; differences of the eroded mass are "
             "paired by network (percentage points, with the standard error of the mean)", "",
             "| scene | engine as it is | s | s, full path | ratio | peak MB, as it is / full | first run, difference | second run, difference | "
             "first run alone, nothing recorded: s, quantities |", "|---|---|---|---|---|---|---|---|---|", *rows]
