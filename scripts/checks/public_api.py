@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Its own: crates look at RUSTC_BOOTSTRAP, and would be compiled anew in the target of everything else.
 TARGET = ROOT / "target" / "public-api"
 #: Who calls the library from outside it.
-CALLERS = ["src/main.rs", "scripts/python/src", "scripts/paper", "scripts/examples", "benches", "tests"]
+CALLERS = ["src/main.rs", "scripts/python/src", "scripts/examples", "benches", "tests"]
 
 
 def told():

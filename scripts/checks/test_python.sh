@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The Python package as a user gets it: installed by pip into an environment of its own, then its tests, the examples, those in its
-# docstrings, and its types. OpenPNM, pandas and xarray come in too; with ALL=1 also PoreSpy, which takes a minute more.
+# docstrings, and its types. OpenPNM, pandas and xarray come in too; with ALL=1 also PoreSpy, which takes a minute more. The last test is
+# of the paper's page (scripts/paper), which needs Python 3.11.
 # With --environment it only fetches what the tests need; other arguments are pytest's, and leave out what kills the package.
 # PROFILE names a profile of cargo's other than release, such as dev, which compiles faster and walks slower.
 set -euo pipefail
@@ -40,5 +41,7 @@ if [ "$#" = 0 ]; then
     step "killed, cut and without room"
     ../scripts/checks/supervise.py --kills 16 --binary "$VOIDWALK_PROGRAM" --python python/bin/python \
         --commands python-run python-campaign
+    step "the page of the paper"
+    python/bin/python ../scripts/paper/test_paper.py "$VOIDWALK_PROGRAM"
 fi
 step "done"

@@ -26,7 +26,7 @@ if [ -z "${PAGE_ONLY:-}" ]; then
         "$voidwalk" constrictions "$out"/packings/cu1.5-*/grains.csv --out "$out/constrictions" >/dev/null
     fi
 fi
-target/release/voidwalk-paper "$out"
+scripts/paper/page.py "$out"
 [ -n "${NO_COPY:-}" ] && exit 0
 
 results=results/paper
