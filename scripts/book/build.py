@@ -136,11 +136,9 @@ def copy_results(source):
 
 def write_front(source, results, commands):
     """Pages of the book's own: with equations, and with what is made from other files where `{{name}}` stands."""
-    contributing = (ROOT / "CONTRIBUTING.md").read_text()
     figures = (source / "results" / "paper" / "figures").glob("*.svg")
     made = {
         "commands": "\n".join(f"| [`voidwalk {name}`](commands/{name}.md) | {about} |" for name, about in commands.items()),
-        "words": pages.section_of(contributing, "Words").split("\n\n", 1)[1],
         "results": "\n".join(f"- [{title}]({path})" for path, title in results.items()),
         "paper_figures": pages.paper_figures(figures, source / "results"),
     }

@@ -39,11 +39,6 @@ def demoted(text):
     return "\n".join(lines)
 
 
-def section_of(text, title):
-    """What stands below a heading of the second rank."""
-    return re.split(rf"^## {re.escape(title)}$", text, flags=re.M)[1].split("\n## ")[0].strip()
-
-
 def with_equations(text):
     """`$$...$$` and `$...$` as MathML, which browsers draw by themselves."""
     def drawn(match):
