@@ -15,12 +15,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The rooms stand in the order in which data flows, and each uses only those before it:
+//! The library is four crates, and each uses only those before it:
 //!
 //! ```text
-//! sieve curves -> Packing -> Constrictions -> Network -> Walk -> Outcome      the stages, each usable alone
-//! Scene -> Case -> run, cases, study                                          the application
-//! words, report, serve, cli                                                   its faces
+//! voidwalk-core       gradation -> packing -> constrictions -> network -> walk
+//! voidwalk-sheets     sieve tables as laboratories write them -> gradations
+//! voidwalk-practice   gradations -> rules, decision, specification
+//! voidwalk-app        Scene -> Case -> run, cases, study -> words, report, serve, cli
 //! ```
 //!
 //! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
@@ -28,59 +29,23 @@
 //!
 //! # Features
 //! `report`: pages and figures. `serve`: the page on this machine. `cli`: the command line. All are on by
-//! default; the rest is the library that every face calls.
-
-pub mod text;
-
-pub mod stream;
-
-pub mod store;
-
-pub mod schema;
-
-pub mod gradation;
-
-pub mod packing;
-
-pub mod constrictions;
-
-pub mod network;
-
-pub mod walk;
-
-pub mod outcome;
-
-pub mod verdict;
-
-pub mod words;
-
-pub mod scene;
-
-pub mod case;
-
-pub mod run;
-
-pub mod cases;
-
-pub mod study;
-
-#[cfg(feature = "report")]
-pub mod report;
-
-#[cfg(feature = "serve")]
-pub mod serve;
-
-#[cfg(feature = "cli")]
-pub mod cli;
+//! default; without them the crate is the library that every face calls.
 
 pub mod docs;
 
-pub use case::Case;
-pub use constrictions::Constrictions;
-pub use gradation::Gradation;
-pub use network::Network;
-pub use outcome::record::{Outcome, Statistic, Verdict};
-pub use packing::Packing;
-pub use run::{Callbacks, RunError, RunOptions, resume, walk_case, walk_scene};
-pub use scene::Scene;
-pub use walk::Walk;
+pub use voidwalk_app::{case, cases, outcome, run, scene, study, verdict, words};
+pub use voidwalk_core::{constrictions, gradation, network, packing, schema, store, stream, text, walk};
+pub use voidwalk_practice as practice;
+pub use voidwalk_sheets as sheets;
+
+#[cfg(feature = "cli")]
+pub use voidwalk_app::cli;
+#[cfg(feature = "report")]
+pub use voidwalk_app::report;
+#[cfg(feature = "serve")]
+pub use voidwalk_app::serve;
+
+pub use voidwalk_app::{
+    Callbacks, Case, Outcome, RunError, RunOptions, Scene, Statistic, Verdict, resume, walk_case, walk_scene,
+};
+pub use voidwalk_core::{Constrictions, Gradation, Network, Packing, Walk};

@@ -37,7 +37,7 @@ BASES = {
 }
 SMALL = [(0, 0), (0, 3), (1, 0), (2, 3)]
 
-# The colour of a headline, by the class of its box (src/report/page.css).
+# The colour of a headline, by the class of its box (src/app/report/page.css).
 COLOURS = {"none": "green", "doubted": "amber", "some": "orange", "continuing": "red", "neutral": "grey"}
 
 

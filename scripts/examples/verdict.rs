@@ -4,7 +4,7 @@
 //! `filter.estimate` packs its grains.
 
 use std::error::Error;
-use voidwalk::outcome::quantity::SizeUnit;
+use voidwalk::practice::quantity::SizeUnit;
 use voidwalk::words::sentence;
 use voidwalk::{Callbacks, Case, Scene, walk_case};
 

@@ -9,7 +9,7 @@ import statistics
 import subprocess
 import sys
 
-CURVE = "src/data/filters/shire2016-cu1.5-loose.csv"
+CURVE = "src/core/data/filters/shire2016-cu1.5-loose.csv"
 PYTHON = "target/venv-compare/bin/python"
 SEED = 1
 #: Repeats by scene; the slow languages are timed once in each.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes src/data/library.csv of the packings of `library_of_packings.py`, without a length: sizes by S50.
+"""Makes src/core/data/library.csv of the packings of `library_of_packings.py`, without a length: sizes by S50.
 
 Shapes that are in the table and not among the packings stay in it.
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from library_of_packings import PERCENT
 
-TABLE = Path(__file__).parents[2] / "src/data/library.csv"
+TABLE = Path(__file__).parents[2] / "src/core/data/library.csv"
 SHAPE = [5, 20, 30, 70, 80, 95]
 DENSITY = {"loose": 0, "medium": 0.5, "dense": 1}
 HEAD = """\

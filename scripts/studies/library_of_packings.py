@@ -4,7 +4,7 @@
     scripts/studies/library_of_packings.py --binary target/release/voidwalk --out FOLDER [--jobs 2] [--shapes N]
 
 Every packing is one line of FOLDER/packings.jsonl. A packing that is there already is not made again, so a run that
-was stopped goes on. `scripts/studies/fit_library.py` makes src/data/library.csv of them and measures its error.
+was stopped goes on. `scripts/studies/fit_library.py` makes src/core/data/library.csv of them and measures its error.
 Sizes are relative: the finest grain of every shape has the size 1.
 """
 

@@ -8,7 +8,7 @@ those alone) and prints the tables of results/packing.md from what is there. A l
 gradation of smaller Cu, so Cu 1.5 to 4.5 are the finer parts of Cu 6. Gap-graded filters: so many percent between 1 and 1.5 mm, the
 others between 8 and 10 mm. C33: fine aggregate by ASTM C33, the middle of its band, up to 2.36 mm as the whole. Differences are of means over
 the seeds, in percent of the whole's size; ± is the standard error of the difference. The last column is the largest difference of Dc5 to
-Dc90 by the share of the grains' surface that is left out: the program takes 0.6 for it (src/case/cut.rs).
+Dc90 by the share of the grains' surface that is left out: the program takes 0.6 for it (src/app/case/cut.rs).
 """
 
 import argparse

@@ -4,7 +4,7 @@
     scripts/studies/study_stops.py --binary target/release/voidwalk [--values FILE]
 
 Walks 16 replicates of small scenes and of six points of each (a quarter to four times the base, half and twice the thickness) on the
-same random numbers, and applies the rule of src/outcome/early_stop.rs to every window of 5, 6, 8 and 10 replicates of the scene (cyclic)
+same random numbers, and applies the rule of src/app/outcome/early_stop.rs to every window of 5, 6, 8 and 10 replicates of the scene (cyclic)
 and the first one, two or three of the point. A class counts as right where it is that of the mean of all 16. Beside it: three replicates
 judged by their own scatter, as all points were before; and those that stopped though they scatter more than twice as much as their scene. `--values` keeps what was walked, and takes it from there. Python 3 alone.
 """

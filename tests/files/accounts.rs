@@ -1,7 +1,7 @@
 //! Every number of a table is in a curve, is named as left out, or the table is refused.
 
 use super::sheets::{Cell, xlsx};
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 /// The curve of a sheet with one soil and its notes, or why it is refused.
 fn read(text: &str) -> Result<(Vec<(f64, f64)>, String), String> {

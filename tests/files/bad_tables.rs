@@ -4,6 +4,7 @@
 use std::path::Path;
 use voidwalk::constrictions::Curve;
 use voidwalk::gradation::{FILE_LIMIT_BYTES, Gradation};
+use voidwalk::sheets::{parse_gradation, read_gradation};
 
 /// Each bad table of `folder` against its message; `read` gives the message of a file.
 fn check(folder: &str, least: usize, read: impl Fn(&Path) -> String) {
@@ -28,7 +29,7 @@ fn check(folder: &str, least: usize, read: impl Fn(&Path) -> String) {
 
 #[test]
 fn bad_sieve_tables_are_refused() {
-    check("sieve", 42, |path| match Gradation::from_sieve_csv(path, None) {
+    check("sieve", 42, |path| match read_gradation(path, None) {
         Ok(gradation) => format!("{gradation:?}"),
         Err(error) => error.to_string(),
     });
@@ -45,7 +46,7 @@ fn bad_curves_are_refused() {
 #[test]
 fn a_folder_a_missing_file_and_a_huge_file_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let message = |path: &Path| Gradation::from_sieve_csv(path, None).unwrap_err().to_string();
+    let message = |path: &Path| read_gradation(path, None).unwrap_err().to_string();
     assert_eq!(
         message(folder.path()),
         format!("{} is a folder; allowed: a CSV file of two columns", folder.path().display())
@@ -68,7 +69,7 @@ fn a_folder_a_missing_file_and_a_huge_file_are_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_endless_file_is_refused() {
-    let message = Gradation::from_sieve_csv("/dev/zero", None).unwrap_err().to_string();
+    let message = read_gradation("/dev/zero", None).unwrap_err().to_string();
     assert!(message.contains("/dev/zero") && message.contains("no regular file"), "{message}");
 }
 
@@ -89,7 +90,7 @@ fn unusual_tables_are_read() {
         " 5e-1 , -0 \n +1.5 , 20.5 \n 4. , 1e+2 \n",
         "0.2,0\n0.3,0\n0.5,0\n1.5,20.5\n4,100\n8,100\n16,100\n",
     ] {
-        let found = Gradation::from_sieve_text("t.csv", text.as_bytes(), None);
+        let found = parse_gradation("t.csv", text.as_bytes(), None);
         assert_eq!(found.unwrap_or_else(|e| panic!("{text:?}: {e}")), expected, "{text:?}");
     }
 }
@@ -116,7 +117,7 @@ fn unusual_curves_are_read() {
 fn the_smallest_size_must_fit_the_table() {
     let tail = b"1,20\n2,60\n4,100\n";
     let whole = b"1,0\n2,60\n4,100\n";
-    let message = |text, d0| Gradation::from_sieve_text("t.csv", text, Some(d0)).unwrap_err().to_string();
+    let message = |text, d0| parse_gradation("t.csv", text, Some(d0)).unwrap_err().to_string();
     assert_eq!(
         message(&tail[..], 1.0),
         "d0_mm = 1.0 is not allowed; allowed: a size below the finest opening of t.csv, 1 mm"
@@ -126,6 +127,6 @@ fn the_smallest_size_must_fit_the_table() {
         message(&whole[..], 0.5),
         "d0_mm = 0.5 is not allowed; allowed: none, since t.csv itself goes down to 0 % (at 1 mm)"
     );
-    let one = Gradation::from_sieve_text("t.csv", b"2,100\n", Some(1.0)).unwrap();
+    let one = parse_gradation("t.csv", b"2,100\n", Some(1.0)).unwrap();
     assert_eq!(one.points(), Gradation::from_points(&[(1.0, 0.0), (2.0, 100.0)], None).unwrap().points());
 }

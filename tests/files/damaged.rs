@@ -2,7 +2,7 @@
 //! is refused, or a note names what was left out; no number is lost in silence.
 
 use super::sheets::{Cell, Draw, Grid, xlsx};
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 const SHEETS_OF_EACH: usize = 10;
 const SEED: u64 = 20261128;

@@ -1,7 +1,7 @@
 //! Workbooks whose cells say more than their values: errors, raised and struck-out digits, units in formats.
 
 use super::sheets::zipped;
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 /// Openings and percents of the only soil of a workbook, or why it is refused.
 fn read(bytes: &[u8]) -> Result<Vec<(f64, f64)>, String> {

@@ -1,6 +1,6 @@
 //! Tables of results, a sample a row: whatever their headings, each is read right or refused.
 
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 const SIZES: [f64; 5] = [37.5, 19.0, 4.75, 2.0, 0.075];
 const PERCENTS: [[f64; 5]; 2] = [[100.0, 97.0, 71.0, 54.0, 12.0], [100.0, 99.0, 88.0, 62.0, 37.5]];

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 use zip::write::SimpleFileOptions;
 
 /// Sheets of each layout and format.

@@ -4,7 +4,7 @@
 //! message. Commit 16af1d7a has the script that made the workbooks.
 
 use std::path::{Path, PathBuf};
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/soils")

@@ -1,6 +1,6 @@
 //! Rows, soils and openings that a sheet would lose without a word: refused with their line, or named in a note.
 
-use voidwalk::gradation::Soil;
+use voidwalk::sheets::Soil;
 
 /// The soils of a sheet and all of their notes, or why it is refused.
 fn read(text: &str) -> Result<(Vec<Soil>, String), String> {

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use rand::Rng;
 use voidwalk::constrictions::{Curve, CurveUnit};
 use voidwalk::gradation::{Gradation, SizeSampler};
+use voidwalk::sheets::parse_gradation;
 use voidwalk::stream::{Key, Purpose};
 
 const ALL: u128 = 1 << 64;
@@ -405,7 +406,7 @@ proptest! {
     /// Readers refuse or read; they never panic, whatever the bytes.
     #[test]
     fn readers_never_panic_on_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300), d0: Option<f64>) {
-        let _ = Gradation::from_sieve_text("any", &bytes, d0);
+        let _ = parse_gradation("any", &bytes, d0);
         let _ = Curve::from_csv_text("any", &bytes);
     }
 
@@ -418,7 +419,7 @@ proptest! {
         d0 in prop::option::of(-1.0f64..1.0),
     ) {
         let text = format!("{header}{body}");
-        if let Ok(g) = Gradation::from_sieve_text("any", text.as_bytes(), d0) {
+        if let Ok(g) = parse_gradation("any", text.as_bytes(), d0) {
             let sampler = SizeSampler::new(&g, g.largest_mm()).unwrap();
             prop_assert!(sampler.largest() <= 1.0 && sampler.smallest() > 0.0);
         }

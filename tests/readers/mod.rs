@@ -18,12 +18,13 @@ use bitvec::vec::BitVec;
 use voidwalk::case::Case;
 use voidwalk::cases::CasePlan;
 use voidwalk::constrictions::{Curve, DEFAULT_MERGE_OVERLAP, VoidGraph};
-use voidwalk::gradation::{Gradation, SizeSampler, Soil, SoilSummary};
+use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::{ArrayOptions, END, ExitRule, Flow, GraphShape, Network, NetworkColumns};
 use voidwalk::packing::{CellOption, LengthUnit, Packing, ReadOptions};
 use voidwalk::run::PrepareOptions;
 use voidwalk::scene::{CurveSource, Scene};
 use voidwalk::serve::{ServeOptions, Server};
+use voidwalk::sheets::{Soil, SoilSummary, parse_gradation};
 use voidwalk::store::checkpoint::{Checkpoint, Identity, Label, Section, save};
 use voidwalk::walk::{Engine, RunPlan, SavedState, SizeClasses, State, Supply, Walk, WalkControl, WalkError};
 use xxhash_rust::xxh3::xxh3_64;
@@ -94,7 +95,7 @@ pub fn scene(bytes: &[u8]) {
 /// A sieve table.
 pub fn sieve(bytes: &[u8]) {
     for d0_mm in [None, Some(0.05)] {
-        let Some(gradation) = shown(Gradation::from_sieve_text("sieve.csv", bytes, d0_mm)) else { continue };
+        let Some(gradation) = shown(parse_gradation("sieve.csv", bytes, d0_mm)) else { continue };
         let points = gradation.points();
         assert!(
             points.windows(2).all(|pair| pair[0].size < pair[1].size && pair[0].percent <= pair[1].percent),

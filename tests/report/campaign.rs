@@ -5,10 +5,9 @@ use std::path::Path;
 
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made, leaves_out};
-use voidwalk::outcome::record::{
-    Classed, CurveEnd, CurveRange, ModelLimit, Note, Outcome, Stopping, Verdict,
-};
+use voidwalk::outcome::record::{Classed, CurveEnd, CurveRange, ModelLimit, Outcome, Stopping, Verdict};
 use voidwalk::outcome::undecided::UndecidedBy;
+use voidwalk::practice::Note;
 use voidwalk::report;
 use voidwalk::store::format::CAMPAIGN;
 

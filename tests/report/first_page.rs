@@ -4,10 +4,11 @@ use std::path::Path;
 use std::process::Command;
 
 use voidwalk::Gradation;
-use voidwalk::outcome::record::{Headline, RuleQuantity, RuleRole, RuleUnit, SampledBase};
-use voidwalk::outcome::rules::RULES;
+use voidwalk::outcome::record::SampledBase;
+use voidwalk::practice::rules::RULES;
+use voidwalk::practice::{Headline, RuleQuantity, RuleRole, RuleUnit};
+use voidwalk::practice::{PairOptions, PairRules};
 use voidwalk::run::FolderKind;
-use voidwalk::verdict::{PairOptions, PairRules};
 
 use super::folder::{Plan, note};
 use super::{made, words};
@@ -180,7 +181,7 @@ fn the_rules_that_decide_come_first() {
     {
         assert!(row.starts_with(name), "{name}: {row}");
     }
-    let is_broken = |rule: &&voidwalk::outcome::record::AppliedRule| rule.is_broken();
+    let is_broken = |rule: &&voidwalk::practice::AppliedRule| rule.is_broken();
     let broken: Vec<RuleRole> = plan.outcome.rules.iter().filter(is_broken).map(|rule| rule.role).collect();
     for role in [RuleRole::Placing, RuleRole::Stability, RuleRole::Drainage] {
         assert!(broken.contains(&role), "{role:?}: {broken:?}");

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use voidwalk::outcome::record::*;
+use voidwalk::practice::{AppliedRule, InputFile, Note, RuleQuantity, RuleRole, RuleUnit};
 use voidwalk::store::format::{MANIFEST, OUTCOME};
 
 /// A number between 0 and 1 that depends on three others and on nothing else.

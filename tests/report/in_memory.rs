@@ -10,7 +10,7 @@ use voidwalk::outcome::record::Outcome;
 use voidwalk::report::files::{json_of, rows};
 use voidwalk::report::{self, about_page, network_walk_brief, network_walk_page, run_brief, run_page};
 use voidwalk::run::{Callbacks, NetworkWalk, walk_networks};
-use voidwalk::verdict::{Decision, RunFiles};
+use voidwalk::verdict::RunFiles;
 use voidwalk::{Gradation, Network};
 
 use crate::folder::Plan;
@@ -37,7 +37,7 @@ fn a_run_in_memory_has_the_page_of_its_folder() {
     let (outcome, manifest, scene) = (text("outcome.json"), text("manifest.json"), text("scene.toml"));
     let parsed: Outcome = json_of(Path::new("outcome.json"), &outcome).unwrap();
     let texts = |recorded| RunFiles {
-        decision: Decision::recorded(&parsed),
+        decision: parsed.decision(),
         outcome: parsed.clone(),
         about: about_page(Path::new("scene.toml"), &scene, &parsed).unwrap(),
         manifest: json_of(Path::new("manifest.json"), &manifest).unwrap(),

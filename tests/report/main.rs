@@ -11,7 +11,8 @@ use std::path::Path;
 
 use folder::Plan;
 use tempfile::TempDir;
-use voidwalk::outcome::record::{Outcome, RuleNote, RuleQuantity, Statistic, Verdict};
+use voidwalk::outcome::record::{Outcome, Statistic, Verdict};
+use voidwalk::practice::{RuleNote, RuleQuantity};
 use voidwalk::report::{self, ReportError};
 use voidwalk::store::format::OUTCOME;
 

@@ -1,9 +1,10 @@
 //! What a page says of the walk: where it can be relied on, and what it was made with.
 
 use voidwalk::Gradation;
-use voidwalk::outcome::quantity::SizeUnit;
-use voidwalk::outcome::record::{Note, Outcome, Verdict};
-use voidwalk::verdict::{Decision, PairRules};
+use voidwalk::outcome::record::{Outcome, Verdict};
+use voidwalk::practice::Note;
+use voidwalk::practice::quantity::SizeUnit;
+use voidwalk::practice::PairRules;
 
 use super::folder::Plan;
 use super::{made, words};
@@ -36,7 +37,7 @@ fn the_figure_of_what_left_says_what_only_the_curve_of_the_base_has() {
 }
 
 fn next_step(outcome: &Outcome) -> String {
-    voidwalk::words::next(outcome, &Decision::recorded(outcome), SizeUnit::Mm)
+    voidwalk::words::next(outcome, &outcome.decision(), SizeUnit::Mm)
 }
 
 /// A filter that may segregate is mended; cobbles are no fault of a drain, and of a good pair nothing is asked.

@@ -1,8 +1,8 @@
 //! Notes in words.
 
 use pyo3::prelude::*;
-use voidwalk::outcome::note::Note;
-use voidwalk::outcome::quantity::{SizeUnit, THIN};
+use voidwalk::practice::note::Note;
+use voidwalk::practice::quantity::{SizeUnit, THIN};
 use voidwalk::words::{sentence, setting};
 
 use crate::problem::refused;

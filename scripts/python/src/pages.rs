@@ -10,7 +10,7 @@ use voidwalk::report::files::json_of;
 use voidwalk::report::{self as reports, ReportError};
 use voidwalk::run::folder::claim;
 use voidwalk::run::{FolderKind, RunError};
-use voidwalk::verdict::{Decision, RunFiles};
+use voidwalk::verdict::RunFiles;
 
 use crate::problem::{of_run, refused};
 use crate::tables::to_recorded;
@@ -48,7 +48,7 @@ pub fn run_page(
         let outcome: Outcome = json_of(Path::new("outcome.json"), outcome)?;
         let manifest = json_of(Path::new("manifest.json"), &manifest)?;
         let about = reports::about_page(Path::new("scene.toml"), &scene, &outcome)?;
-        let decision = Decision::recorded(&outcome);
+        let decision = outcome.decision();
         reports::run_page(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
     })
 }

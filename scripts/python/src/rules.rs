@@ -1,9 +1,9 @@
 //! What filter practice says of two soils.
 
 use pyo3::prelude::*;
-use voidwalk::outcome::rules::NamedCurve;
+use voidwalk::practice::rules::NamedCurve;
+use voidwalk::practice::{PairOptions, PairRules};
 use voidwalk::store::format;
-use voidwalk::verdict::{PairOptions, PairRules};
 
 use crate::problem::{failed, refused};
 use crate::soil::Gradation;

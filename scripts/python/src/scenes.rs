@@ -7,12 +7,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::Outcome;
 use voidwalk::cases::{self as campaigns, CaseOptions, CasePart, CasePlan};
-use voidwalk::outcome::quantity::SizeUnit;
+use voidwalk::practice::ordered;
+use voidwalk::practice::quantity::SizeUnit;
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
 use voidwalk::schema::SceneError;
 use voidwalk::store::format;
-use voidwalk::verdict::ordered;
 
 use crate::problem::{failed, of_run, refused};
 use crate::tables::of_recorded;

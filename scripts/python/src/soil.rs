@@ -3,8 +3,9 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use voidwalk::constrictions::{self, CurveUnit};
-use voidwalk::gradation::{self, CurvePoint, curves_in_file};
+use voidwalk::gradation::{self, CurvePoint};
 use voidwalk::scene::Density;
+use voidwalk::sheets::curves_in_file;
 
 use crate::arrays::column;
 use crate::problem::refused;

@@ -7,9 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::case;
 use voidwalk::outcome::{Recorded, Wanted};
+use voidwalk::practice::Mistake;
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{GivenFilter, NetworkWalk, walk_networks};
-use voidwalk::verdict::Mistake;
 use voidwalk::walk::{Engine, Sampling};
 
 use crate::network::Network;

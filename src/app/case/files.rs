@@ -1,0 +1,262 @@
+//! The files of a scene: each is read once, and what was read is kept for the run folder.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::error::CaseError;
+use super::input::Input;
+use super::packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
+use crate::scene::{BUILT_IN_NAME, CurveSource, Scene, SceneError};
+use voidwalk_core::constrictions::{Curve, ShippedFilter, find};
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{ArrayOptions, Network, NetworkError};
+use voidwalk_core::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
+use voidwalk_core::store::{read_regular, why_not_read};
+use voidwalk_sheets::{Soil, file_and_soil};
+
+/// A larger sieve table or curve is refused before it is read (bytes).
+const LARGEST_TABLE: u64 = 16 << 20;
+/// Likewise a network.
+const LARGEST_NETWORK: u64 = 1 << 36;
+
+/// Folder of the files that went in, inside a run's.
+const INPUTS: &str = "inputs";
+
+/// What the user called the files in that folder, by their names there.
+pub const INPUT_NAMES: &str = "inputs/names.json";
+
+/// Name under which a run keeps the grains whose voids it walks.
+pub(super) const KEPT_GRAINS: &str = "network-packing.csv";
+
+/// Likewise a network of arrays.
+const ARRAYS: &str = "network.npz";
+
+/// Every file that may be kept there.
+pub const INPUT_FILES: [&str; 15] = [
+    RECORD,
+    "filter-curve.csv",
+    "filter-sieve.csv",
+    "filter-sieve.xlsx",
+    "filter-sieve.ods",
+    "filter-sieve.ags",
+    "base-sieve.csv",
+    "base-sieve.xlsx",
+    "base-sieve.ods",
+    "base-sieve.ags",
+    "base-dc-curve.csv",
+    "network.csv",
+    ARRAYS,
+    KEPT_GRAINS,
+    "names.json",
+];
+
+/// What the user called a file: what is written beside it in a run's folder, or else its path.
+///
+/// # Errors
+/// What is written there is not as the program writes it.
+fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
+    let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
+    let own = format!("{}{part}", path.display());
+    let folder = path.parent().filter(|folder| folder.ends_with(INPUTS)).and_then(Path::parent);
+    let Some(file) = folder.map(|folder| folder.join(INPUT_NAMES)) else { return Ok(own) };
+    let Ok(Some(text)) = read_regular(&file, LARGEST_TABLE) else { return Ok(own) };
+    let names = serde_json::from_slice(&text).map_err(|error| SceneError::Syntax {
+        file: file.display().to_string(),
+        at: String::new(),
+        problem: format!(
+            "does not name the files beside it as a run writes it ({error}); remove it, and they \
+                          are called by their names there"
+        ),
+    });
+    let mut names: BTreeMap<String, String> = names?;
+    Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(own))
+}
+
+/// The name under which a run keeps a table: with the ending of a workbook where it is one.
+fn kept_name(kept_as: &str, path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match (["xlsx", "ods", "ags"].contains(&ending.as_str()), kept_as.rsplit_once('.')) {
+        (true, Some((stem, _))) => format!("{stem}.{ending}"),
+        _ => kept_as.to_owned(),
+    }
+}
+
+/// What there is to say of a path in which a backslash stands for a folder where the system takes none, or
+/// in which stands what one and the letter after it become in double quotes.
+fn of_windows(path: &Path) -> &'static str {
+    let text = path.to_string_lossy();
+    let escaped = text.contains(['\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']);
+    match escaped || text.contains('\\') && !std::path::is_separator('\\') {
+        true => " (write / between folders, not a backslash)",
+        false => "",
+    }
+}
+
+/// The settings that name a soil.
+const SIEVES: [&str; 2] = ["base.sieve", "filter.sieve"];
+
+/// Reads the files of a scene, and remembers them.
+#[derive(Default)]
+pub struct Files {
+    /// Files that were read, in their order.
+    pub inputs: Vec<Input>,
+    /// Files that were read before, for the same settings, and are not read again.
+    pub known: Vec<Input>,
+}
+
+impl Files {
+    /// Reads a regular file once, and keeps what was read.
+    fn read(
+        &mut self,
+        setting: &'static str,
+        path: &Path,
+        kept_as: &str,
+        largest: u64,
+        scene: &str,
+    ) -> Result<(String, &[u8]), CaseError> {
+        let file = path.display().to_string();
+        if let Some(at) = self.known.iter().position(|input| input.setting == setting) {
+            let known = self.known.swap_remove(at);
+            self.inputs.push(known);
+            return Ok((file, &self.inputs[self.inputs.len() - 1].bytes));
+        }
+        // A soil of the built-in scene was named on the command line, as a rule without its setting.
+        let is_plain = scene == BUILT_IN_NAME && SIEVES.contains(&setting);
+        let by = if is_plain { String::new() } else { format!(", named by {setting}") };
+        let named = format!("{file}{by}{}", of_windows(path));
+        let io = |source| SceneError::File { file: named.clone(), source };
+        let Some(bytes) = read_regular(path, largest).map_err(io)? else {
+            let problem = why_not_read(path, largest);
+            return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
+        };
+        self.keep(setting, path, kept_as, bytes)?;
+        Ok((file, &self.inputs[self.inputs.len() - 1].bytes))
+    }
+
+    fn keep(
+        &mut self,
+        setting: &'static str,
+        path: &Path,
+        kept_as: &str,
+        bytes: Vec<u8>,
+    ) -> Result<(), CaseError> {
+        debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
+        let (name, kept_as, bytes) =
+            (first_name(path, None)?, format!("{INPUTS}/{kept_as}"), Arc::new(bytes));
+        self.inputs.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
+        Ok(())
+    }
+
+    pub fn curve(
+        &mut self,
+        source: &CurveSource,
+        setting: &'static str,
+        kept_as: &str,
+        scene: &str,
+    ) -> Result<(Curve, Option<&'static ShippedFilter>), CaseError> {
+        match source {
+            CurveSource::Shipped(name) => {
+                let shipped = find(name).map_err(|error| SceneError::Clash {
+                    file: format!("{scene}, {setting}"),
+                    problem: error.to_string(),
+                })?;
+                Ok((shipped.curve()?, Some(shipped)))
+            }
+            CurveSource::File(path) => {
+                let (name, bytes) = self.read(setting, path, kept_as, LARGEST_TABLE, scene)?;
+                Ok((Curve::from_csv_text(&name, bytes)?, None))
+            }
+        }
+    }
+
+    /// The curve of a filter that was packed; kept as if it had been given, with the packing's record.
+    ///
+    /// # Errors
+    /// Names of files that are not as the program writes them.
+    pub fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
+        if let Some([curve, record]) = &packed.files {
+            for (setting, path, kept_as, bytes) in [
+                ("filter.curve", curve, "filter-curve.csv", packed.curve_csv.as_bytes()),
+                ("filter.density", record, RECORD, &packed.record),
+            ] {
+                self.keep(setting, path, kept_as, bytes.to_vec())?;
+            }
+        }
+        Ok(packed.curve.clone())
+    }
+
+    pub fn sieve(
+        &mut self,
+        path: &Path,
+        d0_mm: Option<f64>,
+        setting: &'static str,
+        kept_as: &str,
+        scene: &str,
+    ) -> Result<Gradation, CaseError> {
+        let (path, soil) = file_and_soil(path);
+        let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE, scene)?;
+        let read = Soil::one(&name, bytes, soil.as_deref())?;
+        let gradation = read.gradation(d0_mm)?;
+        if let Some(input) = self.inputs.last_mut() {
+            input.name = first_name(&path, soil.as_deref())?;
+            input.soil = soil;
+            input.notes = read.notes().to_vec();
+        }
+        Ok(gradation)
+    }
+
+    /// The grains of a file, and what to call it.
+    pub fn packing(
+        &mut self,
+        path: &Path,
+        kept_as: &str,
+        scene: &Scene,
+    ) -> Result<(String, Packing), CaseError> {
+        let (name, bytes) =
+            self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
+        let read = Packing::parse_as(&name, bytes, &scene.network.read_options());
+        let (packing, notes) = read.map_err(PackedError::from)?;
+        if let Some(input) = self.inputs.last_mut() {
+            input.notes = notes;
+        }
+        Ok((name, packing))
+    }
+
+    /// Says more of the file that was read last.
+    pub fn note(&mut self, note: String) {
+        if let Some(input) = self.inputs.last_mut() {
+            input.notes.push(note);
+        }
+    }
+
+    /// The grains of a filter that was packed; kept as if they had been given.
+    pub fn packed_grains(&mut self, grains: &[u8], kept_as: &str) -> Result<(String, Packing), CaseError> {
+        self.keep("network.packing", Path::new(GRAINS), kept_as, grains.to_vec())?;
+        Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))
+    }
+
+    pub fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
+        let of_arrays = scene.network.is_of_arrays();
+        let kept_as = if of_arrays { ARRAYS } else { "network.csv" };
+        let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK, &scene.name)?;
+        if !of_arrays {
+            let network = Network::from_csv(bytes, &name, unit_mm)?;
+            if !network.leads_out() {
+                let problem = "no open way leads from a start node to an outlet: rows with diameters above 0 \
+                               must lead from a `start,ID,` to a `FROM,end,DIAMETER`";
+                return Err(NetworkError::Whole { file: name, problem: problem.into() }.into());
+            }
+            return Ok(network);
+        }
+        let unit = scene.network.unit.ok_or_else(|| {
+            scene.clash(format!(
+                "{name} does not say the unit of its diameters, and a guess may be wrong by a factor \
+                 of 1000; say it: network.unit = \"m\" (or \"cm\", \"mm\", \"um\", \
+                 \"nm\"; OpenPNM has metres)"
+            ))
+        })?;
+        let (rule, rho) = (scene.exit_rule(), scene.exits.rho.unwrap_or(0.0));
+        Ok(Network::from_npz(bytes, &name, &ArrayOptions { unit, rule, rho, unit_mm })?)
+    }
+}

@@ -1,0 +1,30 @@
+//! A file that went into a case.
+
+use std::sync::Arc;
+
+use voidwalk_practice::InputFile;
+
+/// A file that was read, and the name under which a run folder keeps it.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// The setting that names it.
+    pub setting: &'static str,
+    /// Its path as the user gave it first: a run that continues from the files in its folder says what the
+    /// user called them.
+    pub name: String,
+    /// Name inside the run folder.
+    pub kept_as: String,
+    /// Its bytes, which copies of a case share.
+    pub bytes: Arc<Vec<u8>>,
+    /// Which of its soils is meant, where it holds several.
+    pub soil: Option<String>,
+    /// What was assumed to understand it.
+    pub notes: Vec<String>,
+}
+
+impl Input {
+    /// Its name and its checksum.
+    pub fn file(&self) -> InputFile {
+        InputFile::of(&self.name, &self.bytes)
+    }
+}

@@ -1,0 +1,111 @@
+//! A filter's constrictions from the library of packings, and how far they may be off.
+
+use super::curve_ends::OtherCurve;
+use super::cut;
+use super::recipe::{GRAINS_OF_PART, LEAST_WIDTH, width_by_largest};
+use crate::outcome::packing::PackedPart;
+use crate::scene::LibraryDensity;
+use voidwalk_core::constrictions::{CurveError, FromLibrary, from_library};
+use voidwalk_core::gradation::Gradation;
+
+/// Least error of the grains per void where only the finer part of a filter was looked up: of C33 sand, which
+/// lacks the coarsest 4.3 % then, they were 12.6 % off (`results/library.md`).
+const GRAINS_ERROR_OF_PART: f64 = 0.25;
+
+/// A filter as the library knows it.
+#[derive(Clone)]
+pub struct LibraryFilter {
+    /// Its constrictions; those of the loose filter where its density is unknown.
+    pub found: FromLibrary,
+    /// The finer part that was looked up, where the whole is too broad.
+    pub part: Option<PackedPart>,
+    /// The ends of the range in which its curve is known.
+    pub ends: Vec<OtherCurve>,
+}
+
+impl LibraryFilter {
+    /// Looks a filter up; `None` where it is like none of the library.
+    ///
+    /// # Errors
+    /// None for a gradation with a known size.
+    pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
+        // The finer part that would be packed, where the whole could not be.
+        let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
+        let (looked_up, part) = match width(filter) < LEAST_WIDTH {
+            false => (filter.clone(), None),
+            true => match cut::that_can_be_packed(filter, width) {
+                Some((finer, part)) => (finer, Some(part)),
+                None => return Ok(None),
+            },
+        };
+        let [loose, dense] = match density {
+            LibraryDensity::Unknown => [LibraryDensity::Loose, LibraryDensity::Dense],
+            known => [known; 2],
+        };
+        let find = |density: LibraryDensity| -> Result<Option<FromLibrary>, CurveError> {
+            let found = from_library(&looked_up, density.relative())?;
+            Ok(found.map(|found| match &part {
+                Some(_) => {
+                    FromLibrary { grains_error: found.grains_error.max(GRAINS_ERROR_OF_PART), ..found }
+                }
+                None => found,
+            }))
+        };
+        let Some(found) = find(loose)? else { return Ok(None) };
+        let at_dense = if loose == dense { Some(found.clone()) } else { find(dense)? };
+        // Leaving the coarser grains out makes all constrictions finer.
+        let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
+        let coarsest = 1.0 / ((1.0 - found.curve_error) * (1.0 - finer_by));
+        let end = |density: LibraryDensity, of: Option<&FromLibrary>, factor: f64| {
+            let [way, by] = match factor > 1.0 {
+                true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
+                false => ["finer", &format!("{:.0}", 100.0 * (1.0 - factor))],
+            };
+            let name = format!("{}, constrictions {by} % {way}", density.name());
+            let of = of?;
+            // Of less base a larger share erodes: the coarsest curve goes with the fewest grains. The fine
+            // end offers no more base than the library says, so that no amount that may not be there seals
+            // it.
+            let error = if factor > 1.0 { of.grains_error } else { 0.0 };
+            let times_grains = of.grains_per_void / (1.0 + error) / found.grains_per_void;
+            Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
+        };
+        let ends =
+            [end(loose, Some(&found), coarsest), end(dense, at_dense.as_ref(), 1.0 - found.curve_error)];
+        Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_filter_of_unknown_density_has_loose_and_dense_as_its_ends() {
+        let filter = Gradation::linear_from_d0(1.0, 3.0).unwrap();
+        let of = |density| LibraryFilter::find(&filter, density).unwrap().unwrap();
+        let unknown = of(LibraryDensity::Unknown);
+        let dc50 = |curve: &voidwalk_core::constrictions::Curve| curve.dc(50.0).unwrap();
+        let [loose, dense] = [of(LibraryDensity::Loose), of(LibraryDensity::Dense)];
+        let [coarse, fine] = [&unknown.ends[0], &unknown.ends[1]].map(|end| dc50(&end.curve));
+        assert!(coarse > dc50(&loose.found.curve) && fine < dc50(&dense.found.curve));
+        assert_eq!(unknown.found, loose.found);
+        // A dense filter has fewer grains a void, and is offered less base.
+        let [of_loose, of_dense] = [&unknown.ends[0], &unknown.ends[1]].map(|end| end.times_grains);
+        let at_dense = dense.found.grains_per_void / loose.found.grains_per_void;
+        assert!(at_dense < 0.85, "{at_dense}");
+        // 6 % is the error of grains per void near a shape of the library.
+        assert!((of_loose * 1.06 - 1.0).abs() < 1e-12 && (of_dense / at_dense - 1.0).abs() < 1e-12);
+        assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
+    }
+
+    #[test]
+    fn of_a_broad_filter_the_finer_part_is_looked_up() {
+        // ASTM C33 fine aggregate, the middle of its band.
+        let points =
+            [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5), (9.5, 100.0)];
+        let filter = Gradation::from_lines(&points).unwrap();
+        let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
+        assert!(found.is_some_and(|of| of.part.is_some() && of.found.grains_error == GRAINS_ERROR_OF_PART));
+    }
+}

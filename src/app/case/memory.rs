@@ -1,0 +1,400 @@
+//! How much memory a case takes, and where the columns of its particles live.
+
+use std::path::Path;
+
+use super::{Case, CaseError, CaseNetwork};
+use voidwalk_core::network::ExitRule;
+use voidwalk_core::store::{Placement, platform};
+use voidwalk_core::walk::{CHUNK, Engine};
+
+/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow
+/// with the number of threads.
+const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
+
+/// What happens to the particles of a chunk in an increment, and their size classes (measured).
+const EVENT_BYTES: u64 = 16 << 10;
+
+/// What a worker keeps to move counts: for a void, its particles there; and a batch of voids (bytes).
+const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
+
+/// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
+/// flow and 34 of tables each; 24 of the flow; and links, a factor, and what reading a file leaves (measured:
+/// at most 523 in all, a million throats of a file).
+const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 34) + 24 + 300;
+
+/// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
+/// and before the next run, and the part that it conducts.
+const OPENING_BYTES: u64 = 3 * 4 + 8;
+
+/// Bytes of a narrowing, and of its columns while they are saved.
+const NARROWING_BYTES: u64 = 2 * 24;
+
+/// How many narrowings of an exit in a run there is room for, on average: the finest particle so far is a
+/// rarer event each time.
+const NARROWINGS: u64 = 8;
+
+/// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
+/// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and
+/// line; for a constriction its row, its line, and when it was blocked.
+const KEPT_BYTES: [u64; 3] = [200, 240, 420];
+
+/// What the walks of a case may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ResourceLimits {
+    /// Memory (bytes).
+    pub memory: u64,
+    /// Disk where the results go (bytes).
+    pub disk: u64,
+}
+
+impl ResourceLimits {
+    /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk
+    /// that is free where `folder` is or will be.
+    pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
+        let share = available / 5 * 4;
+        let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        Self {
+            memory: asked.map_or(share, |asked| asked.min(available)),
+            disk: there.ancestors().find_map(platform::free_bytes).unwrap_or(0),
+        }
+    }
+}
+
+impl Case {
+    /// Bytes of the columns of a walk of `n_base` particles.
+    pub fn column_bytes(&self, n_base: u64) -> u64 {
+        // A void and a diameter; one size needs no column.
+        let bytes = if self.supply.sampler.smallest() == self.supply.sampler.largest() { 4 } else { 8 };
+        self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
+    }
+
+    /// Bytes that walking `n_base` particles on this many threads takes besides: network, tallies,
+    /// book-keeping.
+    fn other_bytes(&self, n_base: u64, threads: u64) -> u64 {
+        let CaseNetwork { voids, constrictions, .. } = self.network;
+        let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
+        let workers = threads.max(1).saturating_mul(self.worker_bytes(n_base));
+        chunks
+            .saturating_mul(EVENT_BYTES)
+            .saturating_add(voids * 140 + constrictions * 25)
+            .saturating_add(self.flow_bytes())
+            .saturating_add(self.openings_bytes(n_base))
+            .saturating_add(workers)
+    }
+
+    /// Bytes of the openings that blocked constrictions leave. A particle narrows one at most.
+    fn openings_bytes(&self, n_base: u64) -> u64 {
+        if !self.scene.leaves_openings() {
+            return 0;
+        }
+        let of_each = match self.scene.exit_rule() {
+            ExitRule::Area => 1,
+            _ => 2,
+        };
+        let exits = self.network.constrictions.saturating_mul(of_each);
+        let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
+        exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
+    }
+
+    /// Bytes that a network without directions of its own takes besides: each constriction is two exits with
+    /// conductance, weight and flow, in the network, in a copy of it that the walk directs, and in the
+    /// system.
+    fn flow_bytes(&self) -> u64 {
+        match self.scene.exit_rule() {
+            ExitRule::Area => 0,
+            _ => self.network.constrictions.saturating_mul(FLOW_BYTES),
+        }
+    }
+
+    /// Bytes that each thread of a walk keeps for itself: with counts a column of the whole network, into
+    /// which it moves particles; the expectation is moved by one thread alone, and particles where they are.
+    fn worker_bytes(&self, n_base: u64) -> u64 {
+        let engine = self.scene.walk.engine;
+        let counts = matches!(engine, Engine::Auto | Engine::Counts)
+            && !self.takes_each(n_base)
+            && self.one_by_one(n_base) < n_base;
+        if counts {
+            self.network.voids.saturating_mul(COUNTS_A_WORKER.0).saturating_add(COUNTS_A_WORKER.1)
+        } else {
+            0
+        }
+    }
+
+    /// Bytes of what each void of the first replicate comes to, where `record.voids` keeps it: at most a row
+    /// for each void, or for each particle so far, after each increment of the list and at the end of each
+    /// run.
+    pub fn kept_bytes(&self) -> u64 {
+        let Some(increments) = &self.scene.record.voids else { return 0 };
+        let CaseNetwork { voids, constrictions, .. } = self.network;
+        let [of_row, of_void, of_constriction] = KEPT_BYTES;
+        let an_increment = self.supply.n_base.div_ceil(self.increments());
+        // Void 0 has a row always.
+        let rows_after = |increment: u64| voids.min(an_increment.saturating_mul(increment).saturating_add(1));
+        let rows: u64 = increments.iter().copied().chain([self.increments()]).map(rows_after).sum();
+        rows.saturating_mul(self.scene.walk.runs)
+            .saturating_mul(of_row)
+            .saturating_add(voids.saturating_mul(of_void))
+            .saturating_add(constrictions.saturating_mul(of_constriction))
+    }
+
+    /// Bytes that walking `n_base` particles on this many threads takes, network and tallies included.
+    pub fn bytes(&self, n_base: u64, threads: u64) -> u64 {
+        self.column_bytes(n_base).saturating_add(self.other_bytes(n_base, threads))
+    }
+
+    /// The most base particles of any run of the case.
+    fn most_particles(&self) -> u64 {
+        let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
+        (self.supply.n_base as f64 * largest) as u64
+    }
+
+    /// The case with the thickest lattice of the study of its thickness, where that is thicker than its own.
+    /// A graph's packing is not measured again for this.
+    fn thickest(&self) -> Option<Case> {
+        let factor = self.thickness_factors().into_iter().fold(1.0, f64::max);
+        let is_lattice = self.network.copies().is_none();
+        (factor > 1.0 && is_lattice).then(|| self.of_thickness(factor).ok()).flatten()
+    }
+
+    /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
+    pub fn peak_bytes(&self, threads: u64) -> u64 {
+        let of = |case: &Case| {
+            let n_base = case.most_particles();
+            let walks = case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads));
+            walks.saturating_add(case.kept_bytes())
+        };
+        // The thickest filter is walked after the others.
+        of(self).max(self.thickest().as_ref().map_or(0, of))
+    }
+
+    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
+    /// small.
+    pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
+        let all = self.bytes(n_base, threads).saturating_mul(threads);
+        if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
+    }
+
+    /// Whether there is room for the particles of the scene itself, in memory or on the disk.
+    fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
+        let columns = self.column_bytes(self.supply.n_base);
+        let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
+        besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
+    }
+
+    /// Says where the columns of the particles go: into memory where they fit, else into files in `folder`
+    /// that are mapped into memory.
+    ///
+    /// # Errors
+    /// [`CaseError::Memory`]: they fit neither.
+    pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
+        self.memory = room.memory;
+        let has_room = self.has_room(room, threads);
+        // Where the scene itself has none, no study is to blame.
+        let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
+        let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
+        let kept = self.kept_bytes();
+        let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
+        let needed = walks.saturating_add(kept);
+        let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
+        if needed <= room.memory {
+            // Where the thickest filter of its study needs files, it and its like get them.
+            self.placement = thickest.unwrap_or(Placement::Memory);
+            Ok(())
+        } else if without_columns <= room.memory && self.column_bytes(n_base) <= room.disk {
+            self.placement = Placement::Mapped(folder.to_owned());
+            Ok(())
+        } else {
+            Err(self.no_room(room, n_base, needed, without_columns))
+        }
+    }
+
+    /// Where the columns of the thickest filter of its study go, where there is one.
+    fn place_thickest(
+        &self,
+        room: &ResourceLimits,
+        threads: u64,
+        folder: &Path,
+    ) -> Result<Option<Placement>, CaseError> {
+        let Some(mut case) = self.thickest() else { return Ok(None) };
+        match case.place(room, threads, folder) {
+            Err(CaseError::Memory { n_base, voids, needed, available, disk, .. })
+                if case.supply.n_base != self.supply.n_base || case.network.voids != self.network.voids =>
+            {
+                let study = " (record.thickness: the thickest filter of the study; leave that out)".into();
+                Err(CaseError::Memory { n_base, study, voids, needed, available, disk })
+            }
+            placed => placed.map(|()| Some(case.placement)),
+        }
+    }
+
+    /// That `n_base` particles need more than there is, and what asks for them.
+    fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
+        let disk = match without_columns <= room.memory {
+            true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+            false => String::new(),
+        };
+        let of_voids = match self.kept_bytes() {
+            0 => String::new(),
+            kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
+        };
+        let stated = self.supply.n_base;
+        let study = match n_base == stated {
+            true => String::new(),
+            false => {
+                let factor = n_base as f64 / stated as f64;
+                format!(" (record.sensitivity: {factor} times the {stated} of the scene; leave that out)")
+            }
+        };
+        CaseError::Memory {
+            n_base: self.one_by_one(n_base),
+            study,
+            voids: self.network.voids,
+            needed: in_words(needed),
+            available: in_words(room.memory),
+            disk: [disk, of_voids].concat(),
+        }
+    }
+
+    /// Where the particles of a walk on this many threads live, for a reader.
+    pub fn memory_in_words(&self, threads: u64) -> String {
+        let bytes = in_words(self.bytes(self.supply.n_base, threads));
+        let limit = in_words(self.memory);
+        let kept = match self.kept_bytes() {
+            0 => String::new(),
+            kept => format!(", and up to {} for what record.voids keeps", in_words(kept)),
+        };
+        match &self.placement {
+            Placement::Memory => format!("{bytes} a walk{kept}, of {limit} that it may take"),
+            Placement::Mapped(_) => format!(
+                "{} a walk{kept}, of {limit} that it may take, and {} in files in the run folder for the \
+                 particles, mapped into memory: slower, the same bits",
+                in_words(self.other_bytes(self.supply.n_base, threads)),
+                in_words(self.column_bytes(self.most_particles()))
+            ),
+        }
+    }
+}
+
+/// Bytes in words: `1.6 GB`.
+pub fn in_words(bytes: u64) -> String {
+    let (mut value, mut unit) = (bytes as f64, "bytes");
+    for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
+        if value < 1000.0 {
+            break;
+        }
+        value /= 1000.0;
+        unit = larger;
+    }
+    if unit == "bytes" { format!("{bytes} bytes") } else { format!("{value:.2} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn case(set: &[&str]) -> Case {
+        let small = ["network.nx=80", "network.ny=80", "network.nz=100", "record.sensitivity=[]"];
+        let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
+        Case::new(Scene::built_in(&all).unwrap()).unwrap()
+    }
+
+    /// As at the ends of a guessed curve's range.
+    #[test]
+    fn another_curve_has_another_finest_constriction() {
+        let coarse = case(&["base.n_base=1e9"]);
+        let fine = coarse.with_curve(coarse.filter.curve.scaled(0.5).unwrap());
+        let [one_by_one, of_fine] = [&coarse, &fine].map(|case| case.one_by_one(case.supply.n_base));
+        assert!(of_fine > one_by_one + 1_000_000, "{of_fine} for {one_by_one}");
+    }
+
+    #[test]
+    fn counts_take_a_column_of_the_network_for_each_thread() {
+        let counts = case(&["engine=counts", "base.single_mm=0.1", "base.n_base=1e11"]);
+        let of = |case: &Case, threads| case.bytes(case.supply.n_base, threads);
+        let a_thread = (of(&counts, 257) - of(&counts, 1)) / 256;
+        assert!((5_100_000..5_300_000).contains(&a_thread), "{a_thread}");
+        let auto = case(&["base.single_mm=0.1", "base.n_base=1e11"]);
+        assert_eq!(of(&auto, 64), of(&counts, 64));
+        for set in [
+            // Each by itself, as asked for, or because they are few; an expectation; none that is passive.
+            vec!["engine=particles", "base.n_base=1e6"],
+            vec!["base.n_base=1e6"],
+            vec!["engine=expected", "base.single_mm=0.1", "base.n_base=1e11"],
+            vec!["engine=counts", "base.single_mm=9", "base.n_base=1e6"],
+        ] {
+            let other = case(&set);
+            assert_eq!(of(&other, 256), of(&other, 1), "{set:?}");
+        }
+        // Replicates side by side have columns each, so that there are fewer of them.
+        let small =
+            case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
+        assert!(
+            small.side_by_side(small.supply.n_base, 4) == 4
+                && small.side_by_side(small.supply.n_base, 64) == 1
+        );
+    }
+
+    #[test]
+    fn openings_take_memory_for_several_narrowings_of_each_exit() {
+        let of = |n_base: &str, set: &[&str]| {
+            let case = case(&[&["engine=particles", n_base], set].concat());
+            (case.other_bytes(case.supply.n_base, 1), case.network.constrictions)
+        };
+        for (n_base, flux, of_each) in [("1e9", "exit=area", 1), ("1e9", "exit=flux", 2)] {
+            let set = [format!("base.n_base={n_base}"), format!("walk.{flux}")];
+            let [(closed, exits), (open, _)] =
+                [vec![&set[1][..]], vec![&set[1][..], "walk.blocked=open"]].map(|more| of(&set[0], &more));
+            assert_eq!(open - closed, exits * of_each * (20 + 8 * 48), "{flux}");
+        }
+        let [(closed, exits), (open, _)] =
+            [&[][..], &["walk.blocked=open"]].map(|more| of("base.n_base=1000", more));
+        assert_eq!(open - closed, exits * 20 + 1000 * 48);
+    }
+
+    #[test]
+    fn what_each_void_comes_to_is_counted() {
+        let of = |base: &str, set: &[&str]| case(&[&[base], set].concat());
+        let many = |set: &[&str]| of("base.n_base=1e9", set);
+        let (none, more) = (many(&["record.voids=[]"]), many(&["record.voids=[1, 5, 10]"]));
+        assert_eq!(many(&[]).kept_bytes(), 0);
+        // Three more moments of two runs, of a row in two copies at least.
+        let rows = more.kept_bytes() - none.kept_bytes();
+        let row = size_of::<crate::outcome::record::RetainedRow>() as u64;
+        assert!(rows >= none.network.voids * 3 * 2 * 2 * row, "{rows}");
+        let one_run = |list| many(&[list, "runs=1"]).kept_bytes();
+        assert_eq!(rows, 2 * (one_run("record.voids=[1, 5, 10]") - one_run("record.voids=[]")));
+        // Few particles are in few voids.
+        let few = |list| of("base.n_base=1000", &[list]).kept_bytes();
+        let bytes = few("record.voids=[1, 5, 10]") - few("record.voids=[]");
+        assert!(bytes > 0 && bytes < rows / 100, "{bytes}");
+        // Where there is memory for the one only.
+        assert_eq!(more.peak_bytes(1) - none.peak_bytes(1), rows);
+        let room = ResourceLimits { memory: none.peak_bytes(1) + rows / 2, disk: 0 };
+        let place = |mut case: Case| case.place(&room, 1, Path::new("."));
+        assert!(place(none).is_ok());
+        let error = place(more).unwrap_err().to_string();
+        assert!(error.contains("record.voids keeps up to"), "{error}");
+    }
+
+    #[test]
+    fn a_refusal_names_what_asks_for_the_memory() {
+        let all = ["network.nx=9", "network.ny=9", "network.nz=12", "base.n_base=1000", "engine=particles"];
+        let refused = |set: &str| {
+            let all: Vec<String> = all.iter().chain(&[set]).map(ToString::to_string).collect();
+            let mut case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
+            let room = ResourceLimits { memory: 100_000_000, disk: 0 };
+            case.place(&room, 1, Path::new(".")).unwrap_err().to_string()
+        };
+        let error = refused("record.sensitivity=[1e12]");
+        assert!(
+            error.starts_with("1000000000000000 base particles walked one by one (record.sensit"),
+            "{error}"
+        );
+        let error = refused("record.thickness=[10000]");
+        assert!(error.contains("(record.thickness: the thickest"), "{error}");
+        // No study is to blame where the scene itself has no room.
+        let error = refused("base.n_base=1e12");
+        assert!(error.starts_with("1000000000000 base particles") && !error.contains("record."), "{error}");
+    }
+}

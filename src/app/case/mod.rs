@@ -1,0 +1,221 @@
+//! A case: a scene with its files read and every number worked out, before any work is done.
+//!
+//! It is worked out in stages, each whole when it is there and made from those before it: the filter as it is
+//! stated, a network that all replicates walk, the filter, the base, the network, the particles of the base.
+
+mod arching;
+mod base;
+mod curve_ends;
+mod cut;
+mod error;
+mod files;
+mod filter;
+mod fixed_network;
+mod input;
+mod left_out;
+mod library_filter;
+mod memory;
+mod network;
+mod network_key;
+mod notes;
+mod one_by_one;
+mod packed_filter;
+mod packing_plan;
+mod pan;
+mod places;
+mod recipe;
+mod record;
+mod resolved;
+mod scaled;
+mod sensitivity;
+mod stated_filter;
+mod supply;
+mod thickness;
+mod void_graph;
+
+pub use base::CaseBase;
+pub use curve_ends::{OtherCurve, end_of_guess};
+pub use error::CaseError;
+use files::Files;
+pub use files::{INPUT_FILES, INPUT_NAMES};
+pub use filter::CaseFilter;
+pub use fixed_network::{CopiedPacking, FixedNetwork};
+pub use input::Input;
+pub use library_filter::LibraryFilter;
+pub use memory::{ResourceLimits, in_words};
+pub use network::{CaseNetwork, replicate_seed};
+use network::{placeholder_shape, set_layers_of_thickness};
+pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
+pub use packing_plan::PackingPlan;
+pub use record::base_record;
+pub use scaled::StatedBase;
+use stated_filter::StatedFilter;
+use supply::Against;
+pub use supply::{CaseSupply, PAPER_MASS_RATIO};
+use void_graph::GraphPacking;
+
+use crate::outcome::record::Ratios;
+use crate::scene::{NetworkSource, Scene};
+use std::borrow::Cow;
+use std::sync::Arc;
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError};
+use voidwalk_core::store::Placement;
+use voidwalk_practice::Note;
+
+/// A scene, worked out.
+///
+/// ```
+/// use voidwalk_app::{Case, Scene};
+/// let case = Case::new(Scene::built_in(&["base.cu=3".to_owned()])?)?;
+/// // D85 of the base is the Dc5 of the filter, and Eq. (2) says how many particles there are.
+/// assert!((case.base.gradation.d(85.0).unwrap() / case.filter.curve.dc(5.0).unwrap() - 1.0).abs() < 1e-9);
+/// assert_eq!(Some(case.supply.n_base), case.supply.n_base_eq2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct Case {
+    /// The scene it comes from.
+    pub scene: Scene,
+    /// The filter.
+    pub filter: CaseFilter,
+    /// The base.
+    pub base: CaseBase,
+    /// The note that base and filter look exchanged, or are in different units.
+    pub mistake: Option<Note>,
+    /// The network that the filter makes.
+    pub network: CaseNetwork,
+    /// The particles that the base is walked as.
+    pub supply: CaseSupply,
+    /// Files that were read.
+    pub inputs: Vec<Input>,
+    /// Memory that the walks may take (bytes): no limit until [`Case::place`] sets one.
+    pub memory: u64,
+    /// Where the columns of the particles live.
+    pub placement: Placement,
+}
+
+impl Case {
+    /// Reads the scene's files and works out every number; does no other work.
+    ///
+    /// # Errors
+    /// A file that is refused, or numbers that clash.
+    pub fn new(scene: Scene) -> Result<Self, CaseError> {
+        Self::with_graph(scene, None, None, Vec::new())
+    }
+
+    /// The case of a scene whose filter has been packed, and of which these files were read before.
+    ///
+    /// # Errors
+    /// As [`Case::new`]; the scene's filter is to be packed and has not been.
+    pub fn with_packed(
+        scene: Scene,
+        packed: Option<PackedFilter>,
+        known: Vec<Input>,
+    ) -> Result<Self, CaseError> {
+        Self::with_graph(scene, packed, None, known)
+    }
+
+    /// The same with the voids of its packing, where they have been measured.
+    fn with_graph(
+        mut scene: Scene,
+        packed: Option<PackedFilter>,
+        measured: Option<Arc<GraphPacking>>,
+        known: Vec<Input>,
+    ) -> Result<Self, CaseError> {
+        let mut files = Files { known, ..Files::default() };
+        let stated = StatedFilter::read(&scene, packed, measured, &mut files)?;
+        let fixed = FixedNetwork::read(&scene, &stated, &mut files)?;
+        set_layers_of_thickness(&mut scene, &stated.gradation)?;
+        let filter = CaseFilter::new(&scene, stated, fixed.as_ref())?;
+        let base = CaseBase::read(&scene, &filter, &mut files)?;
+        let scale_free = fixed.is_none() && filter.is_scale_free(&scene);
+        let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;
+        let network = CaseNetwork::new(&scene, &filter, fixed)?;
+        let is_packed = filter.packed.as_ref().is_some_and(|packed| packed.files.is_some());
+        let against = Against { scene: &scene, filter: &filter, voids: network.voids, is_packed };
+        let supply = against.supply(&base.gradation).map_err(|error| match &mistake {
+            Some(mistake) if scene.base.sieve.is_some() => scene.clash(&mistake.sentence).into(),
+            _ => error,
+        })?;
+        for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", &base.gradation, 85.0)] {
+            if soil.d(percent).is_none() {
+                let problem = format!(
+                    "the {name}'s D{percent} lies in the pan fraction (finer than the finest sieve): add \
+                     finer sieves, or {name}.d0_mm"
+                );
+                return Err(scene.clash(problem).into());
+            }
+        }
+        let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
+        let mistake = mistake.map(|mistake| mistake.note);
+        let case = Self { scene, filter, base, mistake, network, supply, inputs, memory, placement };
+        case.check_clogging()?;
+        Ok(case)
+    }
+
+    /// Share of the base's mass that is passive and counted by mass only.
+    pub fn pan_by_mass_only(&self) -> f64 {
+        if self.supply.pan_is_walked { 0.0 } else { self.base.gradation.pan_fraction() }
+    }
+
+    /// The base with all particles that are walked.
+    pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
+        let (base, finest_mm) = (&self.base.gradation, self.filter.finest_mm);
+        match self.supply.pan_is_walked {
+            true => Cow::Owned(pan::as_passive(base, finest_mm, &self.scene).expect("it was sampled")),
+            false => Cow::Borrowed(base),
+        }
+    }
+
+    /// The network of the replicate with this seed.
+    ///
+    /// # Errors
+    /// None that [`Case::new`] has not found.
+    pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
+        let network = self.clean_network(seed)?;
+        Ok(match self.scene.exits.flow_tolerance {
+            Some(tolerance) => network.with_flow_tolerance(tolerance),
+            None => network,
+        })
+    }
+
+    fn clean_network(&self, seed: u64) -> Result<Network, NetworkError> {
+        if let Some(fixed) = &self.network.fixed {
+            return Ok(fixed.network.clone());
+        }
+        let (curve, unit_mm, source) = (&self.filter.curve, self.filter.unit_mm, self.scene.network.source());
+        let shape = source.shape().unwrap_or_else(|| placeholder_shape(&self.scene, &self.filter.gradation));
+        match source {
+            NetworkSource::Connected(_, wanted) => Network::connected(shape, curve, unit_mm, seed, &wanted),
+            _ => self.with_directions(Network::cubic(shape, curve, unit_mm, seed)?),
+        }
+    }
+
+    /// A lattice as its exit rule wants it: without directions where water gives them.
+    fn with_directions(&self, lattice: Network) -> Result<Network, NetworkError> {
+        let (rule, exits) = (self.scene.exit_rule(), &self.scene.exits);
+        if rule == ExitRule::Area {
+            return Ok(lattice);
+        }
+        let exponent = exits.conductance_exponent.unwrap_or(CONDUCTANCE_EXPONENT);
+        lattice.undirected_lattice(rule, exits.rho.unwrap_or(0.0), exponent)
+    }
+
+    /// Increments over which the base is inserted: a whole number, so that every part is equal.
+    pub fn increments(&self) -> u64 {
+        (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
+    }
+
+    /// Constriction curves that are walked: its own, and the ends of its range.
+    pub fn curves(&self) -> usize {
+        1 + self.filter.curve_ends.len()
+    }
+
+    /// D15F over D85B and D95B.
+    pub fn ratios(&self) -> Ratios {
+        let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
+        let (d15f, base) = (d(&self.filter.gradation, 15.0), &self.base.gradation);
+        Ratios { d15f_over_d85b: d15f / d(base, 85.0), d15f_over_d95b: d15f / d(base, 95.0) }
+    }
+}

@@ -1,0 +1,154 @@
+//! The network of a case: how large it is, and whether all replicates walk the same.
+
+use std::collections::BTreeMap;
+
+use super::error::CaseError;
+use super::filter::CaseFilter;
+use super::fixed_network::{CopiedPacking, FixedNetwork};
+use super::packed_filter::GUESSED_GRAINS_PER_VOID;
+use crate::scene::{Extent, NetworkSource, Scene, USUAL_LAYERS};
+use rand::Rng;
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{Connectivity, Network, NetworkError};
+use voidwalk_core::stream::{Key, Purpose};
+
+/// A lattice with more voids than this is not made for its counts alone: those of a smaller one are scaled
+/// up.
+const MADE_FOR_COUNTS: u64 = 4_000_000;
+
+/// Voids along each side of that smaller one, at most.
+const SMALLER: u32 = 64;
+
+/// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
+pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
+    Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
+}
+
+/// How large a network is.
+#[derive(Clone)]
+pub struct CaseNetwork {
+    /// Voids.
+    pub voids: u64,
+    /// Constrictions, of the first replicate.
+    pub constrictions: u64,
+    /// Start nodes.
+    pub start_nodes: u64,
+    /// Layers.
+    pub layers: u64,
+    /// Connectivity and percent of the voids, where not all voids have the same.
+    pub connectivity: Vec<[f64; 2]>,
+    /// The network itself, where all replicates walk the same.
+    pub fixed: Option<FixedNetwork>,
+}
+
+impl CaseNetwork {
+    /// That of a scene with this filter.
+    pub(super) fn new(
+        scene: &Scene,
+        filter: &CaseFilter,
+        fixed: Option<FixedNetwork>,
+    ) -> Result<Self, CaseError> {
+        if let Some(fixed) = fixed {
+            let network = &fixed.network;
+            // Exits that are passed both ways are no connectivity of the paper's kind.
+            let passes_both_ways = fixed.packing.is_some() || network.reservoir().is_some();
+            return Ok(Self {
+                voids: network.filter_voids() as u64,
+                constrictions: network.passages() as u64,
+                start_nodes: network.entries() as u64,
+                layers: network.layers() as u64,
+                connectivity: if passes_both_ways { Vec::new() } else { connectivity(network) },
+                fixed: Some(fixed),
+            });
+        }
+        Ok(match &scene.network.source() {
+            NetworkSource::Connected(shape, wanted) => {
+                Self::of_connected(*shape, wanted, filter, replicate_seed(scene.walk.seed, 1))?
+            }
+            source => {
+                let shape = source.shape().unwrap_or_else(|| placeholder_shape(scene, &filter.gradation));
+                Self::of_lattice(shape)?
+            }
+        })
+    }
+
+    /// That of the cubic lattice, which is not made for it.
+    pub(super) fn of_lattice(shape: [u32; 3]) -> Result<Self, NetworkError> {
+        let [nx, ny, layers] = shape.map(u64::from);
+        let constrictions = Network::lattice_constrictions(shape)? as u64;
+        let (voids, start_nodes) = (constrictions / 3, nx * ny);
+        Ok(Self { voids, constrictions, start_nodes, layers, connectivity: Vec::new(), fixed: None })
+    }
+
+    /// That of a lattice with this distribution of connectivity, and that distribution as it is met; so a
+    /// distribution that no network has is refused before any work.
+    fn of_connected(
+        shape: [u32; 3],
+        wanted: &Connectivity,
+        filter: &CaseFilter,
+        seed: u64,
+    ) -> Result<Self, NetworkError> {
+        let lattice = Self::of_lattice(shape)?;
+        let made = if lattice.voids > MADE_FOR_COUNTS { shape.map(|n| n.min(SMALLER)) } else { shape };
+        let network = Network::connected(made, &filter.curve, filter.unit_mm, seed, wanted)?;
+        let scale = lattice.voids as f64 / network.voids() as f64;
+        let constrictions = (network.constrictions() as f64 * scale).round() as u64;
+        Ok(Self { constrictions, connectivity: connectivity(&network), ..lattice })
+    }
+
+    /// The packing whose voids it is.
+    pub(super) fn packing(&self) -> Option<&CopiedPacking> {
+        self.fixed.as_ref()?.packing.as_ref()
+    }
+
+    /// Copies of the packing whose voids it is.
+    pub fn copies(&self) -> Option<u32> {
+        self.packing().map(|packing| packing.copies)
+    }
+}
+
+/// Connectivity and percent of the voids, rising; empty where all have the same.
+fn connectivity(network: &Network) -> Vec<[f64; 2]> {
+    let mut counts = BTreeMap::new();
+    network.connectivity().iter().for_each(|&k| *counts.entry(k).or_insert(0u64) += 1);
+    if counts.len() < 2 {
+        return Vec::new();
+    }
+    let percent = |count| 100.0 * count as f64 / network.voids() as f64;
+    counts.into_iter().map(|(k, count)| [f64::from(k), percent(count)]).collect()
+}
+
+/// Gives a lattice as many layers as its scene's thickness makes of this filter.
+pub(super) fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> Result<(), CaseError> {
+    let (NetworkSource::Cubic(_), extent) = (scene.network.source(), scene.network.extent()) else {
+        return Ok(());
+    };
+    let unit_mm = filter.smallest_mm();
+    let Some(mm) = extent.thickness_mm(filter.d(50.0).unwrap_or(unit_mm)) else { return Ok(()) };
+    let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
+    let layers = (mm / layer).round();
+    if layers < 1.0 {
+        let problem = format!(
+            "the network is to be {mm:.4} mm thick, but one layer of voids, D50F by number, is {layer:.4} \
+             mm: allowed: half a layer or more (network.thickness_mm, network.thickness_d50f)"
+        );
+        return Err(scene.clash(problem).into());
+    }
+    scene.network.set_layers(layers.min(f64::from(u32::MAX)) as u64);
+    Ok(())
+}
+
+/// A lattice about as large as the graph of a packing that is still to be made.
+pub(super) fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
+    let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);
+    let across = libm::cbrt(grains as f64 / GUESSED_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;
+    let along = match scene.network.extent() {
+        Extent::Copies(copies) => copies.saturating_mul(across).min(1_000_000),
+        extent => {
+            let layer = filter.d_by_number(50.0).unwrap_or(filter.smallest_mm());
+            let thickness = extent.thickness_mm(filter.d(50.0).unwrap_or(layer));
+            thickness.map_or(USUAL_LAYERS as u32, |mm| (mm / layer).ceil().clamp(1.0, 1e6) as u32)
+        }
+    };
+    [across, across, along]
+}

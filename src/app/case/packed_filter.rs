@@ -1,0 +1,260 @@
+//! A filter that has been packed: what a walk needs of it, read from the folder that it was packed into.
+//!
+//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
+//! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
+//! may change.
+
+use std::path::{Path, PathBuf};
+
+use super::packing_plan::PackingPlan;
+use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
+use voidwalk_core::constrictions::{
+    Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit, inscribed,
+};
+use voidwalk_core::packing::{ImportError, Packing};
+use voidwalk_core::store::format::{self, from_json};
+use voidwalk_core::store::{StoreError, read_whole};
+
+/// The packing's measures; a folder that holds it is whole.
+pub const RECORD: &str = "packing.json";
+/// The grains.
+pub const GRAINS: &str = "grains.csv";
+
+/// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
+/// (`results/packing.md`).
+pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
+
+/// Grains per void of packings without friction: 0.49.
+const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
+/// The same at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6 (`results/packing.md`).
+const ROUGH_GRAINS_PER_VOID: f64 = 0.65;
+/// How far the constrictions of a packing with friction lie between circles of three and of four touching
+/// grains, from the 25th percentile on: 0.19 to 0.22 there in linear gradations and parts of C33 sand, 0.16
+/// to 0.36 in gap-graded ones; 0.19 to 0.37 at the median; 0.04 to 0.14 at the first percentile. About half
+/// as far without friction.
+const OF_FOUR: f64 = 0.2;
+
+/// A filter that has been packed: what a walk needs of it.
+#[derive(Clone, Debug)]
+pub struct PackedFilter {
+    /// Its files: the curve, and the record; `None` for a placeholder.
+    pub files: Option<[PathBuf; 2]>,
+    /// Its constriction curve (mm).
+    pub curve: Curve,
+    /// The same as CSV.
+    pub curve_csv: String,
+    /// Filter grains per void.
+    pub grains_per_void: f64,
+    /// `packing.json`, as it is.
+    pub record: Vec<u8>,
+    /// Volume of the voids by that of the grains of the filter: known where the whole was packed.
+    pub void_ratio: Option<f64>,
+    /// What part of the filter was packed, where it is not the whole.
+    pub part: Option<PackedPart>,
+    /// Where the packing was taken from, where it was made for another filter of the same shape.
+    pub same_shape: Option<SameShape>,
+    /// Share of the grains, by number, that carry no load; `None` for a placeholder.
+    pub rattlers: Option<f64>,
+    /// The grains, as CSV; `None` for a placeholder, or where a run kept the curve alone.
+    pub grains: Option<Vec<u8>>,
+}
+
+/// Why a packing's folder cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PackedError {
+    /// The grains.
+    #[error(transparent)]
+    Grains(#[from] ImportError),
+    /// The record.
+    #[error("{file}: {problem}")]
+    Record {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A file that the system fails to read.
+    #[error(transparent)]
+    Read(#[from] StoreError),
+    /// The constrictions.
+    #[error(transparent)]
+    Constrictions(#[from] ConstrictionsError),
+    /// The constriction curve.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+}
+
+impl PackedFilter {
+    /// Takes a filter from the folder that it was packed into; `None` where it has not been packed yet.
+    ///
+    /// # Errors
+    /// A folder that is damaged, or that holds another filter.
+    pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        let Some((record, read)) = read_record(folder)? else { return Ok(None) };
+        if read.fingerprint != order.fingerprint() {
+            let problem = "this is the packing of another recipe; name another folder".into();
+            return Err(PackedError::Record { file: folder.join(RECORD).display().to_string(), problem });
+        }
+        // Another filter may have the same finer part.
+        let is_of_it = read.part == order.part && read.same_shape.is_none();
+        let read = PackingRecord { part: order.part, same_shape: None, ..read };
+        Self::measured(folder, order, read, 1.0, is_of_it.then_some(record)).map(Some)
+    }
+
+    /// Takes a filter from a folder that holds packings: its own, or else one of the same shape; `None` where
+    /// there is neither.
+    ///
+    /// # Errors
+    /// A packing of it that is damaged.
+    pub fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        match Self::read(&packings.join(order.folder_name()), order)? {
+            Some(own) => Ok(Some(own)),
+            None => Self::of_same_shape(packings, order),
+        }
+    }
+
+    /// Takes a filter from a packing of the same shape, all of whose sizes are those wanted times one factor,
+    /// in a folder that holds packings; `None` where there is none. Of several the first by name is taken.
+    ///
+    /// # Errors
+    /// A packing of the same shape that is damaged.
+    pub fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+        let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
+        let own = packings.join(order.folder_name());
+        let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        folders.retain(|folder| *folder != own);
+        folders.sort();
+        for folder in folders {
+            // What is no packing, or not whole, is none of the same shape.
+            let Ok(Some((_, read))) = read_record(&folder) else { continue };
+            let points: Vec<(f64, f64)> = read.gradation.iter().map(|[d, percent]| (*d, *percent)).collect();
+            if read.fingerprint != order.fingerprint_of(&points) {
+                continue;
+            }
+            let Some(factor) = order.scale_from(&points) else { continue };
+            let same_shape = Some(SameShape { folder: folder.display().to_string(), factor });
+            let read = PackingRecord { part: order.part, same_shape, ..read.scaled(factor) };
+            return Self::measured(&folder, order, read, factor, None).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// Measures the constrictions of the grains of a folder, times `factor`; `record` is that file as it is,
+    /// where it says the same as `read`.
+    fn measured(
+        folder: &Path,
+        order: &PackingPlan,
+        read: PackingRecord,
+        factor: f64,
+        record: Option<Vec<u8>>,
+    ) -> Result<Self, PackedError> {
+        let path = folder.join(RECORD);
+        let problem = |problem: String| PackedError::Record { file: path.display().to_string(), problem };
+        let grains = folder.join(GRAINS);
+        let bytes = match read_whole(&grains) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
+                return Err(problem(format!("{} is missing", GRAINS)));
+            }
+            Err(source) => return Err(StoreError::Io { path: grains, action: "read", source }.into()),
+        };
+        if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != read.grains_xxh3 {
+            return Err(problem(format!("{} is not the file that this record was written with", GRAINS)));
+        }
+        let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
+        let packing = if factor == 1.0 { packing } else { packing.scaled(factor) };
+        let found = Constrictions::measure(&packing, order.merge_overlap)?;
+        let record = match record {
+            Some(record) => record,
+            None => format::PACKING.json(&read).map_err(|e| problem(e.to_string()))?.into_bytes(),
+        };
+        Ok(Self {
+            files: Some([folder.join("constrictions.csv"), path]),
+            curve: found.curve()?,
+            curve_csv: found.curve_csv()?,
+            grains_per_void: found.grains_per_void(),
+            void_ratio: read.part.is_none().then_some(read.after.void_ratio),
+            part: read.part,
+            same_shape: read.same_shape,
+            rattlers: Some(read.after.rattlers),
+            record,
+            grains: Some(bytes),
+        })
+    }
+
+    /// The filter whose curve a run kept in its folder, with `packing.json` beside it.
+    ///
+    /// # Errors
+    /// A file that is missing or damaged.
+    pub fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
+        let record = curve.with_file_name(RECORD);
+        let read = |path: &Path| {
+            let io = |source| StoreError::Io { path: path.to_owned(), action: "read", source };
+            read_whole(path).map_err(io)
+        };
+        let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
+        let problem = |problem: String| PackedError::Record { file: record.display().to_string(), problem };
+        let of: PackingRecord = from_json(&record_bytes).map_err(|e| problem(e.to_string()))?;
+        Ok(Self {
+            curve: Curve::from_csv_text(&curve.display().to_string(), &curve_bytes)?,
+            curve_csv: String::from_utf8_lossy(&curve_bytes).into_owned(),
+            files: Some([curve.to_owned(), record]),
+            grains_per_void,
+            record: record_bytes,
+            void_ratio: of.part.is_none().then_some(of.after.void_ratio),
+            part: of.part,
+            same_shape: of.same_shape,
+            rattlers: Some(of.after.rattlers),
+            grains: None,
+        })
+    }
+
+    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a
+    /// scene early.
+    ///
+    /// # Errors
+    /// None for a gradation that can be packed.
+    pub fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
+        // Grains that slide settle closer.
+        let loose = (order.compression.friction / 0.3).min(1.0);
+        let [dense_curve, loose_curve] = [1.0, 0.0].map(|density| inscribed(&order.gradation, density));
+        let (dense_curve, loose_curve) = (dense_curve?, loose_curve?);
+        let points: Vec<(f64, f64)> = [0.0, 1.0, 5.0, 15.0, 25.0, 40.0, 50.0, 60.0, 75.0, 90.0, 100.0]
+            .into_iter()
+            .filter_map(|percent| {
+                let (of_three, of_four) = (dense_curve.dc(percent)?, loose_curve.dc(percent)?);
+                let share = (0.5 + 0.5 * loose) * (OF_FOUR * (percent / 25.0).sqrt()).min(OF_FOUR);
+                Some((percent, of_three + share * (of_four - of_three)))
+            })
+            .collect();
+        Ok(Self {
+            files: None,
+            curve: Curve::from_points(&points, CurveUnit::Mm)?,
+            curve_csv: String::new(),
+            grains_per_void: SLIDING_GRAINS_PER_VOID
+                + loose * (ROUGH_GRAINS_PER_VOID - SLIDING_GRAINS_PER_VOID),
+            record: Vec::new(),
+            void_ratio: None,
+            part: order.part,
+            same_shape: None,
+            rattlers: None,
+            grains: None,
+        })
+    }
+}
+
+/// A packing's record, as it is and read; `None` where there is none.
+fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, PackedError> {
+    let path = folder.join(RECORD);
+    let record = match read_whole(&path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(StoreError::Io { path, action: "read", source }.into()),
+    };
+    let problem = |e: serde_json::Error| PackedError::Record {
+        file: path.display().to_string(),
+        problem: e.to_string(),
+    };
+    let read = from_json(&record).map_err(problem)?;
+    Ok(Some((record, read)))
+}

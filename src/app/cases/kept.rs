@@ -1,0 +1,155 @@
+//! What a study that is stopped or killed has found, from which the same command continues.
+//!
+//! It is a checkpoint of the folder ([`voidwalk_core::store::checkpoint`]): section `found`, a record, under
+//! a hash of everything that the study follows from. What was under way is begun again; what it says follows
+//! from its seed alone, so the whole is that of a study that nobody stopped. A batch keeps no such file: its
+//! cases are run folders, each of which continues by itself.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::run::callbacks::Callbacks;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, LATTICES, NETWORKS, clear, shown};
+use crate::run::results::json;
+use crate::run::unfinished::{self, Unfinished};
+use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
+use voidwalk_core::store::format::from_json;
+use voidwalk_core::store::{Folder, read_whole};
+
+/// What stands for all that a study follows from.
+pub(crate) fn hash_of(work: &str) -> String {
+    format!("{:032x}", xxh3_128(work.as_bytes()))
+}
+
+/// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
+/// start of it found, and not at all where all but the page of a study without cases is there. `study` writes
+/// its tables; then come its record and its page, and nothing is left to continue.
+///
+/// # Errors
+/// What is there is of another study; what the study and the folder say.
+pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
+    (folder, kind, overwrite): (&Folder, FolderKind, bool),
+    work: String,
+    callbacks: &Callbacks,
+    study: impl FnOnce(&Kept, Option<F>) -> Result<R, RunError>,
+) -> Result<R, RunError> {
+    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    let kept = Kept::new(kind, folder, &mark.work);
+    // Of a batch the cases are looked at again: each has files of its own.
+    let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite && !kind.has_cases());
+    let record = match whole {
+        Some(record) => record,
+        None => {
+            // What is to be replaced is other work: this very work that was stopped is gone on with.
+            let begun = Unfinished::read(folder)?;
+            let is_begun = begun.as_ref() == Some(&mark);
+            let found = match overwrite {
+                true if is_begun => kept.newest(callbacks).ok().flatten(),
+                true => None,
+                false => kept.newest(callbacks)?,
+            };
+            let has_cases = kind.has_cases();
+            // Of a corrupt mark nothing is known.
+            if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
+                return Err(RunError::Refused(format!(
+                    "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
+                     continue that one with its own command, name another folder or add --overwrite",
+                    shown(folder.path()),
+                    kind.name()
+                )));
+            }
+            // At no moment is one that goes on without its mark.
+            if found.is_none() && !(has_cases && is_begun) {
+                clear(folder, kind)?;
+            }
+            mark.begin(folder)?;
+            let record = study(&kept, found)?;
+            // The page is made of it.
+            folder.write(kind.record(), &json(kind.format(), &record)?)?;
+            record
+        }
+    };
+    callbacks.results(kind, folder.path(), None)?;
+    folder.remove_all(kept.files)?;
+    unfinished::end(folder)?;
+    Ok(record)
+}
+
+/// The record of a finished folder.
+///
+/// # Errors
+/// It cannot be read.
+pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
+    let path = folder.join(kind.record());
+    let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
+    let bytes = read_whole(&path).map_err(|error| failed(&error))?;
+    from_json(&bytes).map_err(|error| failed(&error))
+}
+
+/// Keeps what is found in a folder.
+pub(crate) struct Kept<'a> {
+    kind: FolderKind,
+    folder: &'a Folder,
+    identity: Identity,
+    /// The checkpoint.
+    name: &'static str,
+    files: &'static [&'static str],
+    /// What the study does one after the other, and keeps when done.
+    parts: &'static str,
+}
+
+impl<'a> Kept<'a> {
+    /// In a claimed folder, of the study that these words describe.
+    pub fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
+        let scene = hash_of(work);
+        let (name, files, parts) = match kind {
+            FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),
+            _ => ("networks", &NETWORKS, "networks"),
+        };
+        Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }
+    }
+
+    /// What an earlier start of this very study found.
+    ///
+    /// # Errors
+    /// What is there is of another study, or cannot be read.
+    fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
+        let refused = |error: CheckpointError| match error.is_unreadable() {
+            true => RunError::Checkpoint(error),
+            false => RunError::Refused(format!(
+                "{}: the unfinished {} there cannot be continued: {error}; name another folder or add \
+                 --overwrite",
+                shown(self.folder.path()),
+                self.kind.name()
+            )),
+        };
+        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(refused)?;
+        for error in passed_over {
+            (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
+        }
+        saved.map(|saved| saved.read_record("found").map_err(refused)).transpose()
+    }
+
+    /// Keeps what has been found, so many parts; the checkpoint before stays until this one is whole.
+    ///
+    /// # Errors
+    /// What the folder says.
+    pub fn keep(&self, parts: usize, found: &impl Serialize) -> Result<(), RunError> {
+        let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
+        let record = serde_json::to_vec(found)?;
+        let sections = [Section::new("found", &record)];
+        save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
+    }
+
+    /// That the study was stopped with so many of its parts done.
+    pub fn stopped(&self, done: usize, all: usize) -> RunError {
+        let (folder, parts) = (shown(self.folder.path()), self.parts);
+        RunError::Stopped(format!(
+            "after {done} of {all} {parts}, which are kept in {folder}; continue with the same command"
+        ))
+    }
+}

@@ -1,0 +1,422 @@
+//! A plan: factors that are crossed, and single cases, each a scene with a name and a seed of its own.
+//!
+//! ```toml
+//! seed = 1
+//! seeds = "common"                   # one for all cases, which share networks; each its own without it
+//! scene = "common.toml"              # settings that all cases start from; the built-in scene without it
+//! [set]
+//! replicates = 10
+//! [[factor]]                         # one setting, many values
+//! name = "cu_b"
+//! setting = "base.cu"
+//! values = [1.5, 3, 4.5]             # or range = { from = 1.5, to = 4.5, count = 3 }
+//! [[factor]]                         # or named levels, each with settings
+//! name = "filter"
+//! [factor.levels]
+//! loose = { "filter.curve" = "shire2016-cu1.5-loose" }
+//! dense = { "filter.curve" = "shire2016-cu1.5-dense" }
+//! [[leave_out]]                      # combinations that are not walked
+//! filter = "dense"
+//! cu_b = "4.5"
+//! [[case]]                           # a case outside the cross
+//! name = "site"
+//! set = { "base.sieve" = "site.csv" }
+//! ```
+//!
+//! A case is called after its levels (`filter=loose,cu_b=3`). Unless `seeds = "common"`, its seed follows
+//! from the plan's seed and that name alone: a case that is added, left out or changed changes no other.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::de::DeTable;
+
+use crate::scene::{Origin, Scene, SceneError};
+use voidwalk_core::schema::{hints, setting_name};
+use voidwalk_core::store::{folder_name, read_regular, why_not_read};
+use voidwalk_core::text::is_hidden;
+
+/// More cases than this are a mistake.
+const MOST_CASES: usize = 100_000;
+
+/// A larger plan is refused (bytes).
+const LARGEST_FILE: u64 = 1 << 20;
+
+/// What a scene has at its top, and a plan only inside `set`.
+const OF_A_SCENE: [&str; 10] =
+    ["filter", "base", "network", "packing", "record", "stop", "about", "replicates", "runs", "engine"];
+
+const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwalk run`, or name it in a \
+ plan by scene = \"FILE\" above its [[factor]] and [[case]]; settings of all cases go under [set]";
+
+const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign; two sieve tables are \
+                      judged by `voidwalk judge BASE FILTER`";
+
+/// A plan as it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(default)]
+    title: String,
+    #[serde(default = "one")]
+    seed: u64,
+    #[serde(default)]
+    seeds: Seeds,
+    scene: Option<PathBuf>,
+    #[serde(default)]
+    set: toml::Table,
+    #[serde(default)]
+    factor: Vec<Factor>,
+    #[serde(default)]
+    leave_out: Vec<BTreeMap<String, String>>,
+    #[serde(default)]
+    case: Vec<Single>,
+}
+
+fn one() -> u64 {
+    1
+}
+
+/// Which seeds the cases have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Seeds {
+    /// Each its own.
+    #[default]
+    Own,
+    /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by
+    /// chance. Cases whose filter and lattice are the same walk the same networks, each built once.
+    Common,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Factor {
+    name: String,
+    setting: Option<String>,
+    #[serde(default)]
+    values: Vec<toml::Value>,
+    range: Option<Range>,
+    #[serde(default)]
+    levels: toml::Table,
+}
+
+/// Evenly spaced values of a setting, both ends among them.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Range {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+impl Range {
+    fn values(&self) -> Result<Vec<toml::Value>, String> {
+        let Self { from, to, count } = *self;
+        if !(from.is_finite() && to.is_finite() && (2..=1000).contains(&count)) {
+            return Err("a range has two numbers, `from` and `to`, and a `count` from 2 to 1000".into());
+        }
+        let value = |index: usize| {
+            let exact = from + (to - from) * index as f64 / (count - 1) as f64;
+            // Thirds and tenths without what rounding adds.
+            let value: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
+            match value.fract() == 0.0 && value.abs() < 1e15 {
+                true => toml::Value::Integer(value as i64),
+                false => toml::Value::Float(value),
+            }
+        };
+        Ok((0..count).map(value).collect())
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Single {
+    name: String,
+    #[serde(default)]
+    set: toml::Table,
+}
+
+/// A case of a plan.
+#[derive(Clone, Debug)]
+pub struct PlannedCase {
+    /// Its name, as a user says it.
+    pub name: String,
+    /// Level by factor, in the order of the plan; empty for a case outside the cross.
+    pub levels: Vec<(String, String)>,
+    /// The scene.
+    pub scene: Scene,
+}
+
+/// A plan, its cases worked out.
+#[derive(Clone, Debug)]
+pub struct CasePlan {
+    /// What errors call it.
+    pub file: String,
+    /// What it is about, in a line.
+    pub title: String,
+    /// Factors in the order of the plan.
+    pub factors: Vec<String>,
+    /// Cases: the cross with the last factor running fastest, then the single ones.
+    pub cases: Vec<PlannedCase>,
+}
+
+/// A level of a factor: its name and settings.
+type Level = (String, Vec<String>);
+
+impl CasePlan {
+    /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
+    pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
+
+    /// Whether a file has what a plan alone has, whatever else is wrong with it.
+    pub fn is_plan(path: &Path) -> bool {
+        let bytes = read_regular(path, LARGEST_FILE).ok().flatten().unwrap_or_default();
+        hints::as_text(&bytes).is_ok_and(|text| match DeTable::parse(text) {
+            Ok(table) => hints::is_plan(table.get_ref()),
+            // No scene has a list of tables.
+            Err(_) => ["[[factor]]", "[[case]]"].iter().any(|head| text.contains(head)),
+        })
+    }
+
+    /// Reads a plan and every scene in it.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no plan, two cases of one name, a case whose settings are refused.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let io = |source| SceneError::File { file: file.clone(), source };
+        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
+        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
+            return Err(syntax(String::new(), why_not_read(path, LARGEST_FILE)));
+        };
+        Self::parse(&bytes, path)
+    }
+
+    /// [`CasePlan::read`] on the content of a file; the files that its scenes name are looked for beside
+    /// `path`.
+    ///
+    /// # Errors
+    /// As [`CasePlan::read`].
+    pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, SceneError> {
+        let file = path.display().to_string();
+        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
+        let text = hints::as_text(bytes).map_err(|problem| syntax(String::new(), problem))?;
+        let written: Written = toml::from_str(text).map_err(|e| {
+            let line = e.span().map(|span| text[..span.start.min(text.len())].matches('\n').count() + 1);
+            let hint = line.and_then(|line| hints::of_line(text, line));
+            match toml::from_str::<toml::Table>(text) {
+                Ok(table) if OF_A_SCENE.iter().any(|key| table.contains_key(*key)) => {
+                    return syntax(String::new(), SCENE.into());
+                }
+                Err(_) if hints::is_table(text) => return syntax(String::new(), NO_PLAN.into()),
+                _ => {}
+            }
+            let problem = hint.unwrap_or_else(|| e.message().to_string());
+            syntax(line.map_or(String::new(), |n| format!(", line {n}")), problem)
+        })?;
+        Self::expand(file.clone(), path, written)
+    }
+
+    fn expand(file: String, path: &Path, written: Written) -> Result<Self, SceneError> {
+        let clash = |problem: String| SceneError::Clash { file: file.clone(), problem };
+        let mut factors: Vec<(String, Vec<Level>)> = Vec::new();
+        for factor in &written.factor {
+            check_name("factor", &factor.name).map_err(clash)?;
+            if factors.iter().any(|(name, _)| *name == factor.name) {
+                return Err(clash(format!("two factors are called `{}`", factor.name)));
+            }
+            factors.push((factor.name.clone(), levels(factor).map_err(clash)?));
+        }
+        let total = factors.iter().try_fold(1usize, |n, (_, levels)| n.checked_mul(levels.len()));
+        total.filter(|n| n + written.case.len() <= MOST_CASES).ok_or_else(|| {
+            clash(format!("the factors make too many cases; at most {MOST_CASES} are allowed"))
+        })?;
+        for left_out in &written.leave_out {
+            check_left_out(left_out, &factors).map_err(clash)?;
+        }
+        let common = assignments(&written.set).map_err(clash)?;
+        let mut plan = Self {
+            title: written.title.clone(),
+            factors: factors.iter().map(|(name, _)| name.clone()).collect(),
+            cases: Vec::new(),
+            file: file.clone(),
+        };
+        let base = written.scene.as_ref().map(|scene| path.parent().unwrap_or(Path::new("")).join(scene));
+        let levels: Vec<&[Level]> = factors.iter().map(|(_, levels)| &levels[..]).collect();
+        let combinations = if factors.is_empty() { Vec::new() } else { crossed(&levels) };
+        for chosen in combinations {
+            let names = plan.factors.iter().zip(&chosen);
+            let levels: Vec<(String, String)> =
+                names.map(|(factor, (level, _))| (factor.clone(), level.clone())).collect();
+            let is_left_out = |which: &BTreeMap<String, String>| {
+                which.iter().all(|(factor, level)| levels.iter().any(|(f, l)| f == factor && l == level))
+            };
+            if written.leave_out.iter().any(is_left_out) {
+                continue;
+            }
+            let names: Vec<String> =
+                levels.iter().map(|(factor, level)| format!("{factor}={level}")).collect();
+            let chosen = chosen.into_iter().map(|(_, settings)| settings.clone());
+            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(chosen).collect();
+            plan.add(&written, base.as_deref(), names.join(","), levels, &settings)?;
+        }
+        for single in &written.case {
+            check_name("case", &single.name).map_err(clash)?;
+            let own = assignments(&single.set).map_err(clash)?;
+            plan.add(&written, base.as_deref(), single.name.clone(), Vec::new(), &[common.clone(), own])?;
+        }
+        if plan.cases.is_empty() {
+            return Err(clash("there is no case: add [[factor]] or [[case]]".into()));
+        }
+        Ok(plan)
+    }
+
+    fn add(
+        &mut self,
+        written: &Written,
+        base: Option<&Path>,
+        name: String,
+        levels: Vec<(String, String)>,
+        settings: &[Vec<String>],
+    ) -> Result<(), SceneError> {
+        if self.cases.iter().any(|case| case.name == name) {
+            let problem = format!("two cases are called `{name}`");
+            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        }
+        let folder = folder_name(&name);
+        // Large and small letters are the same to the disks of some systems.
+        let lower = folder.to_lowercase();
+        if let Some(other) = self.cases.iter().find(|case| case.folder_name().to_lowercase() == lower) {
+            let problem = format!(
+                "cases `{}` and `{name}` would share the folder {folder} on some systems: rename one",
+                other.name
+            );
+            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        }
+        let origin = Origin::Plan(self.file.clone(), name.clone());
+        let mut scene = Scene::planned(base, settings, &origin)?;
+        if !settings.iter().flatten().any(|setting| setting_name(setting) == "seed") {
+            scene.walk.seed = match written.seeds {
+                Seeds::Common => written.seed,
+                Seeds::Own => xxhash_rust::xxh3::xxh3_64_with_seed(name.as_bytes(), written.seed),
+            };
+        }
+        self.cases.push(PlannedCase { name, levels, scene });
+        Ok(())
+    }
+
+    /// Name of its file, without the folder: the same wherever the plan is walked.
+    pub fn file_name(&self) -> String {
+        let name = Path::new(&self.file).file_name();
+        name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// The case called `name`.
+    pub fn case(&self, name: &str) -> Option<&PlannedCase> {
+        self.cases.iter().find(|case| case.name == name)
+    }
+}
+
+impl PlannedCase {
+    /// Name of the folder that holds its results.
+    pub fn folder_name(&self) -> String {
+        folder_name(&self.name)
+    }
+}
+
+/// Every combination of one level of each factor, the last factor running fastest.
+pub(crate) fn crossed<'a, T>(factors: &[&'a [T]]) -> Vec<Vec<&'a T>> {
+    factors.iter().fold(vec![Vec::new()], |begun, levels| {
+        let with_levels =
+            |chosen: Vec<&'a T>| levels.iter().map(move |level| [&chosen[..], &[level]].concat());
+        begun.into_iter().flat_map(with_levels).collect()
+    })
+}
+
+/// A name that can stand in a file name, a table and a page.
+fn check_name(what: &str, name: &str) -> Result<(), String> {
+    let bad = |c: char| is_hidden(c) || "=,/\\\"'".contains(c);
+    if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {
+        return Err(format!(
+            "{what} name `{}` is not allowed; 1 to 100 characters, none of = , / \\ and quotes, no dot in \
+             front",
+            name.chars().filter(|c| !is_hidden(*c)).take(100).collect::<String>()
+        ));
+    }
+    Ok(())
+}
+
+fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
+    let name = &factor.name;
+    let of_range = factor.range.as_ref().map(Range::values).transpose();
+    let of_range = of_range.map_err(|problem| format!("factor `{name}`: {problem}"))?;
+    let values = match (of_range, factor.values.is_empty()) {
+        (Some(_), false) => return Err(format!("factor `{name}` needs either `values` or `range`")),
+        (range, _) => range.unwrap_or_else(|| factor.values.clone()),
+    };
+    let levels: Vec<Level> = match (&factor.setting, values.is_empty(), factor.levels.is_empty()) {
+        (Some(setting), false, true) => {
+            values.iter().map(|value| (word(value), vec![format!("{setting}={value}")])).collect()
+        }
+        (None, true, false) => {
+            let one = |(level, set): (&String, &toml::Value)| match set {
+                toml::Value::Table(set) => Ok((level.clone(), assignments(set)?)),
+                _ => Err(format!("factor `{name}`, level `{level}`: a table of settings is needed")),
+            };
+            factor.levels.iter().map(one).collect::<Result<_, _>>()?
+        }
+        _ => {
+            return Err(format!(
+                "factor `{name}` needs either `setting` and `values` (or `range`), or `levels`"
+            ));
+        }
+    };
+    for (index, (level, _)) in levels.iter().enumerate() {
+        check_name("level", level)?;
+        if levels[..index].iter().any(|(other, _)| other == level) {
+            return Err(format!("factor `{name}` has level `{level}` twice"));
+        }
+    }
+    Ok(levels)
+}
+
+/// A value as part of a name.
+fn word(value: &toml::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+fn assignments(set: &toml::Table) -> Result<Vec<String>, String> {
+    let one = |(name, value): (&String, &toml::Value)| match value {
+        toml::Value::Table(inner) => {
+            inner.iter().map(|(key, value)| format!("{name}.{key}={value}")).collect::<Vec<_>>()
+        }
+        _ => vec![format!("{name}={value}")],
+    };
+    Ok(set.iter().flat_map(one).collect())
+}
+
+fn check_left_out(
+    left_out: &BTreeMap<String, String>,
+    factors: &[(String, Vec<Level>)],
+) -> Result<(), String> {
+    if left_out.is_empty() {
+        return Err("a [[leave_out]] without a factor would leave out everything".into());
+    }
+    for (factor, level) in left_out {
+        let Some((_, levels)) = factors.iter().find(|(name, _)| name == factor) else {
+            return Err(format!("leave_out: there is no factor `{factor}`"));
+        };
+        if !levels.iter().any(|(name, _)| name == level) {
+            let all: Vec<&str> = levels.iter().map(|(name, _)| name.as_str()).collect();
+            return Err(format!(
+                "leave_out: factor `{factor}` has no level `{level}`; it has {}",
+                all.join(", ")
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,361 @@
+//! Walks the cases of a plan that are not done, each in a folder of its own, by as many processes as are at
+//! it.
+//!
+//! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds
+//! `case.json` with the case's fingerprint. Nothing else is shared: what a process that is killed has not
+//! saved in checkpoints is lost, and whoever comes next continues from those.
+//!
+//! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told
+//! at the end.
+//!
+//! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same
+//! time. Both write the same bits, file by file under their final names, so that costs time and nothing else.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use super::prepared::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
+use crate::case::Case;
+use crate::outcome::ledger::{LedgerLine, Made};
+use crate::run::at_once::CasesAtOnce;
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::case_walks::CaseWalks;
+use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
+use crate::run::error::{Exit, RunError};
+use crate::run::folder::{FolderKind, clear, shown};
+use crate::run::machine::on_each;
+use crate::run::planned;
+use crate::run::replicates::{self, ReplicateContext};
+use crate::run::results;
+use crate::run::shared_networks::SharedNetworks;
+use crate::run::studies::Studies;
+use voidwalk_core::store::format;
+use voidwalk_core::store::{Folder, StoreError, make_folder};
+
+/// What is said of a case whose results are gone.
+pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
+    one changed, at work on the folder?";
+
+/// How often a process looks whether others are done: at first, and after some waiting.
+const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
+
+/// How long another process may take to replace the files of a case with the same ones.
+const REPLACING: Duration = Duration::from_secs(5);
+
+/// How often results that could not be written are tried again.
+const TRIES: u32 = 3;
+
+/// What a process says of a case.
+#[derive(Clone, Copy, Debug)]
+pub enum CaseEvent<'a> {
+    /// It begins to walk it, or continues from its checkpoints.
+    Begun {
+        /// Whether there are checkpoints.
+        resumes: bool,
+    },
+    /// A run of it is done.
+    Walked {
+        /// Runs that are done.
+        done: u64,
+        /// Runs to walk, as far as is known.
+        runs: u64,
+    },
+    /// It is done.
+    Done(&'a LedgerLine),
+    /// It cannot be walked.
+    Failed(&'a str),
+    /// Another process is at it, and this one waits.
+    Waiting,
+}
+
+/// How a caller follows a campaign, and stops it.
+#[derive(Clone, Copy)]
+pub struct CaseCallbacks<'a> {
+    /// How the caller follows packings, stops the campaign and takes finished results; of walks
+    /// of single cases `on_case` is told.
+    pub run: Callbacks<'a>,
+    /// Told how many cases there are before the first is walked, and how many of them are done already.
+    pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
+    /// Told of every case that this process begins, walks a run of, has finished or waits for.
+    pub on_case: &'a (dyn Fn(&str, CaseEvent) + Sync),
+}
+
+impl Default for CaseCallbacks<'_> {
+    fn default() -> Self {
+        Self { run: Callbacks::default(), on_cases: &|_, _| {}, on_case: &|_, _| {} }
+    }
+}
+
+/// How the cases of a campaign are walked.
+pub(super) struct CaseRunner<'a> {
+    /// The campaign's folder.
+    pub out: &'a Path,
+    /// Worker threads, all cases together.
+    pub threads: usize,
+    /// Who follows the campaign.
+    pub callbacks: &'a CaseCallbacks<'a>,
+    /// How often a case that is being walked is saved.
+    pub checkpoint_interval: CheckpointInterval,
+    /// Networks, where cases with one seed may have them in common.
+    pub networks: Option<SharedNetworks>,
+    /// Job and task of a cluster.
+    pub job: Option<String>,
+    /// What a case's `manifest.json` says that it was started with.
+    pub command: String,
+}
+
+impl CaseRunner<'_> {
+    /// Walks every case that is not done, and waits for those that other processes are at; gives those that
+    /// cannot be walked.
+    ///
+    /// # Errors
+    /// What concerns all cases; those that are done stay done.
+    pub fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
+        make_folder(&self.out.join(CASES))?;
+        let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
+            cases.iter().partition(|case| self.is_done(case));
+        for case in done {
+            // A process that was killed as soon as the case was done left them.
+            checkpoints::discard(&self.out.join(case.folder()))?;
+        }
+        let tally = Tally::default();
+        let mut look = LOOK.0;
+        while !open.is_empty() {
+            let (before, told) = (open.len(), tally.waited());
+            self.pass(&open, &tally)?;
+            // A case that this process has finished and that is not there any more was overwritten: by
+            // another plan, or by a plan that was changed meanwhile.
+            open.retain(|case| !self.is_done(case));
+            let lost =
+                open.iter().filter(|case| tally.has_finished(&case.planned.name) && self.is_lost(case));
+            lost.for_each(|case| tally.fail(self.callbacks, &case.planned.name, LOST.into()));
+            open.retain(|case| !tally.has_failed(&case.planned.name) && !self.is_done(case));
+            if self.is_stopped() && !open.is_empty() {
+                return Err(RunError::Stopped(format!(
+                    "progress saved; continue with the same command on {}",
+                    shown(self.out)
+                )));
+            }
+            if tally.waited() > told && open.len() == before {
+                let until = Instant::now() + look;
+                while Instant::now() < until && !self.is_stopped() {
+                    std::thread::sleep(LOOK.0);
+                }
+                look = (look * 2).min(LOOK.1);
+            } else {
+                look = LOOK.0;
+            }
+        }
+        Ok(tally.failed.into_inner().unwrap_or_default())
+    }
+
+    /// Whether a case that was finished stays gone: where locks reach one machine only, another process may
+    /// be replacing its files with the same ones at this moment.
+    pub(super) fn is_lost(&self, case: &PreparedCase) -> bool {
+        let until = Instant::now() + REPLACING;
+        while !self.is_done(case) {
+            if Instant::now() >= until {
+                return true;
+            }
+            std::thread::sleep(LOOK.0);
+        }
+        false
+    }
+
+    fn is_done(&self, case: &PreparedCase) -> bool {
+        case.line(self.out).is_some()
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.callbacks.run.is_stopped()
+    }
+
+    fn warn(&self, name: &str, problem: &str) {
+        (self.callbacks.run.warn)(&format!("case {name}: {problem}"));
+    }
+
+    /// Tries each case once.
+    fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
+        let next = AtomicUsize::new(0);
+        // One pool for all: where a case leaves a thread idle, another case has work for it.
+        // A thread that waits in a call of rayon may take up a whole other case meanwhile: across such a call
+        // nobody holds a mutex, waits for the lock of a file or borrows what is local to a thread.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
+        let work = || -> Result<(), RunError> {
+            while !self.is_stopped() {
+                let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
+                let name = &case.planned.name;
+                // A fault in one case is no fault of the others.
+                let walked = catch_unwind(AssertUnwindSafe(|| pool.install(|| self.one(case))));
+                match walked.unwrap_or_else(|panic| Err(fault(&*panic))) {
+                    Err(RunError::Store(StoreError::Held { .. })) => tally.wait(self.callbacks, name),
+                    Err(problem) if problem.is_of_files() && tally.may_try_again(name) => {}
+                    Err(problem) => tally.fail(self.callbacks, name, problem.to_string()),
+                    Ok(true) => drop(tally.finished.lock().map(|mut names| names.insert(name.clone()))),
+                    Ok(false) => {}
+                }
+            }
+            Ok(())
+        };
+        let cases: Vec<&Case> = open.iter().map(|prepared| &prepared.case).collect();
+        let at_once = CasesAtOnce::here(&cases, self.threads as u64).cases;
+        on_each(at_once as usize, work)
+    }
+
+    /// Claims one case and walks it into its folder; says whether it was this process that finished it.
+    fn one(&self, case: &PreparedCase) -> Result<bool, RunError> {
+        let folder = Folder::open(&self.out.join(case.folder()))?;
+        // Opening the list of its files asks a server anew, which an open of one file that was missing before
+        // may not.
+        drop(std::fs::read_dir(folder.path()));
+        folder.remove(PROBLEM)?;
+        // Another process may have finished it since the list was made.
+        if self.is_done(case) {
+            return Ok(false);
+        }
+        match self.walk(case, &folder) {
+            // Where locks reach one machine only, another may have finished it and taken the checkpoints
+            // away.
+            Err(_) if self.is_done(case) => {
+                checkpoints::discard(folder.path())?;
+                Ok(false)
+            }
+            Err(problem) => {
+                // What cannot be written here is told all the same.
+                let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
+                Err(problem)
+            }
+            walked => walked,
+        }
+    }
+
+    /// Walks one case into its folder, on the threads that it is called on.
+    fn walk(&self, prepared: &PreparedCase, folder: &Folder) -> Result<bool, RunError> {
+        let (name, case) = (&prepared.planned.name, &prepared.case);
+        replicates::have_networks(case, &self.callbacks.run)?;
+        let resumes = Checkpoints::is_in(folder.path())?;
+        (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
+        let (begun, started) = (Instant::now(), SystemTime::now());
+        let checkpoints = Checkpoints::new(folder, &prepared.fingerprint, self.checkpoint_interval)?;
+        let runs = Mutex::new([0, planned::runs_to_walk(case)]);
+        let count = |event: Event| {
+            let Ok(mut runs) = runs.lock() else { return };
+            match event {
+                Event::RunDone => runs[0] += 1,
+                Event::MoreRuns { runs: more } => runs[1] += more,
+                _ => return,
+            }
+            let [done, runs] = *runs;
+            (self.callbacks.on_case)(name, CaseEvent::Walked { done, runs });
+        };
+        let stop = self.callbacks.run.stop;
+        let counting = Callbacks { on_event: &count, stop, ..Callbacks::default() };
+        let (callbacks, networks) = (&counting, self.networks.as_ref());
+        let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks };
+        let walked = CaseWalks::walk(case, &context)
+            .and_then(|walks| Ok((Studies::walk(case, &walks, &context)?, walks)));
+        for problem in checkpoints.passed_over() {
+            self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
+        }
+        let (studies, walks) = match walked {
+            Err(error) if error.exit() == Exit::Stopped => {
+                checkpoints.flush()?;
+                return Ok(false);
+            }
+            // Of what the case was before the plan was changed, or corrupt: it is walked from its start.
+            Err(error @ RunError::Checkpoint(_)) if error.exit() == Exit::Refused => {
+                self.warn(name, &format!("{error}; the case is walked from its start"));
+                checkpoints.clear()?;
+                return Ok(false);
+            }
+            other => other?,
+        };
+        if self.is_done(prepared) {
+            checkpoints.clear()?;
+            return Ok(false);
+        }
+        let seconds = begun.elapsed().as_secs_f64();
+        let threads = rayon::current_num_threads() as u64;
+        let answer = results::outcome(case, &case.notes(), &walks, studies, seconds);
+        let manifest = results::manifest(case, threads, started, self.command.clone());
+        let (host, started, job) = (manifest.host.clone(), manifest.started.clone(), self.job.clone());
+        let made = Made { host, threads, job, started, seconds };
+        let place = prepared.folder().display().to_string();
+        let fingerprint = prepared.fingerprint.clone();
+        let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &answer.0, made);
+        let files = results::files(case, answer, &walks.replicates, manifest)?;
+        folder.remove(LINE)?;
+        // Results of what the case was before the plan was changed; another process that walks this very case
+        // has written this very scene, and its files stay.
+        if folder.read("scene.toml")?.as_deref() != Some(files.scene.as_bytes()) {
+            clear(folder, FolderKind::Run)?;
+        }
+        results::write_scene(folder, case)?;
+        results::write(folder, case, &files)?;
+        self.callbacks.run.results(FolderKind::Run, folder.path(), Some(files))?;
+        folder.write(LINE, &results::json(format::CASE, &line)?)?;
+        checkpoints.clear()?;
+        (self.callbacks.on_case)(name, CaseEvent::Done(&line));
+        Ok(true)
+    }
+}
+
+/// What a panic says.
+fn fault(panic: &(dyn std::any::Any + Send)) -> RunError {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say which");
+    RunError::failed(format!("a fault of the program: {text}"))
+}
+
+/// What this process has done so far.
+#[derive(Default)]
+struct Tally {
+    finished: Mutex<BTreeSet<String>>,
+    failed: Mutex<Vec<FailedCase>>,
+    waiting: Mutex<BTreeSet<String>>,
+    waits: AtomicUsize,
+    tries: Mutex<BTreeMap<String, u32>>,
+}
+
+impl Tally {
+    fn has_finished(&self, name: &str) -> bool {
+        self.finished.lock().is_ok_and(|names| names.contains(name))
+    }
+
+    fn has_failed(&self, name: &str) -> bool {
+        self.failed.lock().is_ok_and(|all| all.iter().any(|failed| failed.case == name))
+    }
+
+    fn waited(&self) -> usize {
+        self.waits.load(Ordering::Relaxed)
+    }
+
+    fn fail(&self, callbacks: &CaseCallbacks, name: &str, problem: String) {
+        (callbacks.on_case)(name, CaseEvent::Failed(&problem));
+        if let Ok(mut failed) = self.failed.lock() {
+            failed.push(FailedCase { case: name.to_owned(), problem });
+        }
+    }
+
+    /// Whether results that could not be written may be tried again: where locks reach one machine only,
+    /// another process may have been replacing the same files. What was walked is not walked again.
+    fn may_try_again(&self, name: &str) -> bool {
+        self.waits.fetch_add(1, Ordering::Relaxed);
+        let Ok(mut tries) = self.tries.lock() else { return false };
+        let tries = tries.entry(name.to_owned()).or_default();
+        *tries += 1;
+        *tries <= TRIES
+    }
+
+    /// Another process is at the case; said once.
+    fn wait(&self, callbacks: &CaseCallbacks, name: &str) {
+        self.waits.fetch_add(1, Ordering::Relaxed);
+        if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {
+            (callbacks.on_case)(name, CaseEvent::Waiting);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! `voidwalk check`: what a run would do.
+
+use std::fmt::Write;
+
+use super::args::{SceneArgs, SettingArgs};
+use super::check_plan::check_plan;
+use super::print::{as_it_is, json, plain, to_stdout};
+use crate::cases::CasePlan;
+use crate::run::cost::duration;
+use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
+use crate::scene::Scene;
+use crate::words::grading;
+use crate::words::left_out::left_out;
+use crate::words::sentence;
+use voidwalk_core::constrictions::shipped;
+use voidwalk_core::store::format;
+use voidwalk_practice::quantity::{SizeUnit, whole};
+
+impl SettingArgs {
+    /// How the scene is prepared.
+    pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
+        PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
+    }
+}
+
+impl SceneArgs {
+    /// The scene that the arguments name, with their settings applied.
+    pub fn scene(&self) -> Result<Scene, RunError> {
+        let settings = &self.set.settings.assignments;
+        Ok(match &self.scene {
+            Some(path) => Scene::read(path, settings)?,
+            None => Scene::built_in(settings)?,
+        })
+    }
+}
+
+/// Says what a run would do, or the cases of a plan.
+pub fn check(args: &SceneArgs) -> Result<(), RunError> {
+    if let Some(plan) = args.scene.as_deref().filter(|file| CasePlan::is_plan(file)) {
+        return check_plan(plan, &args.set);
+    }
+    let check = run::check(args.scene()?, &args.set.prepare(None))?;
+    if args.set.json {
+        as_it_is(&json(format::CHECK, &check)?);
+    } else {
+        to_stdout(&words(&check));
+    }
+    check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))
+}
+
+fn words(check: &Check) -> String {
+    let (filter, base, network) = (&check.inputs.filter, &check.inputs.base, &check.inputs.network);
+    let in_unit = SizeUnit::of(check.inputs.scale_free, false);
+    let unit = in_unit.short();
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<22}{}", plain(&value));
+    };
+    line("filter", format!("{}, curve {}", filter.name, filter.curve_name));
+    let [d0, d15, d85] = [filter.d0_mm, filter.d15_mm, filter.d85_mm];
+    line("  sizes", format!("D0 {d0:.4}, D15 {d15:.4}, D85 {d85:.4} {unit}"));
+    let at = |point: Option<&[f64; 2]>| point.map_or(f64::NAN, |[size, _]| *size);
+    let (dc0, dc100) = (at(filter.constrictions.first()), at(filter.constrictions.last()));
+    line("  constrictions", format!("Dc0 {dc0:.4}, Cu_CSD {:.3}, to {dc100:.4} {unit}", filter.cu_csd));
+    if let Some(packing) = &check.packing {
+        line("  packing", packing_words(packing));
+    }
+    line("base", base.name.clone());
+    let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
+    let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
+    line("  sizes", format!("D0 {d0:.4}, D85 {d85:.4}, D95 {d95:.4}, D100 {d100:.4} {unit}{grading}"));
+    if let Some(before) = &base.as_sampled {
+        let size = |size: Option<f64>| size.map_or("unknown".into(), |mm| format!("{mm:.4}"));
+        let [d85, d95] = [before.d85_mm, before.d95_mm].map(size);
+        line("  as sampled", format!("D85 {d85}, D95 {d95}, D100 {:.4} mm", before.d100_mm));
+    }
+    let ratios = &check.ratios;
+    line(
+        "ratios",
+        format!("D15F/D85B {:.3}, D15F/D95B {:.3}{grading}", ratios.d15f_over_d85b, ratios.d15f_over_d95b),
+    );
+    let rounded = |grains: f64| (grains * 1e4).round() / 1e4;
+    let given = |value: Option<f64>| value.map_or("not given".to_string(), |v| format!("{v}"));
+    line(
+        "grains per void",
+        format!("{} (N_p / N_voids of Eq. 2)", given(check.grains_per_void.map(rounded))),
+    );
+    line("mass ratio", format!("{} (base over filter)", given(check.mass_ratio)));
+    let capped = match check.capped {
+        true => format!(", capped from {} by Eq. (2)", whole(check.n_base_eq2.unwrap_or(0))),
+        false => String::new(),
+    };
+    line("base particles", format!("{} a run{capped}", whole(check.n_base)));
+    let one_by_one = match check.one_by_one {
+        all if all == check.n_base => "all".into(),
+        some => format!("at most about {}; the others are passive: their numbers are followed", whole(some)),
+    };
+    line("  one by one", one_by_one);
+    let [voids, constrictions, starts] =
+        [network.voids, network.constrictions, network.start_nodes].map(whole);
+    let name = &network.name;
+    line("network", format!("{name}: {voids} voids, {constrictions} constrictions, {starts} start nodes"));
+    let (runs, increments) = (check.runs_to_walk, check.increments);
+    line("to walk", format!("{runs} runs, at most {increments} increments of insertion each"));
+    line("memory", check.memory.clone());
+    if let Some(packing) = &check.packing {
+        line("time to pack", packing_time(packing));
+    }
+    line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
+    for part in &check.left_out {
+        line("left out", left_out(part, unit));
+    }
+    for note in &check.notes {
+        line("note", sentence(note, in_unit));
+    }
+    let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
+    line("shipped curves", names.join(", "));
+    text
+}
+
+fn packing_words(packing: &PackingCheck) -> String {
+    let (grains, folder) = (whole(packing.grains), packing.folder.display());
+    match packing.is_made {
+        true => format!("{grains} grains, made already: {folder}"),
+        false => format!(
+            "{grains} grains, still to be made, in {folder}; until then constrictions and grains per void \
+             are guesses"
+        ),
+    }
+}
+
+fn packing_time(packing: &PackingCheck) -> String {
+    let (time, steps) = (duration(packing.core_seconds), whole(packing.steps));
+    match packing.is_made {
+        true => "none: the packing is made already".into(),
+        false => format!("about {time} of one core, a rough guess: some {steps} steps, once"),
+    }
+}

@@ -1,0 +1,150 @@
+//! The command line: it parses, calls the library and prints, and is the only place that does.
+//!
+//! How it ends is said in one table, `EXIT_CODES` (`exit.rs`).
+
+mod args;
+mod batch;
+mod boundary;
+mod campaign;
+mod case_progress;
+mod check;
+mod check_plan;
+mod constrictions;
+mod design;
+mod design_each;
+mod examples;
+mod exit;
+mod export;
+mod groups;
+mod init;
+mod judge;
+mod judge_each;
+mod mistakes;
+mod pack;
+mod percolation;
+mod print;
+mod progress;
+mod report;
+mod rules;
+mod run;
+mod schemas;
+#[cfg(feature = "serve")]
+mod serve;
+mod setting_options;
+mod shared_args;
+mod shell;
+mod soil;
+mod start;
+mod study_args;
+mod values;
+mod write_examples;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::FromArgMatches;
+
+use crate::run::{Exit, RunError};
+use args::{Arguments, Command};
+pub use report::page;
+pub use schemas::schema;
+use start::START;
+pub use start::Start;
+
+/// The system's number of the error that a file is not there: the same on Unix and Windows.
+const NO_FILE: i32 = 2;
+
+/// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
+fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
+    if words.len() < 2 {
+        print::to_stderr(examples::FIRST_WORDS);
+        return Err(Exit::Refused.code());
+    }
+    let command = examples::command();
+    let read = command.clone().try_get_matches_from(words);
+    read.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| {
+        let error = mistakes::explained(error, &command, words);
+        if error.use_stderr() {
+            let _ = error.print();
+        } else {
+            print::by_stdout(|| error.print());
+        }
+        u8::try_from(error.exit_code()).unwrap_or(Exit::Refused.code())
+    })
+}
+
+/// Runs the program with the arguments of this process.
+pub fn main() -> ExitCode {
+    ExitCode::from(main_with(Start { words: std::env::args_os().collect(), again: None }))
+}
+
+/// Runs the program, once a process: its exit code. For whoever holds the command line in a library.
+pub fn main_with(start: Start) -> u8 {
+    voidwalk_core::store::platform::signals::outlive_large_files();
+    voidwalk_core::store::platform::allocator::keep_memory();
+    let words = &START.get_or_init(|| start).words;
+    let code = match arguments(words) {
+        Ok(arguments) => told(command(arguments), words),
+        Err(code) => code,
+    };
+    match print::whole_stdout() {
+        Err(lost) if [0, Exit::NotAccepted.code()].contains(&code) => told(Err(lost), words),
+        _ => code,
+    }
+}
+
+/// Runs a command.
+fn command(arguments: Arguments) -> Result<(), RunError> {
+    match arguments.command {
+        Command::Run(args) => run::run(&args),
+        Command::Judge(args) => judge::judge(&args),
+        #[cfg(feature = "serve")]
+        Command::Serve(args) => serve::serve(&args),
+        Command::Resume(args) => run::resume(&args),
+        Command::Soil(args) => soil::soil(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Init { path, plan, json, schema } => init::init(path.as_deref(), plan, json, schema),
+        Command::Examples { folder } => write_examples::examples(&folder),
+        Command::Design(args) => design::design(&args),
+        Command::Boundary(args) => boundary::boundary(&args),
+        Command::Campaign(args) => campaign::campaign(&args),
+        Command::Pack(args) => pack::pack(&args),
+        Command::Constrictions(args) => constrictions::constrictions(&args),
+        Command::Rules(args) => rules::rules(&args),
+        Command::Percolation(args) => percolation::percolation(&args),
+        Command::Report { folder } => report::report(&folder),
+        Command::Export { folder } => export::export(&folder),
+        Command::Completions { shell } => {
+            shell::completions(shell);
+            Ok(())
+        }
+        Command::Man { folder } => shell::man(&folder),
+    }
+}
+
+/// Tells on stderr why a command ended early: its exit code.
+fn told(done: Result<(), RunError>, words: &[OsString]) -> u8 {
+    let Err(error) = done else { return 0 };
+    let exit = error.exit();
+    let kind = match exit {
+        Exit::Refused => "refused",
+        Exit::Stopped => "stopped",
+        Exit::Failed => "error",
+        Exit::NotAccepted => "not accepted",
+    };
+    // Messages name files and values that may hold anything.
+    let mut text = error.to_string();
+    let meant = match exit {
+        Exit::Refused => {
+            let no_file = std::io::Error::from_raw_os_error(NO_FILE).to_string();
+            mistakes::instead_of_files(words, text.contains(&no_file))
+        }
+        _ => None,
+    };
+    for more in error.advice().map(String::from).into_iter().chain(meant) {
+        text = format!("{text}\n{more}");
+    }
+    let lines: Vec<String> = text.lines().map(print::plain).collect();
+    print::to_stderr(&format!("{kind}: {}\n", lines.join("\n")));
+    exit.code()
+}

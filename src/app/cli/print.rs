@@ -1,0 +1,116 @@
+//! Printing that outlives a closed pipe, and remembers what else was lost.
+
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use std::sync::OnceLock;
+
+use serde::Serialize;
+
+use crate::run::RunError;
+use voidwalk_core::store::format::Format;
+pub use voidwalk_core::text::plain;
+use voidwalk_core::text::shell_word;
+use voidwalk_practice::quantity::THIN;
+pub use voidwalk_practice::quantity::{percent, whole};
+
+/// The first failure to write to stdout.
+static LOST: OnceLock<String> = OnceLock::new();
+
+/// Prints words to stdout; [`whole_stdout`] tells of a failure.
+pub fn to_stdout(text: &str) {
+    as_it_is(&on_a_terminal(text));
+}
+
+/// Prints a record to stdout, likewise.
+pub fn as_it_is(text: &str) {
+    by_stdout(|| io::stdout().write_all(text.as_bytes()));
+}
+
+/// Words with spaces that every terminal has and every search finds.
+fn on_a_terminal(text: &str) -> String {
+    text.replace(THIN, " ")
+}
+
+/// Prints to stdout by a function, likewise.
+pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
+    let printed = print().and_then(|()| io::stdout().flush());
+    // A reader that has left is no fault of ours.
+    if let Some(error) = printed.err().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
+        LOST.get_or_init(|| error.to_string());
+    }
+}
+
+/// Confirms that all of stdout was written.
+///
+/// # Errors
+/// A part of it was not, other than to a closed pipe.
+pub fn whole_stdout() -> Result<(), RunError> {
+    LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
+}
+
+/// Prints to stderr, where nothing can tell of a failure.
+pub fn to_stderr(text: &str) {
+    let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
+}
+
+/// A word of a command that is shown to be copied.
+pub fn to_copy(word: impl AsRef<Path>) -> String {
+    plain(&shell_word(&word.as_ref().display().to_string()))
+}
+
+/// A path made safe for a terminal.
+pub fn shown(path: &Path) -> String {
+    plain(&path.display().to_string())
+}
+
+/// A record in its form, as its file says it.
+pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
+    Ok(format.json(record)?)
+}
+
+/// A count and what is counted, one or many: `1 replicate`.
+pub fn counted(n: u64, one: &str, many: &str) -> String {
+    format!("{} {}", whole(n), if n == 1 { one } else { many })
+}
+
+/// Grains per void, or that they are not given.
+pub fn grains_per_void(grains: Option<f64>) -> String {
+    match grains {
+        Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
+        None => "grains per void not given".into(),
+    }
+}
+
+/// Widest line (characters).
+const WIDTH: usize = 100;
+
+/// A text in lines that begin with so many spaces.
+pub fn wrapped(text: &str, indent: usize) -> Vec<String> {
+    let indent = " ".repeat(indent);
+    let mut lines = vec![indent.clone()];
+    for word in text.split_whitespace() {
+        let last = lines.last().expect("there is a line");
+        if last.chars().count() + word.chars().count() >= WIDTH && last.len() > indent.len() {
+            lines.push(indent.clone());
+        }
+        let last = lines.last_mut().expect("there is a line");
+        if last.len() > indent.len() {
+            last.push(' ');
+        }
+        last.push_str(word);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_and_names_read_well() {
+        assert!(wrapped(&"word ".repeat(60), 13).iter().all(|line| line.len() < WIDTH));
+        assert_eq!(counted(1, "replicate", "replicates"), "1 replicate");
+        assert_eq!(counted(12_000, "replicate", "replicates"), "12\u{202f}000 replicates");
+        assert_eq!(plain("a\u{1b}[31mb"), "a\u{fffd}[31mb");
+    }
+}

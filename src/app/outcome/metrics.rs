@@ -1,0 +1,350 @@
+//! The numbers of one run at its end, and its rows of the CSV files.
+
+use super::record::{BlockedRow, FlowRow, LayerRow, RetainedRow, Run, SeriesRow, SizeRow};
+use super::recorder::Recorder;
+use super::verdict::{below_by_count, below_by_mass};
+use super::{by_connectivity, by_void};
+use voidwalk_core::network::{NO_LAYER, Network};
+use voidwalk_core::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
+
+/// A run of a replicate, and what its numbers are given by.
+#[derive(Clone, Copy, Debug)]
+pub struct RunId {
+    /// Replicate, counted from 1.
+    pub replicate: u64,
+    /// Run, counted from 1.
+    pub run: u64,
+    /// D15F (mm).
+    pub d15f_mm: f64,
+    /// Pan fraction of the base by mass: what is finer than the finest sieve.
+    pub pan_fraction: f64,
+}
+
+/// The numbers of one run at its end.
+#[derive(Clone, Debug)]
+pub struct RunMetrics {
+    /// Its entry of `outcome.json`.
+    pub run: Run,
+    /// Whether less than 7.5 % of the mass eroded.
+    pub below_threshold: bool,
+}
+
+/// Rows of the CSV files of one run.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Recorded {
+    /// Rows of `series.csv`.
+    pub series: Vec<SeriesRow>,
+    /// Rows of `layers.csv`.
+    pub layers: Vec<LayerRow>,
+    /// Rows of `retained.csv`.
+    pub retained: Vec<SizeRow>,
+    /// Rows of `eroded.csv`.
+    pub eroded: Vec<SizeRow>,
+    /// Rows of `flow.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub flow: Vec<FlowRow>,
+    /// Rows of `retained_by_void.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub voids: Vec<RetainedRow>,
+    /// Rows of `blocked.csv`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocked: Vec<BlockedRow>,
+}
+
+/// Mass eroded over the mass that the run inserts in all.
+///
+/// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the
+/// base has none.
+fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
+    let sized = match end.inserted_mass > 0.0 {
+        // The same masses added in two orders may differ in their last bits.
+        true => (tally.eroded_mass / end.inserted_mass).min(1.0),
+        false => 0.0,
+    };
+    if pan_fraction == 0.0 {
+        return sized;
+    }
+    let of_pan = match end.passive_inserted {
+        0 => tally.inserted as f64 / end.inserted.max(1) as f64,
+        n => tally.passive_eroded as f64 / n as f64,
+    };
+    (1.0 - pan_fraction) * sized + pan_fraction * of_pan
+}
+
+/// What a finished run eroded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eroded {
+    /// Mass eroded over the mass inserted.
+    pub mass_fraction: f64,
+    /// Whether less than 7.5 % of the mass eroded.
+    pub below_threshold: bool,
+}
+
+impl Eroded {
+    /// Of a run that has ended, of a base with this pan fraction by mass only.
+    pub fn of(state: &State, pan_fraction: f64) -> Self {
+        let tally = &state.tally;
+        let mass_fraction = eroded_mass_fraction(tally, tally, pan_fraction);
+        let one_size = state.classes.upper().len() == 1 && pan_fraction == 0.0;
+        let below_threshold = match one_size {
+            true => below_by_count(tally.eroded, tally.inserted),
+            false if pan_fraction == 0.0 => below_by_mass(tally.eroded_mass, tally.inserted_mass),
+            false => below_by_mass(mass_fraction, 1.0),
+        };
+        Self { mass_fraction, below_threshold }
+    }
+}
+
+impl RunMetrics {
+    /// The numbers of a finished run, which took `seconds` of wall time, on the network as it was at its end.
+    pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, of: RunId, seconds: f64) -> Self {
+        let tally = &state.tally;
+        let Eroded { mass_fraction: eroded_mass_fraction, below_threshold } =
+            Eroded::of(state, of.pan_fraction);
+        let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
+        let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
+        let [deepest, most] = retained_layers(network, state);
+        let fullness = Fullness::of(network, state);
+        let run = Run {
+            run: of.run,
+            eroded_mass_fraction,
+            eroded_number_fraction: tally.eroded as f64 / tally.inserted.max(1) as f64,
+            largest_eroded_mm: largest_mm,
+            largest_eroded_over_d15f: largest_mm.map(|d| d / of.d15f_mm),
+            blocked: tally.blocked,
+            blocked_fraction: tally.blocked as f64 / network.passages().max(1) as f64,
+            blocked_first_three_layers_fraction: blocked_first_layers(network, state, 3),
+            backbone_fraction: network.backbone_fraction(|c| !state.is_closed(network, c)),
+            inserted: tally.inserted,
+            eroded: tally.eroded,
+            retained_in_constrictions: tally.retained_in_constrictions,
+            retained_in_arches: (tally.arches > 0).then_some(tally.retained_in_arches),
+            arches: (tally.arches > 0).then_some(tally.arches),
+            arched_mass_fraction: (tally.arches > 0).then(|| tally.arched_mass / tally.inserted_mass),
+            retained_in_voids: tally.retained_in_voids,
+            trapped: tally.trapped,
+            retained_per_void: retained as f64 / network.filter_voids() as f64,
+            deepest_retained_layer: deepest,
+            retained_95_layer: most,
+            increments: state.increment,
+            particle_moves: tally.particle_moves - free_entries(network, state),
+            k_over_k0: flow.and_then(|flow| flow.solutions.last()).map(|solution| solution.k_over_k0),
+            flow_solutions: flow.map(|flow| flow.solutions.len() as u64),
+            flow_closed_most: flow.map(|flow| flow.solutions.iter().map(|of| of.closed).fold(0.0, f64::max)),
+            k0_mm2: flow.and_then(|flow| flow.k0_mm2),
+            fullness_max: fullness.max,
+            overfull_fraction: fullness.overfull_fraction,
+            by_connectivity: by_connectivity::of_run(network, state),
+            seconds,
+        };
+        Self { run, below_threshold }
+    }
+}
+
+impl Recorded {
+    /// The rows of a finished run.
+    pub fn new(
+        network: &Network,
+        state: &State,
+        flow: Option<&FlowRecord>,
+        recorder: &Recorder,
+        of: RunId,
+    ) -> Self {
+        let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment: *increment,
+            inserted: tally.inserted,
+            moving: tally.moving,
+            eroded: tally.eroded,
+            retained_in_constrictions: tally.retained_in_constrictions,
+            retained_in_voids: tally.retained_in_voids,
+            trapped: tally.trapped,
+            blocked: tally.blocked,
+            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.pan_fraction),
+        });
+        let flow = flow.iter().flat_map(|flow| &flow.solutions).map(|solution| FlowRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment: solution.increment,
+            k_over_k0: solution.k_over_k0,
+            closed_flow_fraction: solution.closed,
+        });
+        let mut recorded = Self {
+            series: series.collect(),
+            layers: layers(network, state, of),
+            flow: flow.collect(),
+            // What no void was recorded with, nobody asked for.
+            blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
+            voids: by_void::of_filter(network, &recorder.voids),
+            ..Self::default()
+        };
+        for (increment, retained, eroded) in &recorder.sizes {
+            let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), of, *increment);
+            recorded.retained.extend(row(retained));
+            recorded.eroded.extend(row(eroded));
+        }
+        recorded
+    }
+
+    /// Adds the rows of a later run or replicate.
+    pub fn append(&mut self, mut later: Self) {
+        self.series.append(&mut later.series);
+        self.layers.append(&mut later.layers);
+        self.retained.append(&mut later.retained);
+        self.eroded.append(&mut later.eroded);
+        self.flow.append(&mut later.flow);
+        self.voids.append(&mut later.voids);
+        self.blocked.append(&mut later.blocked);
+    }
+}
+
+/// A void is overfull above this part of its volume: no packing of the particles in it is denser.
+const OVERFULL: f64 = 0.6;
+
+/// How full the voids of a network are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Fullness {
+    /// Retained volume over volume of the fullest void that has a volume.
+    max: Option<f64>,
+    /// Share of the voids that are overfull.
+    overfull_fraction: Option<f64>,
+}
+
+impl Fullness {
+    /// Of a finished run; nothing where volumes are not known.
+    fn of(network: &Network, state: &State) -> Self {
+        match state.passive.expected() {
+            // Of an expectation only the number by void is known.
+            Some(_) => Self::default(),
+            None => Self::of_voids(network.volumes(), &state.retained_cubes),
+        }
+    }
+
+    /// Of voids with these volumes and sums of the diameters cubed of what rests in them. A void without a
+    /// volume has room for nothing: it is overfull with anything, and by how much cannot be said.
+    fn of_voids(volumes: &[f64], cubes: &[f64]) -> Self {
+        let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
+            true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
+            true => f64::INFINITY,
+            false => 0.0,
+        };
+        let fullness: Vec<f64> = volumes.iter().zip(cubes).map(full).collect();
+        let overfull = fullness.iter().filter(|&&full| full > OVERFULL).count();
+        Self {
+            max: fullness.iter().copied().filter(|full| full.is_finite()).reduce(f64::max),
+            overfull_fraction: (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64),
+        }
+    }
+}
+
+/// Moves out of the reservoir through ways in that are no constrictions: coming in is no move.
+fn free_entries(network: &Network, state: &State) -> u64 {
+    match network.reservoir().filter(|_| network.entry_is_free()) {
+        Some(r) => state.tally.inserted - state.retained_in_voids[r as usize],
+        None => 0,
+    }
+}
+
+/// The deepest layer with a retained particle, and the one down to which 95 % of those that a layer retains
+/// lie.
+fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
+    let mut by_layer = vec![0u64; network.layers()];
+    for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
+        by_layer[layer as usize] += state.retained_in_constrictions[void] + state.retained_in_voids[void];
+    }
+    let all: u128 = by_layer.iter().map(|&n| u128::from(n)).sum();
+    let mut down_to = 0u128;
+    let most = by_layer.iter().position(|&n| {
+        down_to += u128::from(n);
+        all > 0 && down_to * 100 >= all * 95
+    });
+    [by_layer.iter().rposition(|&n| n > 0), most].map(|layer| layer.map(|l| l as u64))
+}
+
+fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
+    let (mut blocked, mut all) = (0u64, 0u64);
+    for void in (0..network.voids() as u32).filter(|&v| network.layer_of()[v as usize] < layers) {
+        let exits = network.exits(void).filter(|&c| network.counts(c));
+        all += exits.clone().count() as u64;
+        blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
+    }
+    blocked as f64 / all.max(1) as f64
+}
+
+fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
+    let row = |layer| LayerRow {
+        replicate: of.replicate,
+        run: of.run,
+        layer,
+        constrictions: 0,
+        blocked: 0,
+        retained_in_constrictions: 0,
+        retained_in_voids: 0,
+    };
+    let mut rows: Vec<LayerRow> = (0..network.layers() as u64).map(row).collect();
+    for void in 0..network.voids() {
+        let layer = network.layer_of()[void];
+        if layer == NO_LAYER {
+            continue;
+        }
+        let row = &mut rows[layer as usize];
+        let exits = network.exits(void as u32).filter(|&c| network.counts(c));
+        row.constrictions += exits.clone().count() as u64;
+        row.blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
+        row.retained_in_constrictions += state.retained_in_constrictions[void];
+        row.retained_in_voids += state.retained_in_voids[void];
+    }
+    rows
+}
+
+/// The size curve of `counts`: one row a class bound, none where nothing is counted.
+fn size_curve(
+    counts: &SizeCounts,
+    classes: &SizeClasses,
+    unit_mm: f64,
+    of: RunId,
+    increment: u64,
+) -> Vec<SizeRow> {
+    let number: u64 = counts.number.iter().sum();
+    let mass: f64 = counts.mass.iter().sum();
+    if number == 0 {
+        return Vec::new();
+    }
+    let (mut finer_number, mut finer_mass) = (0u64, 0.0);
+    let mut rows = Vec::with_capacity(counts.number.len());
+    for (class, &upper) in classes.upper().iter().enumerate() {
+        finer_number += counts.number[class];
+        finer_mass += counts.mass[class];
+        rows.push(SizeRow {
+            replicate: of.replicate,
+            run: of.run,
+            increment,
+            diameter_mm: f64::from(upper) * unit_mm,
+            percent_finer_by_mass: 100.0 * finer_mass / mass,
+            percent_finer_by_number: 100.0 * finer_number as f64 / number as f64,
+        });
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_void_without_volume_is_overfull_with_anything_and_leaves_the_fullest_finite() {
+        let of = |volumes: &[f64], cubes: &[f64]| {
+            let Fullness { max, overfull_fraction } = Fullness::of_voids(volumes, cubes);
+            (max, overfull_fraction)
+        };
+        let sphere = std::f64::consts::FRAC_PI_6;
+        assert_eq!(of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
+        assert_eq!(of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
+        // What is next to none is as none.
+        assert_eq!(of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
+        assert_eq!(of(&[0.0], &[1.0]), (None, Some(1.0)));
+        assert_eq!(of(&[], &[]), (None, None));
+    }
+}

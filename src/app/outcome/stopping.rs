@@ -1,0 +1,390 @@
+//! How many replicates are enough: until the error is small, or the verdict decided at a confidence level.
+//!
+//! # Looks
+//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2
+//! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
+//!
+//! # Confidence level of the verdict
+//! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes
+//! intervals whose error probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; and
+//! the two runs share it. If each interval has the coverage that it claims, the verdict is wrong with no more
+//! than the error probability asked for, however often one looks (Bonferroni), at the price of intervals that
+//! are somewhat wide. The intervals are Student's, for means of independent replicates.
+//!
+//! Where the constriction curve is known within a range only, the curve itself and the ends of its range
+//! share the error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as
+//! the curve has, with half of its share each. At a level below the usual one it is classed at that one.
+//!
+//! # Target error
+//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
+//! (Chow and Robbins). Its coverage is measured in the tests.
+
+use super::record::{ShortOf, Statistic, Stopping, Verdict};
+use super::student;
+use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
+use voidwalk_core::schema::{only, section, whole, within};
+
+/// Error probability of the intervals that decide where no level is asked for.
+const USUAL_ERROR: f64 = 0.05;
+
+/// Least number of replicates: fewer say too little of their own scatter.
+const FEWEST: u64 = 8;
+
+section! {
+    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then
+    /// `replicates` is where it first looks.
+    ///
+    /// ```
+    /// use voidwalk_app::outcome::stopping::{Look, StopRule};
+    /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
+    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second.
+    /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
+    /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
+    /// assert!(stopping.met && stopping.looks == 1);
+    /// // Close to it, it asks for half as many replicates again.
+    /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
+    /// ```
+    pub struct StopRule in "stop" {
+        /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base.
+        pub target_error_pp: Option<f64> = None, off "0.1",
+            only("percentage points of the base, above 0 and below 100", |n| *n > 0.0 && *n < 100.0);
+        /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks.
+        pub decide_percent: Option<f64> = None, off "99.9",
+            within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
+        /// Where it gives up, and says what it would take.
+        pub most_replicates: u64 = 1000, off, whole(2..=100_000);
+    }
+}
+
+/// What a look at the replicates says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Look {
+    /// Add replicates until there are this many.
+    Until(u64),
+    /// Stop, with this result.
+    Stop(Stopping),
+}
+
+/// The eroded mass fraction of each replicate, and whether it is below the threshold exactly.
+pub type ReplicateValues = Vec<(f64, bool)>;
+
+impl StopRule {
+    /// Whether there is nothing to look at: the replicates are as many as the scene says.
+    pub fn is_unset(&self) -> bool {
+        self.target_error_pp.is_none() && self.decide_percent.is_none()
+    }
+
+    /// Whether there is something to look at.
+    pub fn is_set(&self) -> bool {
+        !self.is_unset()
+    }
+
+    /// Number of replicates at look `look`, counted from 1, where the first is at `first`.
+    pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
+        let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most_replicates);
+        (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
+    }
+
+    /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
+    pub fn look(&self, first: u64, runs: &[ReplicateValues]) -> Look {
+        self.look_at_one_of(1, first, runs)
+    }
+
+    /// As [`look`](Self::look), at the replicates of one of so many constriction curves, which share the
+    /// error.
+    pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
+        let replicates = runs.first().map_or(0, |values| values.len() as u64);
+        let look = (1..)
+            .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
+            .unwrap_or(1);
+        let (half_width, close) = self.closeness(runs);
+        let of_curve = self.error_of_curve(curves);
+        let error = of_curve.map(|of| of / (look * (look + 1)) as f64 / runs.len().max(1) as f64);
+        let below: Vec<BelowThreshold> =
+            error.map_or(vec![], |error| runs.iter().map(|run| lies(run, error)).collect());
+        let verdict =
+            error.map(|_| classify(below.first().copied().flatten(), below.get(1).copied().flatten()));
+        let met = close && verdict != Some(Verdict::Undecided);
+        let next = self.replicates_at(first, look + 1);
+        if !met && next > replicates && replicates < self.most_replicates && !self.is_hopeless(runs) {
+            return Look::Until(next);
+        }
+        Look::Stop(Stopping {
+            target_error_pp: self.target_error_pp,
+            decide_percent: self.decide_percent,
+            most: self.most_replicates,
+            looks: look,
+            met,
+            verdict,
+            half_width_pp: half_width.map(|half| 100.0 * half),
+            short_of: match verdict {
+                Some(Verdict::Undecided) => Some(self.undecided(error.unwrap_or(1.0), &below, runs)),
+                _ => self.too_wide(replicates, half_width, close),
+            },
+        })
+    }
+
+    /// The widest half of the 95 % intervals, and whether it is narrow enough.
+    fn closeness(&self, runs: &[ReplicateValues]) -> (Option<f64>, bool) {
+        let half = |values: &ReplicateValues| {
+            let statistic = statistic(values, USUAL_ERROR);
+            Some(statistic.high? - statistic.mean)
+        };
+        let widest = runs.iter().map(half).try_fold(0.0, |widest, half| Some(f64::max(widest, half?)));
+        let near = |target: f64| widest.is_some_and(|widest| 100.0 * widest <= target);
+        let close = self.target_error_pp.is_none_or(near);
+        (widest, close)
+    }
+
+    /// Error probability of the class of each of so many constriction curves, where a verdict is wanted.
+    pub fn error_of_curve(&self, curves: usize) -> Option<f64> {
+        self.decide_percent.map(|percent| (1.0 - 0.01 * percent) / curves.max(1) as f64)
+    }
+
+    /// Why the verdict is open.
+    fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> ShortOf {
+        if below == [Some(false)] {
+            return ShortOf::SecondRun;
+        }
+        let open = below.iter().position(Option::is_none).unwrap_or(0);
+        let Statistic { mean, sd, .. } = statistic(&runs[open], error);
+        let sd = sd.unwrap_or(0.0);
+        let distance = (mean - THRESHOLD).abs();
+        let needed = needed(runs[open].len() as f64, sd / distance, error);
+        ShortOf::Decision {
+            run: open as u64 + 1,
+            mean_percent: 100.0 * mean,
+            distance_pp: 100.0 * distance,
+            sd_pp: 100.0 * sd,
+            needed: (needed < 1e9).then(|| two_digits(needed)),
+        }
+    }
+
+    /// Whether no replicate can decide what is open: a first run that is clear, and no second.
+    fn is_hopeless(&self, runs: &[ReplicateValues]) -> bool {
+        let clear = |values: &ReplicateValues| {
+            values.len() > 1 && statistic(values, 1e-6).low.is_some_and(|low| low >= THRESHOLD)
+        };
+        self.decide_percent.is_some()
+            && self.target_error_pp.is_none()
+            && runs.len() == 1
+            && runs.iter().all(clear)
+    }
+
+    fn too_wide(&self, replicates: u64, half_width: Option<f64>, close: bool) -> Option<ShortOf> {
+        let target = self.target_error_pp.filter(|_| !close)?;
+        let half_width_pp = 100.0 * half_width?;
+        let needed = replicates as f64 * (half_width_pp / target) * (half_width_pp / target);
+        Some(ShortOf::Target { half_width_pp, replicates, needed: two_digits(needed) })
+    }
+}
+
+impl Stopping {
+    /// The level at which the verdict was decided, where that is lower than that of all intervals, and the
+    /// verdict is open at that one: `usual` is the verdict of the 95 % intervals.
+    pub fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
+        let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
+        let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
+        (is_decided && self.verdict != Some(usual)).then_some(percent)
+    }
+}
+
+/// The class of runs that are looked at once, with this error probability or the usual one of each run where
+/// that is less, and the worst class that their intervals allow.
+pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
+    let each = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
+    let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, each)));
+    let worst = match (first, second) {
+        (Some(true), _) => Verdict::None,
+        (_, Some(true)) => Verdict::Some,
+        _ => Verdict::Continuing,
+    };
+    [classify(first, second), worst]
+}
+
+/// Where the mean of a run lies, by an interval with this error probability.
+fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
+    let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
+    below_by_interval(&statistic(run, error), &each)
+}
+
+fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
+    let values: Vec<f64> = values.iter().map(|&(value, _)| value).collect();
+    Statistic::with_error(&values, error)
+}
+
+/// Replicates, more than there are, whose interval is as narrow as the mean's distance, where their SD is so
+/// many times that.
+fn needed(walked: f64, sd: f64, error: f64) -> f64 {
+    let mut n = walked + 1.0;
+    loop {
+        let wanted = (student::two_sided(n.min(1001.0) as u64 - 1, error) * sd).powi(2);
+        if wanted <= n || n > 1e9 {
+            return n.max(wanted);
+        }
+        // Student's factor falls with more of them, so that fewer than these may do.
+        n = (1.1 * n).ceil().min(wanted.ceil()).max(n + 1.0);
+    }
+}
+
+/// A number of replicates to two digits.
+fn two_digits(n: f64) -> u64 {
+    let unit = libm::pow(10.0, libm::floor(libm::log10(n.max(1.0))) - 1.0).max(1.0);
+    (libm::ceil(n / unit) * unit) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+    use voidwalk_core::stream::{Key, Purpose, unit};
+
+    fn decide(percent: f64, most: u64) -> StopRule {
+        StopRule { decide_percent: Some(percent), most_replicates: most, ..StopRule::default() }
+    }
+
+    fn close(pp: f64, most: u64) -> StopRule {
+        StopRule { target_error_pp: Some(pp), most_replicates: most, ..StopRule::default() }
+    }
+
+    fn values(values: impl IntoIterator<Item = f64>) -> ReplicateValues {
+        values.into_iter().map(|v| (v, v < THRESHOLD)).collect()
+    }
+
+    /// Replicates with this mean and standard deviation until the rule stops; skewed ones are exponential.
+    fn until_stop(
+        rule: StopRule,
+        means: &[f64],
+        sd: f64,
+        skewed: bool,
+        seed: u64,
+    ) -> (Stopping, Vec<ReplicateValues>) {
+        let mut draws =
+            Key { seed, purpose: Purpose::Resampling, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut draw = |mean: f64| {
+            let (u, v) = (unit(draws.next_u64()), unit(draws.next_u64()));
+            let normal = (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v);
+            mean + sd * if skewed { -libm::log(u) - 1.0 } else { normal }
+        };
+        let mut runs = vec![ReplicateValues::new(); means.len()];
+        let mut wanted = rule.replicates_at(10, 1);
+        loop {
+            while (runs[0].len() as u64) < wanted {
+                runs.iter_mut().zip(means).for_each(|(run, &mean)| run.extend(values([draw(mean)])));
+            }
+            match rule.look(10, &runs) {
+                Look::Until(next) => wanted = next,
+                Look::Stop(stopping) => return (stopping, runs),
+            }
+        }
+    }
+
+    #[test]
+    fn looks_come_at_half_as_many_again_and_end() {
+        let rule = decide(99.0, 100);
+        let looks: Vec<u64> = (1..9).map(|k| rule.replicates_at(10, k)).collect();
+        assert_eq!(looks, [10, 15, 23, 35, 53, 80, 100, 100]);
+        assert_eq!(rule.replicates_at(1, 1), 8);
+        assert_eq!(decide(99.0, 5).replicates_at(10, 1), 5);
+    }
+
+    #[test]
+    fn what_is_clear_is_decided_at_once_and_what_is_not_is_said() {
+        let rule = decide(99.9, 60);
+        let far = [
+            values((0..10).map(|k| 0.4 + 0.01 * f64::from(k))),
+            values((0..10).map(|k| 0.01 + 0.001 * f64::from(k))),
+        ];
+        let Look::Stop(stopping) = rule.look(10, &far) else { panic!("clear") };
+        assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.short_of.is_none());
+        let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
+        assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
+        let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
+        assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
+        assert!(matches!(stopping.short_of, Some(ShortOf::Decision { run: 1, .. })), "{stopping:?}");
+        // A first run that is clearly above, and no second: more replicates cannot help.
+        let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
+        assert!(!stopping.met && stopping.short_of == Some(ShortOf::SecondRun));
+    }
+
+    #[test]
+    fn the_curves_of_a_range_share_the_error() {
+        let rule = decide(99.0, 8);
+        // Student's t with 7 degrees of freedom: 3.50 at an error of 1 %, 4.03 at 0.5 %, 4.53 at 0.25 %.
+        let sd = (60.0f64 / 7.0).sqrt();
+        let run = |half_widths: f64| {
+            let mean = THRESHOLD - half_widths * 1e-3 * sd / 8f64.sqrt();
+            values([-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0].map(|step| mean + 1e-3 * step))
+        };
+        let decided = |curves: usize, half_widths: f64| {
+            let Look::Stop(stopping) = rule.look_at_one_of(curves, 8, &[run(half_widths), run(half_widths)])
+            else {
+                panic!("no more than eight are allowed")
+            };
+            let [at_end, worst] = class_at(rule.error_of_curve(curves).unwrap(), &[run(half_widths)]);
+            let at_most = if at_end == Verdict::None { Verdict::None } else { Verdict::Continuing };
+            assert_eq!(worst, at_most);
+            (stopping.verdict.unwrap(), at_end)
+        };
+        let (none, open) = (Verdict::None, Verdict::Undecided);
+        // The first look takes half of the curve's error, and each of two runs half of that; an end is looked
+        // at once, here with one run.
+        assert_eq!(decided(1, 3.6), (open, none));
+        assert_eq!(decided(2, 3.6), (open, open));
+        assert_eq!(decided(1, 4.6), (none, none));
+        assert_eq!(decided(2, 4.6), (open, none));
+        assert_eq!(decided(4, 4.6), (open, none));
+        assert_eq!(decided(4, 4.5), (open, open));
+        // At 50 % an end is classed by the usual intervals: Student's t at an error of 5 % is 2.36.
+        let loose = decide(50.0, 8).error_of_curve(1).unwrap();
+        assert_eq!(class_at(loose, &[run(2.3)])[0], open);
+        assert_eq!(class_at(loose, &[run(2.4)])[0], none);
+        assert_eq!(class_at(loose, &[run(-3.0), run(2.4)]), [Verdict::Some; 2]);
+        assert_eq!(class_at(loose, &[run(0.0), run(2.4)]), [open, Verdict::Some]);
+    }
+
+    #[test]
+    fn a_target_is_reached_or_what_it_takes_is_said() {
+        let (stopping, runs) = until_stop(close(0.2, 1000), &[0.3, 0.1], 0.01, false, 5);
+        assert!(stopping.met && stopping.half_width_pp.unwrap() <= 0.2 && runs[0].len() > 60, "{stopping:?}");
+        let (stopping, runs) = until_stop(close(0.2, 40), &[0.3, 0.1], 0.01, false, 5);
+        assert!(!stopping.met && runs[0].len() == 40);
+        let Some(ShortOf::Target { needed, .. }) = stopping.short_of else { panic!("{stopping:?}") };
+        assert!(needed.to_string().starts_with('1'), "{needed}");
+    }
+
+    /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed
+    /// to be wrong: wrong ones are binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed
+    /// replicates too.
+    #[test]
+    fn the_error_rate_is_kept_however_often_it_looks() {
+        for (skewed, mean) in
+            [(false, THRESHOLD + 0.002), (false, THRESHOLD - 0.002), (true, THRESHOLD + 0.004)]
+        {
+            let truth = if mean < THRESHOLD { Verdict::None } else { Verdict::Some };
+            let wrong = (0..1500).filter(|&seed| {
+                let (stopping, _) = until_stop(decide(98.0, 200), &[mean, 0.02], 0.01, skewed, seed);
+                let verdict = stopping.verdict.unwrap();
+                verdict != truth && verdict != Verdict::Undecided
+            });
+            let wrong = wrong.count();
+            assert!(wrong <= 45, "{wrong} of 1500 wrong, {skewed}, {mean}");
+        }
+    }
+
+    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be
+    /// seen in about half of them.
+    #[test]
+    fn an_interval_that_was_waited_for_covers() {
+        for sd in [0.005, 0.02] {
+            let covered = (0..3000).filter(|&seed| {
+                let (stopping, runs) = until_stop(close(0.3, 2000), &[0.2], sd, false, seed);
+                let statistic = statistic(&runs[0], 0.05);
+                assert!(stopping.met);
+                statistic.low.unwrap() <= 0.2 && 0.2 <= statistic.high.unwrap()
+            });
+            let share = covered.count() as f64 / 3000.0;
+            assert!((0.927..0.973).contains(&share), "{share}");
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! A table, described once, for its file and for a page: a column has a name in the file, a heading on the
+//! page if it stands there, and one way in which its cell is taken from a row. A table that is no file is
+//! described alike.
+//!
+//! Rows whose fields are the columns of a file are written by [`csv_of()`]. Of others each column is
+//! described: [`Columns`].
+//!
+//! ```
+//! use voidwalk_app::outcome::table::Columns;
+//! let of = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
+//! let of = of.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
+//! assert_eq!(of.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
+//! let shown: Vec<String> = of.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
+//! assert_eq!(shown, ["b", "3.00"]);
+//! ```
+
+mod cell;
+
+use serde::de::value::Error;
+use serde::de::{DeserializeOwned, Error as _, Visitor};
+use serde::{Deserializer, Serialize, forward_to_deserialize_any};
+
+use super::record::Statistic;
+use voidwalk_core::text::visible;
+
+pub use cell::{CellValue, Emphasis, Shown, TableCell};
+use cell::{fixed, in_percent};
+
+/// Why writing to memory does not fail.
+const WRITTEN: &str = "memory takes rows of numbers and names";
+
+/// Rows as CSV, a column a field of their type; the header is there even without rows.
+pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
+    let mut names: &[&str] = &[];
+    // It is stopped at the names, which are all that is wanted.
+    let _ = T::deserialize(Names(&mut names));
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.write_record(names).expect(WRITTEN);
+    rows.iter().for_each(|row| writer.serialize(row).expect(WRITTEN));
+    written(writer)
+}
+
+/// A table whose names hold no hidden characters.
+fn written(writer: csv::Writer<Vec<u8>>) -> Vec<u8> {
+    let text = String::from_utf8(writer.into_inner().expect(WRITTEN)).expect(WRITTEN);
+    text.chars().map(visible).collect::<String>().into_bytes()
+}
+
+/// Reads the names of a type's fields, and nothing else.
+struct Names<'a>(&'a mut &'static [&'static str]);
+
+impl<'de> Deserializer<'de> for Names<'_> {
+    type Error = Error;
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        fields: &'static [&'static str],
+        _: V,
+    ) -> Result<V::Value, Error> {
+        *self.0 = fields;
+        Err(Error::custom("names alone"))
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
+        Err(Error::custom("names alone"))
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf option unit unit_struct
+        newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+    }
+}
+
+/// The columns of a table.
+pub struct Columns<'a, T>(Vec<Column<'a, T>>);
+
+/// What a column says of a row.
+type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
+
+/// A column: of a file, and of a page where that shows it.
+struct Column<'a, T> {
+    /// In a file; a value with its interval is three columns there, and one cell of a page.
+    names: Vec<String>,
+    cells: OfRow<'a, T, Vec<CellValue>>,
+    /// In a workbook, where neither the page nor the name says what stands there.
+    heading: Option<&'static str>,
+    page: Option<PageColumn<'a, T>>,
+    /// Where on the page: before the columns of a greater number, after those of a smaller one.
+    place: i8,
+    /// Not shown by a brief page.
+    is_detail: bool,
+}
+
+/// A column as a page shows it.
+pub struct PageColumn<'a, T> {
+    /// Its first name in a file.
+    pub name: String,
+    /// What it is, and its unit.
+    pub heading: Shown,
+    /// What stands in its cells.
+    pub kind: ColumnKind,
+    /// Its cell of a row.
+    pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
+}
+
+/// What stands in the cells of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// The names of the rows.
+    Name,
+    /// Texts.
+    Text,
+    /// Numbers, which stand at the right.
+    Number,
+}
+
+impl<T> Default for Columns<'_, T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'a, T> Columns<'a, T> {
+    /// With a column of a file, which a page shows where [`Self::page_number()`] or [`Self::page_text()`]
+    /// follows.
+    pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.with(vec![name.into()], move |row| vec![cell(row).value()])
+    }
+
+    /// With such a column, of numbers with so many decimals.
+    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+        self.column(name, move |row| fixed(value(row), decimals))
+    }
+
+    /// With such a column, of fractions in percent.
+    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+        self.column(name, move |row| in_percent(value(row)))
+    }
+
+    /// With such columns, of a fraction in percent and the ends of its interval; on a page they are one.
+    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
+        self.with(names.map(String::from).to_vec(), move |row| {
+            let ends = of(row).map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
+            ends.map(|end| in_percent(end).value()).to_vec()
+        })
+    }
+
+    fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<CellValue> + 'a) -> Self {
+        let cells = Box::new(cells);
+        self.0.push(Column { names, cells, heading: None, page: None, place: 0, is_detail: false });
+        self
+    }
+
+    /// With a column of the names of the rows, which a page shows under this heading.
+    pub fn name<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
+    ) -> Self {
+        self.column(name, cell.clone()).shown(ColumnKind::Name, heading, cell)
+    }
+
+    /// With a column of texts, which a page shows under this heading.
+    pub fn text<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
+    ) -> Self {
+        self.column(name, cell.clone()).page_text(heading, cell)
+    }
+
+    /// With a column of numbers, which a page shows under this heading.
+    pub fn number<C: TableCell>(
+        self,
+        name: impl Into<String>,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + Clone + 'a,
+    ) -> Self {
+        self.column(name, cell.clone()).page_number(heading, cell)
+    }
+
+    /// A page shows this number in the place of the last column.
+    pub fn page_number<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(ColumnKind::Number, heading, cell)
+    }
+
+    /// A page shows this text in the place of the last column.
+    pub fn page_text<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+        self.shown(ColumnKind::Text, heading, cell)
+    }
+
+    fn shown<C: TableCell>(
+        mut self,
+        kind: ColumnKind,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + 'a,
+    ) -> Self {
+        let (heading, cell) = (heading.shown(), Box::new(move |row: &T| cell(row).shown()));
+        let last = self.last();
+        last.page = Some(PageColumn { name: last.names[0].clone(), heading, kind, cell });
+        self
+    }
+
+    /// A workbook has the last column under this heading.
+    pub fn headed(mut self, heading: &'static str) -> Self {
+        self.last().heading = Some(heading);
+        self
+    }
+
+    /// A page shows the last column before (below 0) or after (above 0) the others.
+    pub fn place(mut self, place: i8) -> Self {
+        self.last().place = place;
+        self
+    }
+
+    /// With the columns of the same rows that were described elsewhere.
+    pub fn and(mut self, more: Self) -> Self {
+        self.0.extend(more.0);
+        self
+    }
+
+    /// The last column is a detail.
+    pub fn detail(mut self) -> Self {
+        self.last().is_detail = true;
+        self
+    }
+
+    /// A page shows no details.
+    pub fn in_brief(mut self) -> Self {
+        self.0.iter_mut().filter(|column| column.is_detail).for_each(|column| column.page = None);
+        self
+    }
+
+    /// The columns of these names alone, in this order.
+    ///
+    /// # Panics
+    /// There is no column of that name.
+    pub fn only(mut self, names: &[&str]) -> Self {
+        let column = |name: &&str| {
+            let place = self.0.iter().position(|column| column.names[0] == **name);
+            self.0.remove(place.unwrap_or_else(|| panic!("{name} is no column")))
+        };
+        Self(names.iter().map(column).collect())
+    }
+
+    /// The same columns of rows of which these are a part.
+    pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
+    where
+        T: 'a,
+    {
+        let shown = |PageColumn { name, heading, kind, cell }: PageColumn<'a, T>| {
+            let cell: OfRow<'a, W, Shown> = Box::new(move |row| cell(part(row)));
+            PageColumn { name, heading, kind, cell }
+        };
+        let column = |column: Column<'a, T>| {
+            let Column { names, cells, heading, page, place, is_detail } = column;
+            let cells: OfRow<'a, W, Vec<CellValue>> = Box::new(move |row| cells(part(row)));
+            Column { names, cells, heading, page: page.map(shown), place, is_detail }
+        };
+        Columns(self.0.into_iter().map(column).collect())
+    }
+
+    fn last(&mut self) -> &mut Column<'a, T> {
+        self.0.last_mut().expect("a column comes before what is said of it")
+    }
+
+    /// The columns that a page shows, in its order.
+    pub fn of_page(mut self) -> impl Iterator<Item = PageColumn<'a, T>> {
+        self.0.sort_by_key(|column| column.place);
+        self.0.into_iter().filter_map(|column| column.page)
+    }
+
+    /// The rows as CSV; no cell of it is a formula.
+    pub fn csv<'r>(&self, rows: impl IntoIterator<Item = &'r T>) -> Vec<u8>
+    where
+        T: 'r,
+    {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(self.0.iter().flat_map(|of| of.names.clone()).map(inert)).expect(WRITTEN);
+        for row in rows {
+            let cells = self.values(row).map(|value| inert(value.to_string()));
+            writer.write_record(cells).expect(WRITTEN);
+        }
+        written(writer)
+    }
+
+    /// What a file holds of a row.
+    pub fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
+        self.0.iter().flat_map(|column| (column.cells)(row))
+    }
+
+    /// The headings of a workbook.
+    pub fn headings(&self) -> Vec<String> {
+        let names = self.0.iter().flat_map(|column| column.names.iter().map(move |name| (column, name)));
+        let heading = |(column, name): (&Column<T>, &String)| match (column.heading, &column.page) {
+            (Some(heading), _) => heading.to_owned(),
+            (None, Some(page)) => page.heading.text.clone(),
+            (None, None) => name.clone(),
+        };
+        names.map(heading).collect()
+    }
+}
+
+/// A cell that no spreadsheet takes for a formula.
+fn inert(cell: String) -> String {
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
+    if formula { format!("'{cell}") } else { cell }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[test]
+    fn a_cell_is_no_formula() {
+        let inert = |cell: &str| inert(cell.to_owned());
+        assert_eq!(["=1+1", "-3", "@x", "loose"].map(inert), ["'=1+1", "-3", "'@x", "loose"]);
+    }
+
+    #[test]
+    fn no_name_in_a_table_is_hidden() {
+        let of = Columns::default().column("name", |row: &String| row.clone());
+        let table = of.csv(&["a\u{1b}]0;b\u{7}\u{202e}\u{200b}\u{feff}c".to_owned()]);
+        assert_eq!(
+            String::from_utf8(table).unwrap(),
+            "name\na\u{fffd}]0;b\u{fffd}\u{fffd}\u{fffd}\u{fffd}c\n"
+        );
+    }
+
+    #[test]
+    fn rows_have_the_names_of_their_fields_even_where_there_are_none() {
+        #[derive(Serialize, Deserialize)]
+        struct Row {
+            size: u64,
+            threshold: Option<f64>,
+        }
+        assert_eq!(csv_of::<Row>(&[]), b"size,threshold\n");
+        let rows = [Row { size: 3, threshold: None }, Row { size: 4, threshold: Some(1.0) }];
+        assert_eq!(csv_of(&rows), b"size,threshold\n3,\n4,1.0\n");
+    }
+
+    #[test]
+    fn a_value_with_its_interval_is_three_columns_of_a_file_and_one_cell_of_a_page() {
+        let of = Columns::default().statistic(["mass", "low", "high"], |row: &Option<Statistic>| *row);
+        let of = of.page_number("Eroded", |row| *row);
+        let rows = [Some(Statistic { mean: 0.25, sd: None, low: Some(0.2), high: Some(0.3) }), None];
+        assert_eq!(of.csv(&rows), b"mass,low,high\n25.0000,20.0000,30.0000\n,,\n");
+        let cell = of.of_page().next().unwrap().cell;
+        let [known, unknown] = rows.map(|row| cell(&row));
+        assert_eq!((&*known.text, &*known.below[0]), ("25.0\u{202f}%", "20.0 to 30.0\u{202f}%"));
+        assert_eq!(unknown, "–".shown());
+    }
+
+    #[test]
+    fn columns_of_a_part_stand_beside_those_of_the_whole() {
+        let part = Columns::default().number("a", "A", |row: &u64| *row).detail();
+        let part = part.number("b", "B", |row| 2 * row);
+        let whole = part.of_part(|row: &(u64, bool)| &row.0);
+        let whole = whole.and(Columns::default().text("c", "C", |row: &(u64, bool)| row.1));
+        assert_eq!(whole.csv(&[(3, true)]), b"a,b,c\n3,6,true\n");
+        let shown: Vec<String> = whole.in_brief().of_page().map(|column| column.heading.text).collect();
+        assert_eq!(shown, ["B", "C"]);
+    }
+}

@@ -1,0 +1,99 @@
+//! The verdict: the paper's three classes, by mass eroded in the first and the second run.
+//!
+//! | first run | second run | verdict |
+//! |---|---|---|
+//! | < 7.5 % | | no erosion |
+//! | >= 7.5 % | < 7.5 % | some erosion |
+//! | >= 7.5 % | >= 7.5 % | continuing erosion |
+//!
+//! With replicates a run is above or below where its whole 95 % interval of the mean is; an interval
+//! that straddles the threshold, or a second run that was not asked for where it would decide, makes the
+//! verdict *undecided*.
+
+use super::record::{Statistic, Verdict};
+
+/// Eroded mass fraction that divides the classes (paper, section 6).
+pub const THRESHOLD: f64 = 0.075;
+
+/// Where a run lies against the threshold; `None` where that is open.
+pub type BelowThreshold = Option<bool>;
+
+/// The class of two runs, the second of which may be missing.
+///
+/// ```
+/// use voidwalk_app::outcome::record::Verdict;
+/// use voidwalk_app::outcome::verdict::{below_by_mass, classify};
+/// // 9 % of the base eroded in the first run, 1 % in the second.
+/// let [first, second] = [0.09, 0.01].map(|eroded| Some(below_by_mass(eroded, 1.0)));
+/// assert_eq!(classify(first, second), Verdict::Some);
+/// assert_eq!(classify(first, None), Verdict::Undecided);
+/// ```
+pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
+    match (first, second) {
+        (Some(true), _) => Verdict::None,
+        (Some(false), Some(true)) => Verdict::Some,
+        (Some(false), Some(false)) => Verdict::Continuing,
+        _ => Verdict::Undecided,
+    }
+}
+
+/// Whether less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
+pub fn below_by_mass(eroded: f64, inserted: f64) -> bool {
+    eroded * 40.0 < inserted * 3.0
+}
+
+/// Whether less than 7.5 % eroded, for particles of one size: exact, on integers.
+pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
+    u128::from(eroded) * 40 < u128::from(inserted) * 3
+}
+
+/// Where the mean over replicates lies: where its whole interval is. `each` says where every replicate lies,
+/// exactly; it decides where there is only one, or where they do not differ, so that the rounding of a mean
+/// decides nothing.
+pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
+    let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
+    if no_scatter && each.iter().all(|&below| below == each[0]) {
+        return each.first().copied();
+    }
+    match (statistic.low, statistic.high) {
+        (_, Some(high)) if high < THRESHOLD => Some(true),
+        (Some(low), _) if low >= THRESHOLD => Some(false),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_three_classes_and_the_fourth() {
+        assert_eq!(classify(Some(true), None), Verdict::None);
+        assert_eq!(classify(Some(true), Some(false)), Verdict::None);
+        assert_eq!(classify(Some(false), Some(true)), Verdict::Some);
+        assert_eq!(classify(Some(false), Some(false)), Verdict::Continuing);
+        assert_eq!(classify(Some(false), None), Verdict::Undecided);
+        assert_eq!(classify(None, Some(true)), Verdict::Undecided);
+    }
+
+    #[test]
+    fn exactly_seven_and_a_half_percent_is_not_less() {
+        assert!(!below_by_count(3, 40));
+        assert!(below_by_count(2, 40));
+        assert!(!below_by_mass(0.3, 4.0));
+        assert!(!below_by_count(3 << 60, 40 << 57 << 3));
+    }
+
+    #[test]
+    fn an_interval_that_straddles_decides_nothing() {
+        let s = |low, high| Statistic { mean: 0.07, sd: Some(0.01), low: Some(low), high: Some(high) };
+        assert_eq!(below_by_interval(&s(0.01, 0.0749), &[true, false]), Some(true));
+        assert_eq!(below_by_interval(&s(0.01, 0.075), &[true, true]), None);
+        assert_eq!(below_by_interval(&s(0.075, 0.2), &[true, false]), Some(false));
+        assert_eq!(below_by_interval(&Statistic::of(&[0.07]), &[true]), Some(true));
+        // Ten times 0.075 has a mean below 0.075.
+        let ten = Statistic::of(&[0.075; 10]);
+        assert!(ten.mean < THRESHOLD);
+        assert_eq!(below_by_interval(&ten, &[false; 10]), Some(false));
+    }
+}

@@ -1,0 +1,361 @@
+//! The page of a batch, from `batch.json` alone.
+
+use std::path::Path;
+
+use maud::{Markup, Render, html};
+
+use super::cases;
+use super::cover::program;
+use super::error::ReportError;
+use super::figures::{
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, Line, ORANGE, PURPLE, Point, Rule, Shape,
+    VERMILLION, positive_range, shorten,
+};
+use super::files::json;
+use super::names::{is_named, note_words, soil_name, titled, told_apart};
+use super::run_figures::size_axis;
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out};
+use super::table::Table;
+use super::written::Written;
+use crate::outcome::statistic::interval_in_percent;
+use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
+use crate::words::batch::{
+    answer, counts, d15f_and_limit, governs_drainage, open_limits, walked_columns, walks,
+};
+use crate::words::capital;
+use crate::words::left_out::NOT_COVERED;
+use voidwalk_practice::quantity::{SizeUnit, percent};
+use voidwalk_practice::{BatchFilter, BatchRow};
+
+const RECORD: &str = "batch.json";
+
+/// Rows of the page's table; all are in `batch.csv`.
+const LISTED: usize = 2000;
+
+/// Lines of the filters whose D15F is drawn.
+const LINES: [(Colour, Dash); 6] = [
+    (BLACK, Dash::Dashed),
+    (VERMILLION, Dash::Dotted),
+    (GREEN, Dash::Dashed),
+    (PURPLE, Dash::Dotted),
+    (ORANGE, Dash::Dashed),
+    (BLACK, Dash::Dotted),
+];
+
+/// Writes `batch.html` and `figures/*.svg` into the folder of a batch.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_batch(folder: &Path) -> Result<Written, ReportError> {
+    let path = folder.join(RECORD);
+    let batch: WalkedBatch = json(&path)?;
+    if batch.rows.is_empty() {
+        let (field, value, allowed) = ("rows".into(), "empty".into(), "one or more".into());
+        return Err(ReportError::Value { path, field, value, allowed });
+    }
+    page(folder, &batch).write(folder, "batch.html", &citation())
+}
+
+fn name(name: &str) -> String {
+    clean(&shorten(name, 60))
+}
+
+/// What a filter is called here: the soil, and its number where that is the name of another, too.
+fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
+    let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter));
+    let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+    let soil = soil_name(filter);
+    match alike.iter().position(|of| *of == filter) {
+        Some(at) if alike.len() > 1 => name(&format!("{soil} ({})", at + 1)),
+        _ => name(soil),
+    }
+}
+
+/// Which file each filter is that has a number; nothing where names tell them apart.
+fn key(batch: &WalkedBatch) -> Markup {
+    let of = |filter: &BatchFilter| {
+        let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(&filter.name));
+        let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+        let shown = filter_name(batch, &filter.name);
+        (alike.len() > 1).then(|| format!("{shown}: {}", name(&told_apart(&filter.name, &alike))))
+    };
+    let all: Vec<String> = batch.filters.iter().filter_map(of).collect();
+    html! { @if !all.is_empty() { p.small { "The filters: " (all.join("; ")) "." } } }
+}
+
+fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
+    let names = html! {
+        (titled(if batch.has_one_base() { "Base" } else { "Samples" }, &batch.samples))
+        @match &batch.filters[..] {
+            [only] => @if is_named("filter", &only.name) { ", " (titled("filter", &only.name)) },
+            all => {
+                ", filters "
+                @for (at, filter) in all.iter().enumerate() {
+                    @if at > 0 { ", " } b { bdi { (filter_name(batch, &filter.name)) } }
+                }
+            },
+        }
+    };
+    let first = html! { div.first {
+        (key(batch))
+        section { @for filter in &batch.filters { (of_filter(folder, batch, filter)) } }
+        (leaves_out(&batch.model_leaves_out, &html! {
+            p { "The classes are the model’s. They do not replace a filter test or a designer’s judgement." }
+            p { (NOT_COVERED) }
+        }))
+    } };
+    let made = html! { p {
+        "voidwalk " (clean(&batch.version)) ", seed " (batch.seed) " for every walk. Each walk has a folder \
+         of its own with its report; " code { "batch.json" } " holds this page’s numbers, "
+        code { "batch.csv" } " its table with further columns."
+    } };
+    let (kind, question) = match batch.has_one_base() {
+        true => ("Filters of one base", "Which of these filters hold this base?"),
+        false => ("Samples against filters", "Which samples do these filters hold?"),
+    };
+    Sections::new(kind, question, &names)
+        .model()
+        .cover(&batch.cover, &program(&batch.version, batch.commit.as_deref()), Some(batch.seed))
+        .words(&first)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures([curves(batch), limits(batch), eroded(batch)].into_iter().flatten())
+        .section("Samples", &table(folder, batch))
+        .section("Notes on the files", &notes(batch))
+        .section("How this was made", &made)
+}
+
+/// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
+fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
+    let walks = walks(batch, &filter.name, SizeUnit::of(false, batch.inches));
+    let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
+    let besides = governs_drainage(&rules, &filter.name, SizeUnit::of(false, batch.inches)).into_iter();
+    let besides = besides.chain(open_limits(&rules, &filter.name));
+    html! {
+        p.practice { bdi { (filter_name(batch, &filter.name)) } ", D15F "
+            (d15f(&rules).unwrap_or("not known".into())) }
+        ul {
+            @if batch.has_one_base() {
+                @for row in batch.of_filter(&filter.name) {
+                    li { (limit_and_answer(folder, row, batch.inches)) }
+                }
+                @for said in walks.iter().skip(1) { li { (clean(&capital(said))) "." } }
+            } @else {
+                li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
+                @for (at, said) in walks.iter().enumerate() {
+                    li {
+                        @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
+                    }
+                }
+                @for row in batch.governing(&filter.name) {
+                    li {
+                        @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
+                        bdi { (name(&row.rules.sample)) } ": " (limit_and_answer(folder, row, batch.inches))
+                    }
+                }
+            }
+            @for said in besides { li { (clean(&capital(&said))) "." } }
+            @if filter.curves.len() > 1 {
+                li { "An envelope of " (filter.curves.len()) " curves: the worst of them counts for each \
+                    rule." }
+            }
+        }
+    }
+}
+
+/// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
+fn d15f(rules: &[BatchRow]) -> Option<String> {
+    let beside = rules.iter().filter_map(|row| {
+        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm);
+        d15f
+    });
+    beside.max_by_key(String::len)
+}
+
+/// The limit of a sample, D15F beside it, and the answer.
+fn limit_and_answer(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
+    let rules = &row.rules;
+    let unit = SizeUnit::of(false, inches);
+    let [d15f, limit] = d15f_and_limit(rules, unit).map(|size| size.unwrap_or("not known".into()));
+    html! {
+        "D15F up to " (limit) @if rules.limit_at_most { " at most" }
+        @if !rules.rule.is_empty() { " (" (clean(&rules.rule)) ")" }
+        ", here " (d15f)
+        ": " (clean(&answer(row)))
+        @if let Some(walk) = &row.walk {
+            ". Class by the walk: " (cases::class(walk.verdict, folder, &walk.folder))
+        }
+        "."
+    }
+}
+
+fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
+    let class = |row: &WalkedRow| match &row.walk {
+        Some(walk) => cases::class(walk.verdict, folder, &walk.folder),
+        None => html! {},
+    };
+    let columns = walked_columns(SizeUnit::of(false, batch.inches));
+    let table = Table::of(batch.rows.iter().take(LISTED), columns)
+        .class("cases")
+        .showing("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
+        .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
+        .showing("class", class);
+    html! {
+        (table.render())
+        @if batch.rows.len() > LISTED { p.small { "The rest is in batch.csv." } }
+        p.small {
+            "Limit: the strictest D15F by which the filter retains the sample. Governs: 1 for the sample \
+             with the least limit of its filter. Walked: in full, or a first look, which has fewer \
+             replicates on a narrower lattice where the settings do not name them. Class by walk: with a \
+             link to the page of the walk. Below a number its 95 % interval over the replicates; the \
+             threshold between the classes is "
+            (percent(batch.threshold).in_digits(3))
+            "."
+        }
+    }
+}
+
+fn notes(batch: &WalkedBatch) -> Markup {
+    html! {
+        @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } }
+    }
+}
+
+/// The curves of one base and of its filters, with the limits of D15F by practice; none of many samples.
+fn curves(batch: &WalkedBatch) -> Option<Drawn> {
+    if !batch.has_one_base() {
+        return None;
+    }
+    let rules = || batch.rows.iter().map(|row| &row.rules);
+    let most = rules().filter_map(|row| Some((row.limit_mm?, row.limit_at_most)));
+    let least = rules().filter_map(|row| Some((row.d15f_min_mm?, row.d15f_min_at_most)));
+    let marks = [
+        (most.min_by(|a, b| a.0.total_cmp(&b.0)), "limit", VERMILLION),
+        (least.max_by(|a, b| a.0.total_cmp(&b.0)), "drains", GREEN),
+    ];
+    let marks = || marks.iter().filter_map(|(mark, name, colour)| Some(((*mark)?, *name, *colour)));
+    let gradations = || batch.filters.iter().flat_map(|filter| &filter.gradations);
+    let sizes = batch.base.iter().chain(gradations().flatten()).map(|row| row[0]);
+    let x = size_axis(SizeUnit::Mm, sizes.chain(marks().map(|((mm, _), ..)| mm)));
+    let what = "Percent finer by mass against size of the base as sampled and of every filter, with the \
+                limits of D15F";
+    let mut figure = Figure::new("Gradations", what, "", x, Axis::percent("Percent finer (%)"))
+        .sizes((720.0, 460.0), (358.0, 400.0))
+        .sheet((680.0, 350.0))
+        .sieves();
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
+    for ((mm, is_at_most), name, colour) in marks() {
+        let line = Line::new(vec![(mm, 11.0), (mm, 19.0)], colour);
+        let at_most = if is_at_most { " at most" } else { "" };
+        figure.add(line.width(3.0).stays().label(&format!("{name}{at_most}")));
+    }
+    figure.add(Line::of_rows(&batch.base, VERMILLION).width(2.6).label("base, as sampled"));
+    for (filter, (colour, dash)) in batch.filters.iter().zip(LINES.iter().cycle()) {
+        let label = shorten(&filter_name(batch, &filter.name), 24);
+        for rows in &filter.gradations {
+            figure.add(Line::of_rows(rows, *colour).width(2.0).dash(*dash).label(&label));
+        }
+    }
+    let caption = "Gradations by mass. Short lines: the maximum D15F that retains the base (limit), and the \
+                   minimum D15F that drains it (drains).";
+    Some(Drawn::new("batch-curves", figure, caption))
+}
+
+/// The limit of every sample against its D85B, with the D15F of the filters; none without a limit, or of one
+/// base.
+fn limits(batch: &WalkedBatch) -> Option<Drawn> {
+    // A limit is the sample's: filters only differ where rules ask for more of one.
+    let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
+    let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
+    let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
+    let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
+    if rows.is_empty() || batch.has_one_base() {
+        return None;
+    }
+    let filters =
+        || batch.filters.iter().take(LINES.len()).filter_map(|filter| Some((filter, filter.d15f_mm?)));
+    let (low, high) = positive_range(rows.iter().map(|row| d85b(row)));
+    let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
+    let all = rows.iter().map(|row| limit(row)).chain(filters().map(|(_, mm)| mm));
+    let (low, high) = positive_range(all);
+    let y = Axis::log("Limit of D15F (mm)", low / 1.2, high * 1.2);
+    let what = "Strictest limit of D15F of each sample against its D85B, with the D15F of each filter";
+    let mut figure = Figure::new("Limits of the samples", what, "", x, y).names_above();
+    for ((filter, mm), (colour, dash)) in filters().zip(LINES) {
+        let label = format!("D15F of {}", shorten(&filter_name(batch, &filter.name), 24));
+        figure.add(Rule::new(Across::Y, mm, colour).dash(dash).label(&label));
+    }
+    let point = |row: &&WalkedRow| {
+        let shape = if row.governs == Some(1) { Shape::Square } else { Shape::Circle };
+        let point = Point::new(d85b(row), limit(row), BLUE, shape);
+        if row.rules.limit_at_most { point.hollow() } else { point }
+    };
+    let of = |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
+    figure.add_points("sample", of(false));
+    figure.add_points("governs a filter", of(true));
+    let caption = "Strictest limit of D15F of each sample. The D15F of a filter is within the limit of \
+                   the samples that lie on or above its line. Hollow: the limit is at most this.";
+    Some(Drawn::new("batch-limits", figure, caption))
+}
+
+/// Mass eroded in the first run against D15F by the limit: the rule and the walk, side by side.
+fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
+    let of = |row: &WalkedRow| {
+        let walk: &SampleWalk = row.walk.as_ref()?;
+        let first = walk.runs.first()?;
+        Some(cases::AtRatio {
+            ratio: row.rules.d15f_mm? / row.rules.limit_mm?,
+            class: walk.verdict,
+            value: 100.0 * first.mean,
+            interval: interval_in_percent(first),
+            is_against: row.is_against_practice(),
+            is_bound: row.rules.limit_at_most,
+        })
+    };
+    let symbols: Vec<cases::AtRatio> = batch.rows.iter().filter_map(of).collect();
+    if symbols.is_empty() {
+        return None;
+    }
+    let ratios = symbols.iter().map(|symbol| symbol.ratio).chain([0.8, 1.25]);
+    let (low, high) = positive_range(ratios);
+    let x = Axis::log("D15F of the filter / limit of the sample (–)", low / 1.2, high * 1.2);
+    let y = Axis::percent("Base eroded in the first run, by mass (%)");
+    let limit = format!("{} %", 100.0 * batch.threshold);
+    let rules = vec![
+        Rule::new(Across::Y, 100.0 * batch.threshold, BLACK).dash(Dash::Dashed).label(&limit),
+        Rule::new(Across::X, 1.0, BLACK).dash(Dash::Dotted).label("limit by practice"),
+    ];
+    let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
+    let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
+    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Up to 1 D15F \
+                   is within the limit. Hollow: the limit is at most this, so the ratio is at least this. \
+                   Black: nothing erodes in the model, and a rule of retention or of the filter’s own \
+                   stability is not met. Below the dashed line the walk erodes less than the threshold. The \
+                   class also takes the second run.";
+    Some(Drawn::new("batch-eroded", figure, caption))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn filters_of_one_name_have_a_key() {
+        let filter = |name: &str| BatchFilter {
+            name: name.into(),
+            curves: vec!["f".into()],
+            d15f_mm: None,
+            gradations: Vec::new(),
+        };
+        let of = |names: &[&str]| {
+            let filters = names.iter().map(|name| filter(name)).collect();
+            key(&WalkedBatch::new("s.csv".into(), filters, Vec::new())).into_string()
+        };
+        assert_eq!(
+            of(&["/lab/5/filter.csv", "/lab/7/filter.csv", "c33.csv"]),
+            "<p class=\"small\">The filters: filter (1): 5/filter.csv; filter (2): 7/filter.csv.</p>"
+        );
+        assert_eq!(of(&["/lab/5/filter.csv", "c33.csv"]), "");
+    }
+}

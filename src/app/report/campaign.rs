@@ -1,0 +1,178 @@
+//! The page of a campaign, from `campaign.json` and `ledger.jsonl` alone.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+
+use super::cases::AtRatio;
+use super::error::ReportError;
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule};
+use super::files::{json, json_of, lines, lines_of};
+use super::quantity::{duration, whole};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, leaves_out};
+use super::table::Table;
+use super::written::Written;
+use super::{campaign_cases, cases};
+use crate::outcome::ledger::{Campaign, LedgerLine, leaves_out as of_ledger};
+use crate::outcome::record::{Statistic, Verdict};
+use crate::outcome::statistic::{interval, interval_in_percent};
+use crate::outcome::table::Columns;
+use crate::outcome::verdict::THRESHOLD;
+
+/// Cases drawn one by one; all are in the table.
+const DRAWN: usize = 120;
+
+/// Writes `report.html` and `figures/*.svg` into the folder of a campaign.
+///
+/// # Errors
+/// A file that is missing or malformed; nothing is written then.
+pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
+    let about: Campaign = json(&folder.join(ABOUT))?;
+    let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
+    page(folder, &about, &ledger).write(folder, "report.html", &citation())
+}
+
+/// The page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing.
+///
+/// # Errors
+/// A text that is malformed.
+pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
+    let about: Campaign = json_of(Path::new(ABOUT), about)?;
+    let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
+    // Without a folder no case has a page of its own.
+    Ok(page(Path::new(""), &about, &ledger).text(&citation()))
+}
+
+const ABOUT: &str = "campaign.json";
+const LEDGER: &str = "ledger.jsonl";
+
+fn drawn(ledger: &[LedgerLine]) -> Vec<Drawn> {
+    match ledger.is_empty() {
+        true => Vec::new(),
+        false => vec![by_ratio(ledger), both_runs(ledger), largest(ledger)],
+    }
+}
+
+fn eroded(line: &LedgerLine, run: usize) -> Option<&Statistic> {
+    line.runs.get(run).map(|run| &run.eroded_mass_fraction)
+}
+
+/// Largest eroded particle of the first run, over D15F.
+fn largest_eroded(line: &LedgerLine) -> Option<Statistic> {
+    line.runs.first().and_then(|run| run.largest_eroded_over_d15f)
+}
+
+/// A quantity of each case against the ratio of the filter rules.
+fn against_ratio(
+    words: [&str; 2],
+    y: Axis,
+    rules: Vec<Rule>,
+    ledger: &[LedgerLine],
+    of: impl Fn(&LedgerLine) -> Option<(f64, Option<(f64, f64)>)>,
+) -> Figure {
+    let ratios = ledger.iter().map(|line| line.ratios.d15f_over_d85b);
+    let (low, high) = ratios.fold((f64::MAX, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
+    let margin = 0.05 * (high - low).max(0.2 * high);
+    let x = Axis::linear("D15F / D85B (–)", low - margin, high + margin);
+    let symbol = |line: &LedgerLine| {
+        let (value, interval) = of(line)?;
+        Some(AtRatio {
+            ratio: line.ratios.d15f_over_d85b,
+            class: line.verdict,
+            value,
+            interval,
+            is_against: false,
+            is_bound: false,
+        })
+    };
+    let symbols: Vec<AtRatio> = ledger.iter().filter_map(symbol).collect();
+    cases::against_ratio(words, (x, y), rules, &symbols)
+}
+
+/// Eroded mass of the first run.
+fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
+    let y = Axis::percent("Base eroded in the first run, by mass (%)");
+    let what =
+        "Percent of the base mass eroded in the first run against D15F/D85B, one symbol a case, by class";
+    let mut rules = vec![Rule::new(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
+    let ratios = || ledger.iter().map(|line| line.ratios.d15f_over_d85b);
+    if ratios().any(|r| r < 4.0) && ratios().any(|r| r > 4.0) {
+        rules.push(Rule::new(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
+    }
+    let figure = against_ratio(["Erosion against the filter ratio", what], y, rules, ledger, |line| {
+        eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))
+    });
+    let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval \
+                   over its replicates. D85B is that of the base as it is walked: the table of cases \
+                   says where \
+                   it is regraded. The class also takes the second run.";
+    Drawn::new("by-ratio", figure, caption)
+}
+
+/// First and second run of each case, one row a case.
+fn both_runs(ledger: &[LedgerLine]) -> Drawn {
+    let shown = ledger.iter().take(DRAWN);
+    let shown: Vec<_> = shown.map(|line| (line.case.as_str(), [eroded(line, 0), eroded(line, 1)])).collect();
+    let figure = cases::both_runs(&shown, THRESHOLD, 100.0 + 19.0 * shown.len() as f64);
+    let rest = ledger.len() - shown.len();
+    let more = if rest > 0 { format!(" {rest} more cases are in the table.") } else { String::new() };
+    let caption = format!("Base eroded in the first and in the second run, with 95 % intervals.{more}");
+    Drawn::new("both-runs", figure, caption)
+}
+
+/// Largest particle that left, over D15F.
+fn largest(ledger: &[LedgerLine]) -> Drawn {
+    let of = |line: &LedgerLine| largest_eroded(line).map(|s| (s.mean, interval(&s)));
+    let highest =
+        ledger.iter().filter_map(largest_eroded).map(|s| s.high.unwrap_or(s.mean)).fold(0.2, f64::max);
+    let y = Axis::linear("Largest eroded particle / D15F, first run (–)", 0.0, 1.05 * highest);
+    let what = "Largest eroded particle over D15F against D15F/D85B, one symbol a case";
+    let figure = against_ratio(["Largest eroded particle", what], y, Vec::new(), ledger, of);
+    let caption = "Largest particle that left the filter in the first run, over D15F.";
+    Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
+}
+
+fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
+    let title = if about.title.is_empty() { about.plan.as_str() } else { about.title.as_str() };
+    let count = |class| ledger.iter().filter(|line| line.verdict == class).count() as u64;
+    let classes = Verdict::ALL.map(|class| (class, count(class)));
+    let columns = Columns::default().name("class", "Class", |(class, _): &(Verdict, u64)| *class);
+    let columns = columns.number("cases", "cases", |(_, count)| *count);
+    let first = html! { div.first {
+        section {
+            p.lead { (whole(ledger.len() as u64)) " of " (whole(about.cases)) " cases are done." }
+            (Table::of(classes.iter().filter(|(_, count)| *count > 0), columns))
+            (campaign_cases::undecided(ledger))
+        }
+        (leaves_out(&of_ledger(ledger), &html! {}))
+    } };
+    let missing = html! { @if !about.missing.is_empty() {
+        p { (whole(about.missing.len() as u64)) " cases are missing: continue with the same command." }
+        ul { @for name in about.missing.iter().take(50) { li { (clean(name)) } } }
+    } };
+    let names = html! { b { bdi { (clean(title)) } } };
+    Sections::new(clean(title), "Which of these filters hold?", &names)
+        .words(&first)
+        .contents()
+        .section("Missing cases", &missing)
+        .section("Cases", &campaign_cases::all(folder, about, ledger))
+        .words(&html! { h2 { "Figures" } })
+        .figures(drawn(ledger))
+        .section("How this was made", &provenance(about, ledger))
+}
+
+fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
+    let seconds: f64 = ledger.iter().map(|line| line.made.seconds).sum();
+    let mut versions: Vec<&str> = ledger.iter().map(|line| line.version.as_str()).collect();
+    versions.sort_unstable();
+    versions.dedup();
+    html! {
+        p {
+            "Plan " bdi { (clean(&about.plan)) } ", voidwalk " (versions.join(", ")) ", " (duration(seconds))
+            " from start to end of each case, beside other cases. Each case has a folder of its own with its \
+             report; " code { "ledger.jsonl" }
+            " holds one line per case, " code { "cases.csv" } " the table above."
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The cover of every sheet that can be handed in: for whom and by whom it is, of which day, and by which
+//! program.
+
+use maud::{Markup, html};
+
+use super::figures::shorten;
+use super::shell::clean;
+use voidwalk_practice::SheetCover;
+
+/// Characters of a text of the user's that are shown.
+pub(super) const LINE: usize = 120;
+
+/// Characters that stand at the foot of a printed page.
+const FOOT: usize = 60;
+
+/// Those who sign: on paper their names stand where they do.
+const SIGNED: [&str; 2] = ["Author", "Checked by"];
+
+/// Version and commit of the program, in short.
+pub(super) fn program(version: &str, commit: Option<&str>) -> String {
+    match commit {
+        Some(commit) => format!("{version} ({})", shorten(commit, 12)),
+        None => version.to_owned(),
+    }
+}
+
+/// What was stated, the date, the program and, where something was walked, its seed; on paper blank lines for
+/// what was not stated, and the places of three signatures.
+pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
+    let facts = [
+        ("Project", of.project.clone()),
+        ("Number", of.number.clone()),
+        ("Purpose", of.purpose.clone()),
+        ("Client", of.client.clone()),
+        ("Author", of.author.clone()),
+        ("Checked by", of.checker.clone()),
+        ("Revision", of.revision.clone()),
+        ("Date", of.date.clone()),
+        ("Program", Some(format!("voidwalk {program}"))),
+        ("Seed", seed.map(|seed| seed.to_string())),
+    ];
+    // A place that nobody filled is a blank line on paper; without a seed nothing was walked.
+    let shown = facts.iter().filter(|(name, value)| *name != "Seed" || value.is_some());
+    html! {
+        div.title {
+            dl.about { @for (name, value) in shown { @match value {
+                Some(value) => div class=[SIGNED.contains(name).then_some("signed")] {
+                    dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
+                },
+                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" {
+                    dt { (name) } " " dd {}
+                },
+            } } }
+            (signatures(of))
+        }
+    }
+}
+
+/// What is printed at the foot of every page beside its number: the number of the project, or its name.
+pub(super) fn foot(of: &SheetCover) -> Option<String> {
+    let said = of.number.as_ref().or(of.project.as_ref())?;
+    Some(clean(&shorten(said, FOOT)))
+}
+
+/// Where those sign who prepared, checked and approved the sheet, on paper.
+fn signatures(of: &SheetCover) -> Markup {
+    let who = [("Prepared", of.author.as_ref()), ("Checked", of.checker.as_ref()), ("Approved", None)];
+    html! {
+        table.sign aria-hidden="true" {
+            thead { tr { th {} th { "Name" } th { "Date" } th { "Signature" } } }
+            tbody { @for (did, name) in who { tr {
+                th { (did) }
+                td { @if let Some(name) = name { bdi { (clean(&shorten(name, LINE))) } } }
+                td {} td {}
+            } } }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_is_named_with_the_commit_that_it_was_built_from() {
+        assert_eq!(
+            program("1.0", Some("0123456789abcdef")),
+            format!("1.0 ({})", shorten("0123456789abcdef", 12))
+        );
+        assert_eq!(program("1.0", None), "1.0");
+    }
+
+    #[test]
+    fn every_field_stands_once_and_what_is_not_said_is_a_blank_line() {
+        let text = |text: &str| Some(text.to_owned());
+        let of = SheetCover {
+            project: text("Dam <1>"),
+            number: text("D-2031"),
+            purpose: text("Chimney filter"),
+            client: text("Water Board"),
+            author: text("N. N."),
+            checker: text("M. M."),
+            revision: text("A"),
+            date: text("2026-11-25"),
+        };
+        let page = cover(&of, "1.0", Some(7)).into_string();
+        for said in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
+            assert_eq!(page.matches(said).count(), 1, "{said}: {page}");
+        }
+        // Where they sign, and the foot of every page.
+        assert_eq!(foot(&of).as_deref(), Some("D-2031"));
+        for said in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
+        {
+            assert!(page.contains(said), "{said}: {page}");
+        }
+        assert!(!page.contains("class=\"blank"), "{page}");
+        assert!(
+            page.contains("2026-11-25") && page.contains("voidwalk 1.0") && page.contains(">7<"),
+            "{page}"
+        );
+        let none = cover(&SheetCover::default(), "1.0", None).into_string();
+        assert_eq!((none.matches("<dt>").count(), none.matches("class=\"blank").count()), (9, 8), "{none}");
+        assert!(none.contains("Program") && !none.contains("Seed"), "{none}");
+        let project = SheetCover { project: text("Main dam"), ..SheetCover::default() };
+        assert_eq!((foot(&project).as_deref(), foot(&SheetCover::default())), (Some("Main dam"), None));
+    }
+}

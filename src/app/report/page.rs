@@ -1,0 +1,373 @@
+//! The page of a run.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+
+use super::connectivity::by_connectivity;
+use super::error::ReportError;
+use super::figures::shorten;
+use super::files::json_of;
+use super::first_page::{self, answer, in_short, sizes};
+use super::folder::{RunFolder, checked, walks};
+use super::infiltration::infiltration;
+use super::names::{file_name, is_named, soil_name};
+use super::quantity::{SizeUnit, length, percent, significant, whole};
+use super::results::{replicates, results, varied};
+use super::rules::{rules, sources};
+use super::run_figures;
+use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
+use super::shown::{counts, known};
+use super::verdict_box::{self, Said};
+use super::walks::{RunRows, Walks};
+use super::written::{Written, write_page};
+use super::{appendix, packing, shell::leaves_out};
+use crate::outcome::packing::PackingRecord;
+use crate::outcome::record::{NetworkKind, Outcome, Stopping};
+use crate::outcome::undecided::UndecidedBy;
+use crate::verdict::RunFiles;
+use crate::words::capital;
+use crate::words::grading;
+use crate::words::left_out::left_out_words;
+use crate::words::{first_lines, foremost, sentence, undecided_by};
+use voidwalk_core::text::visible;
+use voidwalk_practice::Note;
+
+/// Characters of `scene.toml` that are shown.
+const SCENE: usize = 100_000;
+
+/// Writes `report.html` and `figures/*.svg` into a finished run folder.
+///
+/// Each file appears whole or not at all, and an older one of the same name is replaced.
+///
+/// # Errors
+/// [`ReportError`] names the file, and where there is one the line and field, that is missing, malformed or
+/// contradicts another. Nothing is written then.
+pub fn write(folder: &Path) -> Result<Written, ReportError> {
+    let (page, figures) = drawn(&RunFolder::read(folder)?);
+    write_page(folder, &figures, &page)
+}
+
+/// Writes the page of a run that was walked now: [`write()`] without a look at its files.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
+    let (page, figures) = drawn(&RunFolder::of(folder, files)?);
+    write_page(folder, &figures, &page)
+}
+
+/// The page of a run whose files would have this content; writes nothing.
+///
+/// # Errors
+/// As [`write()`], with the names that the files would have.
+pub fn run_page(files: RunFiles) -> Result<String, ReportError> {
+    Ok(drawn(&RunFolder::of(Path::new(""), files)?).0)
+}
+
+/// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
+/// what the model leaves out.
+///
+/// # Errors
+/// A text that is malformed.
+pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
+    let path = Path::new("outcome.json");
+    let outcome = checked(path, json_of(path, outcome)?)?;
+    let rows = RunRows::default();
+    let walks = walks(&outcome, &rows);
+    let lines = first_lines(&outcome, &outcome.decision(), SizeUnit::Mm);
+    let said = Said {
+        lines: &lines,
+        meaning: in_words(&outcome, &walks),
+        notes: foremost(&outcome).0,
+        replicate: replicate(&outcome),
+        leaves_out: &outcome.model_leaves_out,
+    };
+    Ok(verdict_box::brief(&walks, &said))
+}
+
+/// What a replicate of a run is: the only one, and each of several. The ends of a range of constrictions have
+/// replicates of their own, which are not counted.
+fn replicate(outcome: &Outcome) -> [&'static str; 2] {
+    match outcome.curve_range {
+        Some(_) => [
+            "one network, one walk, of the curve itself",
+            "a new network and a new walk, of the curve itself",
+        ],
+        None => ["one network, one walk", "a new network and a new walk"],
+    }
+}
+
+/// The page of a run and all its figures.
+fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
+    let walks = run.walks();
+    let verdict = run_figures::verdict(&walks);
+    let gradations = run_figures::gradations(run);
+    let figures: Vec<Drawn> = [
+        run_figures::eroded(&walks),
+        run_figures::layers(&walks),
+        run_figures::retained(&walks),
+        run.packing.as_ref().map(packing::slice),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+
+    let page = page(run, [&verdict, &gradations], &figures);
+    (page, [verdict, gradations].into_iter().chain(figures).collect())
+}
+
+/// The page as text. `gradations` stands on its first sheet, `verdict` and `figures` below it.
+fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn]) -> String {
+    let RunFolder { outcome, decision, .. } = folder;
+    let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
+    let (unit, walks) = (folder.about.unit, &folder.walks());
+    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
+    let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
+        true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
+        false => first_page::QUESTION.to_owned(),
+    };
+    let main = html! {
+        section.sheet {
+            (answer(outcome, decision, unit))
+            (shell::figure(1, gradations))
+            div.pair { (in_short(outcome, decision, unit)) (sizes(outcome, unit)) }
+        }
+        (shell::contents())
+        (notes(outcome, unit))
+        (walk(outcome, walks, verdict))
+        (leaves_out(&outcome.model_leaves_out, &html! {
+            @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
+            p { "The model does not replace a filter test or a designer’s judgement." }
+        }))
+        (rules(decision, unit))
+        // What a client is not handed in stays on the screen.
+        section.screen {
+            h2 { "Figures" }
+            @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
+            (missing(folder, figures))
+            (results(walks))
+            (infiltration(outcome, walks.unit))
+            (by_connectivity(walks))
+            (replicates(walks))
+            (varied(outcome))
+            (inputs(outcome, folder.packing.as_ref(), walks.unit))
+        }
+        (appendix::of_run(outcome, unit))
+        (sources(decision))
+        (provenance(folder, unit))
+    };
+    let foot = first_page::foot_of(folder);
+    page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
+}
+
+/// The void ratio of the filter, where that was given; else what the library has.
+fn void_ratio(outcome: &Outcome) -> String {
+    let is_given = !outcome.notes.iter().any(|note| matches!(note, Note::LibraryOfAnyDensity { .. }));
+    match outcome.inputs.filter.void_ratio {
+        Some(ratio) if !is_given => {
+            format!("not given; {} is that of the packing of the library", significant(ratio))
+        }
+        ratio => known(ratio, significant),
+    }
+}
+
+/// What the walk found: its class, the mass eroded, and what leaves it open.
+fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
+    html! {
+        h2 { "What the model found" }
+        (shell::model())
+        p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
+        div.drawn { (drawing(verdict)) }
+        (verdict_box::eroded_table(walks))
+        @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
+        (verdict_box::replicates_in_words(walks, replicate(outcome)))
+    }
+}
+
+/// What the rule that added replicates arrived at.
+fn stopped(stopping: &Stopping) -> String {
+    let mut text = String::new();
+    if let Some(percent) = stopping.decide_percent {
+        text += &format!(
+            "Replicates were added to decide the verdict at the {percent} % confidence level, corrected for \
+             repeated looks. "
+        );
+    }
+    if let Some(pp) = stopping.target_error_pp {
+        text += &format!("Replicates were added to reach an error of {pp} percentage points. ");
+    }
+    text += if stopping.met { "That was reached." } else { "That was not reached." };
+    text
+}
+
+/// What the class means, in a sentence.
+fn in_words(outcome: &Outcome, walks: &Walks) -> String {
+    match outcome.undecided_by() {
+        Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),
+        _ => verdict_box::in_words(walks),
+    }
+}
+
+/// Every note on the answer.
+fn notes(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    html! {
+        @if !outcome.notes.is_empty() {
+            h2 { "Notes" }
+            ul { @for note in &outcome.notes { li { (unbroken(&sentence(note, unit))) } } }
+        }
+    }
+}
+
+/// Says which figures are missing, and why.
+fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
+    let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
+    let reasons = [
+        ("eroded", "series.csv has no rows: the progress of erosion is not drawn."),
+        ("layers", "layers.csv has no rows: blocking by layer is not drawn."),
+        (
+            "retained",
+            "retained.csv and eroded.csv have no rows for the first run: size curves are not drawn.",
+        ),
+    ];
+    html! {
+        @for (name, reason) in reasons {
+            @if !has(name) { p.small { (reason) } }
+        }
+        @if has("eroded")
+            && folder.rows.series.len() != folder.outcome.replicates.len() * folder.outcome.summary.len()
+        {
+            p.small { "series.csv does not hold every replicate and run: the mean is over those that it \
+                       holds." }
+        }
+    }
+}
+
+fn inputs(outcome: &Outcome, packing: Option<&PackingRecord>, unit: SizeUnit) -> Markup {
+    let inputs = &outcome.inputs;
+    let grading = inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
+    let (filter, base, network) = (&inputs.filter, &inputs.base, &inputs.network);
+    let mm = |value: f64| length(value, unit).to_string();
+    let kind = match (network.kind, network.nx, network.ny, network.nz) {
+        (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) if outcome.network.is_some() => {
+            format!(
+                "cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), where the flow of water \
+                 gives each constriction its direction"
+            )
+        }
+        (NetworkKind::Cubic, Some(nx), Some(ny), Some(nz)) => {
+            format!("directed cubic lattice, {nx} × {ny} × {nz} voids ({nz} along the flow)")
+        }
+        (NetworkKind::Connected, Some(nx), Some(ny), Some(nz)) => {
+            format!(
+                "directed lattice, {nx} × {ny} × {nz} voids ({nz} along the flow), diagonals added and \
+                 constrictions deleted"
+            )
+        }
+        (NetworkKind::Cubic | NetworkKind::Connected, ..) => "directed lattice".to_owned(),
+        (NetworkKind::File, ..) => "read from a file".to_owned(),
+        (NetworkKind::Graph, ..) => "the voids of a packing".to_owned(),
+    };
+    html! {
+        h2 { "Inputs" }
+        details {
+            summary { "Filter, base and network as walked" }
+            h3 { "Filter" }
+            table.facts { tbody {
+                (fact("Name", file_name(&filter.name)))
+                (fact("Cu = D60/D10", known(filter.cu, significant)))
+                (fact("D0, D15, D50, D85 (by mass)",
+                    [filter.d0_mm, filter.d15_mm, filter.d50_mm, filter.d85_mm].map(mm).join(", ")))
+                (fact("D50 by number", mm(filter.d50_by_number_mm)))
+                @if let Some(packing) = packing {
+                    (fact("Packing", format!(
+                        "{} grains, friction {}, {} kPa, mean coordination number {}, seed {}",
+                        whole(packing.grains), significant(packing.friction),
+                        significant(packing.pressure_kpa), significant(packing.after.coordination),
+                        packing.seed)))
+                }
+                (fact("Void ratio", void_ratio(outcome)))
+                (fact("Grains per void, N_p/N_voids", known(outcome.grains_per_void, significant)))
+                (fact("Constriction curve",
+                    format!("{}; uniformity of its sizes, Dc60/Dc10 by number, {}", filter.curve_name,
+                        significant(filter.cu_csd))))
+                (fact("Credit for the curve",
+                    if filter.attribution.is_empty() { "the user’s own" } else { &filter.attribution }))
+            } }
+            h3 { "Base" }
+            table.facts { tbody {
+                (fact("Name", file_name(&base.name)))
+                (fact("Cu = D60/D10", known(base.cu, significant)))
+                (fact("D0, D15, D50 (by mass)",
+                    [Some(base.d0_mm), base.d15_mm, base.d50_mm].map(|d| known(d, mm)).join(", ")))
+                (fact(&format!("D85, D95, D100 (by mass){grading}"),
+                    [base.d85_mm, base.d95_mm, base.d100_mm].map(mm).join(", ")))
+                @if let Some(before) = &base.as_sampled {
+                    (fact("D85, D95, D100 as sampled (not walked)",
+                        [before.d85_mm, before.d95_mm, Some(before.d100_mm)]
+                            .map(|d| known(d, mm)).join(", ")))
+                }
+                @if base.tail_mass_fraction > 0.0 {
+                    (fact("Pan fraction (finer than the finest sieve)",
+                        format!("{} by mass; taken as too fine to block any constriction (passive)",
+                            percent(base.tail_mass_fraction))))
+                }
+                (fact(&format!("D15F/D85B, D15F/D95B{grading}"), format!("{}, {}",
+                    significant(outcome.ratios.d15f_over_d85b), significant(outcome.ratios.d15f_over_d95b))))
+                (fact("Mass of base over mass of filter", known(inputs.mass_ratio, percent)))
+                (fact("Base particles in each run, N_base", format!("{}{}", whole(outcome.n_base),
+                    if Some(outcome.n_base) == outcome.n_base_eq2 { " (Eq. 2)".to_owned() }
+                    else { format!(" (Eq. 2 gives {})", known(outcome.n_base_eq2, whole)) })))
+                (fact("Inserted in each increment", format!("{} of N_base", percent(inputs.inject_share))))
+            } }
+            h3 { "Network" }
+            table.facts { tbody {
+                (fact("Kind", &kind))
+                @if !network.name.is_empty() { (fact("Name", file_name(&network.name))) }
+                (fact("Voids, constrictions", counts([network.voids, network.constrictions])))
+                (fact("Start nodes, layers", counts([network.start_nodes, network.layers])))
+                (fact("Thickness modelled", known(network.thickness_mm, mm)))
+            } }
+        }
+    }
+}
+
+fn provenance(folder: &RunFolder, unit: SizeUnit) -> Markup {
+    let (outcome, manifest) = (&folder.outcome, &folder.manifest);
+    let cut = folder.scene.chars().count() > SCENE;
+    let scene: String = folder.scene.chars().take(SCENE).filter(|c| *c != '\r').map(visible).collect();
+    html! {
+        h2 { "How this was made" }
+        table.facts { tbody {
+            (fact("Seed", outcome.seed.to_string()))
+            (fact("voidwalk",
+                format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
+            (fact("Engine", &outcome.engine))
+            @if !outcome.digest.is_empty() { (fact("Digest of the numbers", &outcome.digest)) }
+            (appendix::input_files(&manifest.inputs))
+        } }
+        div.screen {
+            @if !outcome.left_out.is_empty() {
+                table.facts { tbody {
+                    (fact("Not needed here", left_out_words(&outcome.left_out, unit.short())))
+                } }
+            }
+            details {
+                summary { "Settings (scene.toml)" }
+                pre { (scene) }
+                @if cut { p.small { "Cut here; the whole is in scene.toml." } }
+                p.small { "The same settings give the same results, bit for bit. Machine, command and times \
+                           are in manifest.json." }
+            }
+        }
+    }
+}
+
+fn citation(outcome: &Outcome) -> Markup {
+    let attribution = &outcome.inputs.filter.attribution;
+    html! {
+        (shell::citation())
+        @if !attribution.is_empty() { p { "The constriction curve: " (clean(attribution)) } }
+        p { "The classes: Foster and Fell, as that paper uses them." }
+    }
+}

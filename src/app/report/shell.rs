@@ -1,0 +1,267 @@
+//! What every page is made of: one HTML file that fetches nothing, its head, its figures.
+//!
+//! A page is put together from [`maud::Markup`], which escapes what it is given; texts from outside go
+//! through [`clean()`] too. [`super::write_page()`] writes it with its figures:
+//!
+//! ```
+//! use maud::html;
+//! use voidwalk_app::report::figures::{Axis, BLUE, Figure, Line};
+//! use voidwalk_app::report::shell::{Drawn, clean, drawing, whole_page};
+//! use voidwalk_app::report::write_page;
+//!
+//! let x = Axis::linear("Increment (–)", 0.0, 10.0);
+//! let mut figure = Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
+//! figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
+//! let drawn = Drawn { name: "eroded", caption: "One walk.".into(), figure };
+//!
+//! let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
+//! let page = whole_page("Erosion", &html! { h1 { "Erosion" } }, &main, &html! {});
+//! let folder = tempfile::tempdir()?;
+//! let written = write_page(folder.path(), &[drawn], &page)?;
+//! assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::figures::{Figure, Size};
+use crate::outcome::record::ModelLimit;
+use crate::words::left_out::model_limit;
+use voidwalk_core::text::visible;
+
+const STYLE: &str = include_str!("page.css");
+/// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
+/// new one.
+const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
+
+/// A figure of a page with its caption.
+pub struct Drawn {
+    /// Name of its file, without the ending; no other figure of the page has it.
+    pub name: &'static str,
+    /// What stands below it.
+    pub caption: String,
+    /// The figure.
+    pub figure: Figure,
+}
+
+impl Drawn {
+    /// A figure with the name of its file and its caption.
+    pub fn new(name: &'static str, figure: Figure, caption: impl Into<String>) -> Self {
+        Self { name, caption: caption.into(), figure }
+    }
+}
+
+/// What every page may do: nothing but show itself.
+pub fn content_policy() -> String {
+    // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
+    format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
+}
+
+/// A page as text: `title` for the browser, and what stands in each part of its body.
+pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
+    page_with_foot(None, title, [header, main, footer])
+}
+
+/// The same with what is printed at the foot of every sheet of paper, beside its number.
+pub(super) fn page_with_foot(
+    foot: Option<&str>,
+    title: &str,
+    [header, main, footer]: [&Markup; 3],
+) -> String {
+    let policy = content_policy();
+    let main = with_contents(&main.0);
+    html! {
+        (DOCTYPE)
+        html lang="en" data-foot=[foot] {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(policy);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="referrer" content="no-referrer";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header { (header) }
+                main { (PreEscaped(main)) }
+                footer { (footer) }
+            }
+        }
+    }
+    .into_string()
+}
+
+/// Where the headings below it are to be listed.
+const CONTENTS: &str = "<nav class=\"contents\"></nav>";
+
+/// Lists the headings that follow on the page.
+pub(super) fn contents() -> Markup {
+    html! { (PreEscaped(CONTENTS)) }
+}
+
+/// A page with the list of its headings, where one is wanted, each of which gets a name to be found by.
+fn with_contents(main: &str) -> String {
+    let Some((before, after)) = main.split_once(CONTENTS) else { return main.to_owned() };
+    let mut parts = after.split("<h2>");
+    let mut marked = parts.next().unwrap_or_default().to_owned();
+    let mut headings: Vec<&str> = Vec::new();
+    for part in parts {
+        headings.push(part.split("</h2>").next().unwrap_or_default());
+        marked.push_str(&format!("<h2 id=\"part-{}\">{part}", headings.len()));
+    }
+    let list = html! {
+        nav.contents aria-label="Contents" {
+            @for (index, heading) in headings.iter().enumerate() {
+                @if !heading.contains('<') {
+                    a href=(format!("#part-{}", index + 1)) { (PreEscaped(heading)) } " "
+                }
+            }
+        }
+    };
+    [before, &list.0, &marked].concat()
+}
+
+/// A text from outside without characters that are no text; maud escapes the markup in it.
+pub fn clean(text: &str) -> String {
+    text.chars().map(visible).collect()
+}
+
+/// A sentence, cleaned, in which no line breaks between a number and its unit.
+pub(super) fn unbroken(text: &str) -> String {
+    let mut said = clean(text);
+    for unit in ["%", "mm"] {
+        let (broken, joined) = (format!(" {unit}"), format!("\u{202f}{unit}"));
+        said = (0..10)
+            .fold(said, |said, digit| said.replace(&format!("{digit}{broken}"), &format!("{digit}{joined}")));
+    }
+    said
+}
+
+/// A figure as an element of the page, in all its sizes: the style shows the one that there is room for.
+pub fn drawing(drawn: &Drawn) -> Markup {
+    let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
+    let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
+    let sheet =
+        drawn.figure.has_sheet().then(|| drawn.figure.inline(&format!("{}-sheet", drawn.name), Size::Sheet));
+    html! {
+        div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) }
+        @if let Some(sheet) = sheet { div.paper { (PreEscaped(sheet)) } }
+    }
+}
+
+/// Figures with their captions, numbered from 1.
+pub(super) fn figures(drawn: &[Drawn]) -> Markup {
+    html! { @for (index, drawn) in drawn.iter().enumerate() { (figure(index + 1, drawn)) } }
+}
+
+/// A figure with its number and its caption.
+pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
+    html! {
+        figure.tall[drawn.figure.is_tall()] {
+            (looks(number, &drawn.figure.curves()))
+            (drawing(drawn))
+            figcaption { b { "Figure " (number) ". " } (clean(&drawn.caption)) }
+        }
+    }
+}
+
+/// What a reader can change of a figure on a screen: which curves are shown, and how large. Boxes that the
+/// style alone obeys, as no script runs on a page; in print every curve is there.
+fn looks(number: usize, curves: &[String]) -> Markup {
+    html! {
+        div.looks role="group" aria-label=(format!("Figure {number}, as shown on a screen")) {
+            @for (index, name) in curves.iter().enumerate() {
+                label { input.(format!("show-{}", index + 1)) type="checkbox" checked; " " (clean(name)) }
+            }
+            label { input.larger type="checkbox"; " larger" }
+        }
+    }
+}
+
+/// What the model is, before a page speaks of it.
+pub(super) fn model() -> Markup {
+    html! {
+        p.model {
+            b { "Model" } " (“the walk”): base particles are moved through voids with the filter’s openings \
+            (constrictions): a simulation, not a test."
+        }
+    }
+}
+
+/// What a page says beside its results: what the model does not contain.
+pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
+    html! {
+        aside.leaves {
+            h2 { "What the model leaves out" }
+            ul { @for limit in limits { li { (clean(&model_limit(*limit))) } } }
+            (more)
+        }
+    }
+}
+
+/// Whom to cite for the model.
+pub(super) fn citation() -> Markup {
+    html! {
+        h2 { "How to cite" }
+        p {
+            "The model: Shire and O’Sullivan, " cite { "A network model to assess base-filter \
+                                                        combinations" }
+            ", Computers and Geotechnics."
+        }
+    }
+}
+
+/// A row of a table of facts: what it is, and its value.
+pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
+    html! { tr { th { (name) } td { (clean(&value.to_string())) } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The hash is that of `sha256sum`.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_hash_of_the_style_is_its_own() {
+        use base64::Engine as _;
+        use base64::prelude::BASE64_STANDARD;
+        let style = concat!(env!("CARGO_MANIFEST_DIR"), "/report/page.css");
+        let said = std::process::Command::new("sha256sum").arg(style).output().unwrap();
+        let said = String::from_utf8(said.stdout).unwrap();
+        let byte = |at: usize| u8::from_str_radix(&said[at..at + 2], 16).unwrap();
+        let hash = BASE64_STANDARD.encode((0..64).step_by(2).map(byte).collect::<Vec<_>>());
+        assert_eq!(STYLE_HASH, hash, "page.css has changed: STYLE_HASH is {hash} now");
+    }
+
+    #[test]
+    fn the_policy_names_the_style_by_its_hash() {
+        let page = whole_page("A page", &html! {}, &html! {}, &html! {});
+        let (_, style) = page.split_once("<style>").unwrap();
+        let (style, _) = style.split_once("</style>").unwrap();
+        assert!(style == STYLE && page.contains(&format!("style-src 'sha256-{STYLE_HASH}'")));
+    }
+
+    #[test]
+    fn every_printed_page_has_a_foot() {
+        let of = |foot| page_with_foot(foot, "A page", [&html! {}; 3]);
+        let page = of(Some("D-114 \"<b>"));
+        assert!(page.contains("<html lang=\"en\" data-foot=\"D-114 &quot;&lt;b&gt;\">"), "{page}");
+        assert!(of(None).contains("<html lang=\"en\"><head>"));
+        for part in ["--foot:attr(data-foot)", "content:var(--foot)", "counter(page) \" of \" counter(pages)"]
+        {
+            assert!(STYLE.contains(part), "{part}");
+        }
+    }
+
+    #[test]
+    fn headings_are_listed_where_that_is_wanted() {
+        let (part, mark) = ("<h2>Part &amp; 1</h2><p>1</p><h2>Of <b>2</b></h2>", CONTENTS);
+        let page = with_contents(&format!("<h2>Before</h2>{mark}{part}"));
+        let list =
+            "<nav class=\"contents\" aria-label=\"Contents\"><a href=\"#part-1\">Part &amp; 1</a> </nav>";
+        let marked = "<h2 id=\"part-1\">Part &amp; 1</h2><p>1</p><h2 id=\"part-2\">Of <b>2</b></h2>";
+        assert_eq!(page, format!("<h2>Before</h2>{list}{marked}"));
+        assert_eq!(with_contents(part), part);
+    }
+}

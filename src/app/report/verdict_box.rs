@@ -1,0 +1,105 @@
+//! What the box with the verdict says of walks, on a page and in brief.
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use maud::{Markup, Render, html};
+
+use super::quantity::{SizeUnit, percent};
+use super::results::run_heading;
+use super::run_figures;
+use super::shell::clean;
+use super::table::Table;
+use super::walks::Walks;
+use crate::outcome::record::{ModelLimit, RunSummary, Verdict};
+use crate::outcome::statistic::percent_interval;
+use crate::outcome::table::Columns;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::{FirstLine, meaning, sentence};
+use voidwalk_practice::Note;
+
+/// Eroded mass by run, with its interval.
+pub(super) fn eroded_table(walks: &Walks) -> Markup {
+    Table::of(walks.summary, eroded_columns()).render()
+}
+
+/// The columns of that table.
+fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
+    Columns::default()
+        .name("run", "Base eroded, by mass", |run: &RunSummary| run_heading(run.run))
+        .number("mean", "mean", |run| percent(run.eroded_mass_fraction.mean))
+        .number("interval", "95 % interval", |run| {
+            percent_interval(&run.eroded_mass_fraction)
+                .map_or_else(|| "none".to_owned(), |span| span.to_string())
+        })
+}
+
+/// What the class means, in a sentence.
+pub(super) fn in_words(walks: &Walks) -> String {
+    meaning(walks.verdict, walks.summary, walks.threshold)
+}
+
+/// The classes of the replicates, counted; what one replicate is, and what each of several is.
+pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
+    let count = walks.replicates.len();
+    if count == 1 {
+        return format!("1 replicate ({one}).");
+    }
+    let classes = Verdict::ALL.into_iter().filter_map(|class| {
+        let found = walks.replicates.iter().filter(|replicate| replicate.verdict == class).count();
+        let of = if found == count { "all".to_owned() } else { found.to_string() };
+        (found > 0).then(|| format!("{} in {of}", class.words()))
+    });
+    let classes = classes.collect::<Vec<_>>().join(", ");
+    format!("{count} replicates, each {each}: {classes}.")
+}
+
+/// What is said of replicates below the table: how many, by which threshold, and a word where there is one.
+pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
+    html! {
+        p {
+            (tally(walks, what)) " Threshold between the classes: "
+            (percent(walks.threshold).in_digits(3)) "."
+        }
+        @if walks.replicates.len() == 1 {
+            p {
+                b { "One replicate: the scatter is unknown." }
+                " Walk more replicates before relying on this."
+            }
+        }
+    }
+}
+
+/// What a verdict in brief says beside its numbers.
+pub(super) struct Said<'a> {
+    /// The lines of practice and model; of a network the model's alone.
+    pub lines: &'a [(FirstLine, String)],
+    /// What the class means, in the sentence of the page.
+    pub meaning: String,
+    /// What a reader must know besides.
+    pub notes: &'a [Note],
+    /// What one replicate is, and what each of several is.
+    pub replicate: [&'static str; 2],
+    /// What the model leaves out.
+    pub leaves_out: &'a [ModelLimit],
+}
+
+/// The verdict in brief, for a page of another program, as a notebook: no style is needed, and the figure is
+/// a picture, so that several stand on one page.
+pub(super) fn brief(walks: &Walks, said: &Said) -> String {
+    let drawn = run_figures::verdict(walks);
+    let picture = BASE64_STANDARD.encode(drawn.figure.file());
+    let columns = eroded_columns().number("blocked", "constrictions blocked", |run| run.blocked_fraction);
+    html! {
+        div {
+            @for (line, words) in said.lines { p { b { (line.name()) } ": " (clean(words)) "." } }
+            p { (clean(&said.meaning)) }
+            ul { @for note in said.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
+            img src={ "data:image/svg+xml;base64," (picture) }
+                alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
+            (Table::of(walks.summary, columns))
+            (replicates_in_words(walks, said.replicate))
+            p { (clean(&left_out_in_brief(said.leaves_out))) }
+        }
+    }
+    .into_string()
+}

@@ -1,0 +1,161 @@
+//! How a caller follows the work, and stops it.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::error::{AnyError, RunError};
+use super::folder::FolderKind;
+use super::unfinished;
+use crate::case::PackingPlan;
+use crate::outcome::record::Outcome;
+use crate::verdict::RunFiles;
+use voidwalk_core::packing::CompressionProgress;
+use voidwalk_core::store::Folder;
+use voidwalk_practice::Decision;
+use voidwalk_practice::Note;
+use voidwalk_practice::quantity::SizeUnit;
+
+/// What happens while a filter is packed and a case is walked.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// Another process makes the packing that is needed; it is waited for.
+    PackingElsewhere {
+        /// The packing's folder.
+        folder: &'a Path,
+        /// Who makes it.
+        holder: &'a str,
+    },
+    /// A filter is packed, from the start or from where it was stopped.
+    PackingBegun(&'a PackingPlan),
+    /// How far the packing is.
+    Packing(&'a CompressionProgress),
+    /// The packing has ended, well or not.
+    PackingEnded,
+    /// What is to be known of a case before its walk.
+    Noted {
+        /// The most important first.
+        notes: &'a [Note],
+        /// In what the case gives sizes.
+        unit: SizeUnit,
+    },
+    /// Replicates are walked: so many runs, as far as is known.
+    WalkBegun {
+        /// How many.
+        runs: u64,
+    },
+    /// An increment of some run is done.
+    Increment {
+        /// Replicate, counted from 1.
+        replicate: u64,
+        /// Run, counted from 1.
+        run: u64,
+        /// The increment.
+        increment: u64,
+        /// Base particles still moving.
+        moving: u64,
+    },
+    /// A run is done.
+    RunDone,
+    /// What came of a run of the case itself, with its own curve and amount of base.
+    RunWalked {
+        /// Replicate, counted from 1.
+        replicate: u64,
+        /// Run, counted from 1.
+        run: u64,
+        /// Mass eroded over mass inserted.
+        eroded_mass_fraction: f64,
+        /// Whether that is below the threshold, exactly.
+        below_threshold: bool,
+    },
+    /// What the verdict follows from, as far as is known; said again where more replicates are needed.
+    VerdictNeeds {
+        /// Replicates of the case itself.
+        replicates: u64,
+        /// Runs of each.
+        runs: u64,
+        /// Whether the ends of the range of its curve are walked beside these.
+        readings: bool,
+    },
+    /// The verdict stands, and what else is walked are studies beside it.
+    VerdictStands {
+        /// The outcome, its studies to come.
+        outcome: &'a Outcome,
+        /// The decision of practice.
+        decision: &'a Decision,
+        /// In what the case gives sizes.
+        unit: SizeUnit,
+    },
+    /// More runs are needed than was known.
+    MoreRuns {
+        /// How many.
+        runs: u64,
+    },
+    /// What a study is at, in words.
+    Studying(&'a str),
+}
+
+/// How a caller follows the work, from any thread, and stops it; the default follows nothing and never stops.
+///
+/// ```
+/// use std::sync::atomic::{AtomicU64, Ordering};
+/// use voidwalk_app::run::Event;
+/// use voidwalk_app::{Callbacks, Case, Scene, walk_case};
+/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
+/// let case = Case::new(Scene::built_in(&small.map(String::from))?)?;
+/// let runs = AtomicU64::new(0);
+/// let on_event = |event: Event| {
+///     if let Event::RunDone = event {
+///         runs.fetch_add(1, Ordering::Relaxed);
+///     }
+/// };
+/// walk_case(&case, &Callbacks { on_event: &on_event, ..Callbacks::default() })?;
+/// assert_eq!(runs.into_inner(), 4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Callbacks<'a> {
+    /// Told of every event.
+    pub on_event: &'a (dyn Fn(Event) + Sync),
+    /// Set to stop: the work ends after the current increment or step, with its progress saved.
+    pub stop: &'a AtomicBool,
+    /// Told what a user must know.
+    pub warn: &'a (dyn Fn(&str) + Sync),
+    /// Called when results of this kind are whole in this folder, before the work counts as done; of a run
+    /// that was walked now with the content of its files.
+    pub on_results: &'a TakeResults<'a>,
+}
+
+/// Takes results of a kind in a folder.
+type TakeResults<'a> = dyn Fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError> + Sync + 'a;
+
+/// The stop flag of who never stops.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+impl Default for Callbacks<'_> {
+    fn default() -> Self {
+        Self { on_event: &|_| {}, stop: &NEVER, warn: &|_| {}, on_results: &|_, _, _| Ok(()) }
+    }
+}
+
+impl Callbacks<'_> {
+    /// Whether the work is to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Says that results are written.
+    pub(crate) fn results(
+        &self,
+        kind: FolderKind,
+        folder: &Path,
+        run: Option<RunFiles>,
+    ) -> Result<(), RunError> {
+        (self.on_results)(kind, folder, run).map_err(RunError::Results)
+    }
+
+    /// Says that results are written, and takes the mark of unfinished work away.
+    pub(crate) fn finish(&self, kind: FolderKind, folder: &Folder) -> Result<(), RunError> {
+        self.results(kind, folder.path(), None)?;
+        Ok(unfinished::end(folder)?)
+    }
+}

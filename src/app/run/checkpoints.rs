@@ -1,0 +1,283 @@
+//! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it
+//! was.
+//!
+//! Of a replicate that is being walked its state is saved, and what was recorded of it so far; of one that is
+//! done its figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
+//! ([`voidwalk_core::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+
+use crate::outcome::record::Run;
+use crate::outcome::{Recorded, Recorder};
+use voidwalk_core::network::Network;
+use voidwalk_core::store::checkpoint::{Checkpoint, CheckpointError, Identity, Label, Section, newest, save};
+use voidwalk_core::store::{Folder, StoreError, files_in, make_folder, remove_folder};
+use voidwalk_core::walk::{SavedState, State};
+
+/// Folder of the checkpoints, inside the run's.
+pub const FOLDER: &str = "checkpoint";
+
+/// What of a replicate is done.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Done {
+    /// Whether all of it is.
+    pub complete: bool,
+    /// Figures of the runs that are done.
+    pub runs: Vec<Run>,
+    /// Whether each of them eroded less than the threshold.
+    pub below: Vec<bool>,
+    /// Their rows of the CSV files.
+    pub recorded: Recorded,
+    /// What has been watched of the run that is under way.
+    pub recorder: Recorder,
+}
+
+/// Which walk of a case: a checkpoint of one is never taken for another's.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkId {
+    /// 0: the walks of the scene itself; from 1: those of the sensitivity study, then those at the ends of
+    /// the constriction curve's range, and those of other thicknesses; from 2^32: those of the margin.
+    pub part: u64,
+    /// Replicate, counted from 1.
+    pub replicate: u64,
+    /// Seed of the replicate.
+    pub seed: u64,
+    /// Base particles of each run.
+    pub n_base: u64,
+}
+
+impl WalkId {
+    /// Name of its checkpoints.
+    fn name(self) -> String {
+        format!("{}-{}", self.part, self.replicate)
+    }
+}
+
+/// How often a walk is saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckpointInterval {
+    /// When this much time has passed since the last time.
+    Time(Duration),
+    /// After every so many increments.
+    Increments(u64),
+}
+
+impl Default for CheckpointInterval {
+    fn default() -> Self {
+        Self::Time(Duration::from_secs(600))
+    }
+}
+
+impl FromStr for CheckpointInterval {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong =
+            || "a time, as 10min or 90s, or a number of increments from 1, as 50increments".to_string();
+        match text.trim_end_matches('s').strip_suffix("increment") {
+            Some(number) => match number.trim().parse() {
+                Ok(number @ 1..) => Ok(Self::Increments(number)),
+                _ => Err(wrong()),
+            },
+            None => humantime::parse_duration(text).map(Self::Time).map_err(|_| wrong()),
+        }
+    }
+}
+
+impl fmt::Display for CheckpointInterval {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time(time) => {
+                write!(f, "{}", humantime::format_duration(*time).to_string().replace(' ', ""))
+            }
+            Self::Increments(number) => write!(f, "{number}increments"),
+        }
+    }
+}
+
+/// Saves the replicates of one case.
+pub struct Checkpoints {
+    folder: PathBuf,
+    scene: String,
+    every: CheckpointInterval,
+    /// Replicates that are done and not on the disk yet, and the next generation of each name.
+    waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
+    generations: Mutex<BTreeMap<String, u64>>,
+    passed_over: Mutex<Vec<String>>,
+}
+
+impl Checkpoints {
+    /// The checkpoints of the case with this fingerprint, in a run's folder.
+    ///
+    /// # Errors
+    /// The folder of the checkpoints cannot be made.
+    pub fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
+        let path = folder.path().join(FOLDER);
+        make_folder(&path)?;
+        Ok(Self {
+            folder: path,
+            scene: scene.to_owned(),
+            every,
+            waiting: Mutex::default(),
+            generations: Mutex::default(),
+            passed_over: Mutex::default(),
+        })
+    }
+
+    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are
+    /// whole.
+    ///
+    /// # Errors
+    /// The system fails to read one.
+    pub fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
+        let folder = folder.join(FOLDER);
+        let files = files_in(&folder)
+            .map_err(|e| CheckpointError::Unreadable { file: folder, source: std::io::Error::other(e) })?;
+        for file in files {
+            match Checkpoint::open(&file) {
+                Ok(Some(saved)) => return Ok(Some(saved.label.identity.scene)),
+                Err(error) if error.is_unreadable() => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether a run's folder holds checkpoints.
+    ///
+    /// # Errors
+    /// The system fails to look.
+    pub fn is_in(folder: &Path) -> Result<bool, StoreError> {
+        Ok(!files_in(&folder.join(FOLDER))?.is_empty())
+    }
+
+    /// Whether it is time to save a walk that was saved `last` and has done this increment.
+    pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
+        stop || match self.every {
+            CheckpointInterval::Time(time) => last.elapsed() >= time,
+            CheckpointInterval::Increments(number) => increment.is_multiple_of(number),
+        }
+    }
+
+    /// What was saved of a replicate: what is done, and the checkpoint of the state of the run that is under
+    /// way.
+    ///
+    /// # Errors
+    /// There are checkpoints of it, but none is whole and of this very walk.
+    pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
+        let name = walk.name();
+        let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
+        if let Ok(mut all) = self.passed_over.lock() {
+            all.extend(refused.iter().map(ToString::to_string));
+        }
+        let Some(saved) = saved else { return Ok(None) };
+        if let Ok(mut generations) = self.generations.lock() {
+            generations.insert(name, saved.label.generation);
+        }
+        Ok(Some((saved.read_record("done")?, saved)))
+    }
+
+    /// Checkpoints that were passed over, and why.
+    pub fn passed_over(&self) -> Vec<String> {
+        self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
+    }
+
+    /// Saves a walk after a whole increment.
+    ///
+    /// # Errors
+    /// What the system says; the checkpoint before stays then.
+    pub fn save_walk(
+        &self,
+        walk: WalkId,
+        network: &Network,
+        state: &State,
+        done: &Done,
+    ) -> Result<(), StoreError> {
+        let text = serde_json::to_vec(done).expect("figures are numbers and words");
+        let saved = SavedState::new(state);
+        let mut sections = saved.sections();
+        sections.push(Section::new("done", &text));
+        let label = Label {
+            network: network.fingerprint(),
+            run: state.run,
+            increment: state.increment,
+            ..self.next_label(walk)
+        };
+        save(&self.folder, &walk.name(), &label, &sections)?;
+        self.flush()
+    }
+
+    /// Takes a replicate that is done; it goes to the disk with the next checkpoint of any.
+    pub fn save_finished(&self, walk: WalkId, done: &Done) {
+        let text = serde_json::to_vec(done).expect("figures are numbers and words");
+        let label = self.next_label(walk);
+        if let Ok(mut waiting) = self.waiting.lock() {
+            waiting.insert(walk.name(), (label, text));
+        }
+    }
+
+    /// Writes the replicates that are done and not on the disk yet.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn flush(&self) -> Result<(), StoreError> {
+        let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
+        for (name, (label, text)) in &waiting {
+            save(&self.folder, name, label, &[Section::new("done", text)])?;
+        }
+        Ok(())
+    }
+
+    /// Removes every checkpoint: the results are whole.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn clear(&self) -> Result<(), StoreError> {
+        remove_folder(&self.folder)
+    }
+
+    fn identity(&self, walk: WalkId) -> Identity {
+        let WalkId { part, replicate, seed, n_base } = walk;
+        Identity { scene: self.scene.clone(), part, replicate, seed, n_base }
+    }
+
+    /// The label of the next checkpoint of a walk, before its first increment.
+    fn next_label(&self, walk: WalkId) -> Label {
+        let generation = self.generations.lock().map_or(1, |mut generations| {
+            let generation = generations.entry(walk.name()).or_insert(0);
+            *generation += 1;
+            *generation
+        });
+        Label { identity: self.identity(walk), generation, ..Label::default() }
+    }
+}
+
+/// Removes the checkpoints in a run's folder, whatever they are of.
+///
+/// # Errors
+/// What the system says.
+pub fn discard(folder: &Path) -> Result<(), StoreError> {
+    remove_folder(&folder.join(FOLDER))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn how_often_is_a_time_or_a_number_of_increments() {
+        assert_eq!("10min".parse(), Ok(CheckpointInterval::Time(Duration::from_secs(600))));
+        assert_eq!("50increments".parse(), Ok(CheckpointInterval::Increments(50)));
+        assert_eq!("1 increment".parse(), Ok(CheckpointInterval::Increments(1)));
+        for wrong in ["", "0increments", "increments", "-1increments", "ten", "1.5increments"] {
+            assert!(wrong.parse::<CheckpointInterval>().unwrap_err().contains("as 10min or 90s"), "{wrong}");
+        }
+    }
+}

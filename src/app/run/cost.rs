@@ -1,0 +1,391 @@
+//! The one cost model: seconds, steps and memory of walks and packings.
+//!
+//! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
+//! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
+//! processor of 2024 that is shared with other work; only what ends in `_here` asks how fast the machine is
+//! on which it runs. `results/speed.md` holds estimates against measured times
+//! (`scripts/checks/check_times.py`).
+
+use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
+use super::planned::{first_replicates, likely_replicates, replicates_of_end};
+use crate::case::{Case, CaseNetwork, PackingPlan};
+use crate::scene::NetworkSource;
+use voidwalk_core::constrictions::Curve;
+use voidwalk_core::packing::is_wide;
+use voidwalk_core::store::platform::THREAD_SECONDS_STEP;
+use voidwalk_core::walk::Engine;
+
+/// Seconds that parts of a walk take on a cubic lattice.
+struct Rates {
+    /// One move of a particle that is walked by itself.
+    moved_s: f64,
+    /// Inserting such a particle.
+    inserted_s: f64,
+    /// Splitting the counts of a void in an increment.
+    void_s: f64,
+    /// Finding out, in an increment, whether a void of a layer that holds counts holds any.
+    looked_at_s: f64,
+}
+
+/// Of a walk whose occupied voids are counted.
+const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
+/// With engine `expected` the counts of a void take so many times as long: on a lattice by area, whose rows
+/// move at once, and on other networks.
+const EXPECTED: [f64; 2] = [0.06, 0.55];
+/// Of a walk of which only the number of voids is known, empty ones included.
+const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
+/// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
+/// times as long.
+const OTHER_NETWORK: f64 = 5.5;
+/// A void holds counts for the increments of insertion and, as the front that passes it is spread out, this
+/// many times the root of the number of layers.
+const SPREAD: f64 = 24.0;
+/// Moves of a particle that nothing stops, by layers: on a directed lattice a third of its moves lead
+/// downstream.
+const MOVES_A_LAYER: f64 = 3.0;
+/// Parts of the curve and of the base in which the moves of a particle are worked out.
+const PARTS: usize = 64;
+/// Seconds to build a network, by its voids and constrictions.
+const NETWORK_S: f64 = 1e-7;
+/// Seconds to write a case's files and page ...
+const FILES_S: f64 = 0.12;
+/// ... and those of a packing besides.
+const PACKED_FILES_S: f64 = 0.1;
+/// The most that a pilot walk of a case may take.
+const PILOT_S: f64 = 0.25;
+/// Share of a case's threads that walks keep busy.
+const BUSY: f64 = 0.7;
+/// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
+/// their seconds grow with the power `GRAINS_POWER` of their number.
+const GRAIN_STEP_S: f64 = 7.5e-8;
+/// See `GRAIN_STEP_S`.
+const GRAINS: f64 = 9_000.0;
+/// See `GRAIN_STEP_S`.
+const GRAINS_POWER: f64 = 0.3;
+/// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its
+/// grains touch nothing.
+const WIDTH_POWER: f64 = -0.4;
+/// Seconds from which on a measured time tells a pace ...
+const LEAST_TIMED_S: f64 = 0.002;
+/// ... and steps of the clock.
+const LEAST_STEPS: f64 = 6.0;
+/// Seconds of the small packing that tells a machine's pace, where a grain and step take `GRAIN_STEP_S`.
+const SMALL_PACKING_S: f64 = 0.105;
+/// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
+/// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
+/// from Cu 4 to Cu 6, with the grains' own masses).
+const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
+/// Steps that packings without friction took at the least (38,700 to 52,500).
+const DENSE_STEPS: f64 = 45_000.0;
+/// Part of those steps that packings take whose sizes differ so much that crowded grains are moved as heavier
+/// ones (Cu 6: 17,800 to 22,500 of 30,900 to 51,100; without friction 20,200 to 36,300 of 30,400 to 50,300).
+const WIDE_STEPS: f64 = 0.55;
+/// How many times as many steps packings took whose friction is lowered at the end, where they settle again
+/// (from 0.7 to 0.3: 1.5 at Cu 1.5, 2.1 and 1.9 at Cu 6).
+const GIVING_WAY: f64 = 1.8;
+/// Seconds to measure the constrictions around a grain, and to write it.
+const MEASURED_GRAIN_S: f64 = 5e-5;
+/// Seconds to read a packing and measure its constrictions.
+pub const MEASURING_S: f64 = 5.0;
+/// Seconds to collect a case into a campaign's ledger.
+const COLLECTING_S: f64 = 0.05;
+/// Bytes that collecting takes: at the least, and for a case.
+const COLLECTING_BYTES: (u64, u64) = (100_000_000, 100_000);
+/// Bytes that packing a grain takes, its constrictions included.
+const GRAIN_BYTES: u64 = 20_000;
+/// Bytes of the program itself and of a page that is being written.
+const PROGRAM_BYTES: u64 = 100_000_000;
+
+/// Increments after which the flow is solved again, as long as constrictions close.
+const SOLVED_EVERY: f64 = 1.5;
+
+/// Solving the flow takes so long for a constriction (s): 0.185 s for 288,000 of them.
+const SOLVE_S: f64 = 6.5e-7;
+
+impl Case {
+    /// Seconds that one thread of a machine of 2024 takes for the whole case, its packing apart: a rough
+    /// guess, the same wherever it is asked for. What a rule that adds replicates may ask for besides is not
+    /// foreseen.
+    pub fn core_seconds(&self) -> f64 {
+        self.foreseen().seconds
+    }
+
+    /// The same for this machine, whose pace the pilot walks of the case tell.
+    pub fn core_seconds_here(&self) -> f64 {
+        let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
+        (seconds - besides) * pace(pilots.took, pilots.said) + besides
+    }
+
+    fn foreseen(&self) -> Foreseen {
+        let files = FILES_S + if self.filter.packed.is_some() { PACKED_FILES_S } else { 0.0 };
+        let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
+        let ends = &self.filter.curve_ends;
+        let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
+        let own = self.of_replicate(self.supply.n_base, most_s);
+        let of_base = |f: f64| self.of_replicate((self.supply.n_base as f64 * f) as u64, most_s);
+        let of_thickness = |factor: f64| match self.network.copies() {
+            None => {
+                self.of_thickness(factor).ok().map(|other| other.of_replicate(other.supply.n_base, most_s))
+            }
+            // As many times the base on as many times the copies; no pilot walks it.
+            Some(_) => {
+                let times = factor * factor.max(1.0);
+                let (seconds, besides) = (times * own.seconds, times * own.besides);
+                Some(Foreseen { seconds, besides, ..Foreseen::default() })
+            }
+        };
+        let points = factors.into_iter().map(of_base);
+        let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
+        let studies = points.map(|point| {
+            // What is not walked by a pilot is taken to erode as the case does.
+            let own = own.eroded.as_deref();
+            let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
+            (likely_replicates(self, eroded), point)
+        });
+        let replicates = first_replicates(self);
+        let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.supply.n_base, most_s);
+        let ends = ends.iter().map(|end| (replicates_of_end(replicates), of_end(&end.curve)));
+        let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
+        let first = begun.and(replicates as f64, &own);
+        studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
+    }
+
+    /// All runs of a replicate with so many base particles, its network included: by a pilot walk, else by a
+    /// guess.
+    fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
+        let runs = self.scene.walk.runs as f64;
+        let guess = self.guessed(n_base);
+        let (voids, constrictions) = (self.network.voids as f64, self.network.constrictions as f64);
+        let besides = runs * guess.solved + (voids + constrictions) * NETWORK_S;
+        match pilot(self, n_base, runs * guess.seconds, most_s) {
+            Some(work) => {
+                // A pilot walks on a lattice by area, whatever the case's own network is.
+                let said = work.of_voids(work.voids, self.of_engine(true));
+                Foreseen {
+                    seconds: work.of_voids(voids, self.slower()) + besides,
+                    besides,
+                    pilots: Pilots { took: work.took, said },
+                    eroded: Some(work.eroded),
+                }
+            }
+            None => Foreseen { seconds: runs * guess.seconds + besides, besides, ..Foreseen::default() },
+        }
+    }
+
+    /// Seconds of one run that meets a clean network all the way.
+    fn guessed(&self, n_base: u64) -> Guess {
+        let CaseNetwork { voids, constrictions, layers, .. } = self.network;
+        let each = self.takes_each(n_base);
+        let one_by_one = self.one_by_one(n_base) as f64;
+        let increments = self.increments() as f64 + SPREAD * (layers as f64).sqrt();
+        let occupied = if each { 0.0 } else { self.slower() * voids as f64 * increments };
+        let solved = match self.scene.exit_rule().needs_flow() {
+            true => (increments / SOLVED_EVERY + 2.0) * constrictions as f64 * SOLVE_S,
+            false => 0.0,
+        };
+        let seconds = COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base));
+        Guess { seconds, solved }
+    }
+
+    /// How many times as long as on a cubic lattice by engine `counts` the counts of a void take.
+    fn slower(&self) -> f64 {
+        let of_network = match self.scene.network.source() {
+            NetworkSource::Cubic(_) => 1.0,
+            _ => OTHER_NETWORK,
+        };
+        of_network * self.of_engine(self.scene.is_lattice_by_area())
+    }
+
+    /// The same of the case's own engine, on a lattice by area or on another network.
+    fn of_engine(&self, is_lattice_by_area: bool) -> f64 {
+        let [of_rows, of_voids] = EXPECTED;
+        match self.scene.walk.engine {
+            Engine::Expected if is_lattice_by_area => of_rows,
+            Engine::Expected => of_voids,
+            _ => 1.0,
+        }
+    }
+
+    /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with
+    /// the chance that it has on the clean network, or until it leaves.
+    fn moves_of_each(&self, n_base: u64) -> f64 {
+        let shares = || (0..PARTS).map(|part| (part as f64 + 0.5) / PARTS as f64);
+        let areas: Vec<(f64, f64)> = shares()
+            .map(|share| self.filter.curve.quantile(share) / self.filter.unit_mm)
+            .map(|d| (d, d * d))
+            .collect();
+        let all: f64 = areas.iter().map(|(_, area)| area).sum();
+        let most = MOVES_A_LAYER * (self.network.layers as f64).max(1.0);
+        let moves = |d: f64| {
+            let stopped =
+                areas.iter().take_while(|(size, _)| *size < d).map(|(_, area)| area).sum::<f64>() / all;
+            if stopped > 0.0 { (1.0 - libm::pow(1.0 - stopped, most)) / stopped } else { most }
+        };
+        let walked = self.supply.sampler.part(self.first_word(n_base)..1 << 64);
+        shares().filter_map(|share| walked.d_by_number(share)).map(moves).sum::<f64>() / PARTS as f64
+    }
+
+    /// Bytes that the program takes where its walks take so many.
+    pub fn program_bytes(&self, walks: u64) -> u64 {
+        let CaseNetwork { voids, constrictions, .. } = self.network;
+        // A network is being built, and a page is being written.
+        walks.saturating_add(PROGRAM_BYTES).saturating_add(100 * (voids + constrictions))
+    }
+}
+
+impl Rates {
+    /// Seconds for voids that hold counts and voids that are looked at, both summed over the increments,
+    /// particles that are walked by themselves, and moves of those.
+    fn seconds(&self, voids: f64, looked_at: f64, one_by_one: f64, moves: f64) -> f64 {
+        self.void_s * voids
+            + self.looked_at_s * looked_at
+            + self.inserted_s * one_by_one
+            + self.moved_s * moves
+    }
+}
+
+impl WorkByVoid {
+    /// Seconds that so much work takes on so many voids, whose counts take so many times as long as on a
+    /// lattice by engine `counts`.
+    fn of_voids(&self, voids: f64, slower: f64) -> f64 {
+        let [occupied, looked_at] = [self.occupied, self.looked_at].map(|each| voids * each * slower);
+        WALK.seconds(occupied, looked_at, voids * self.one_by_one, voids * self.moves)
+    }
+}
+
+/// What is foreseen of walks.
+#[derive(Default)]
+struct Foreseen {
+    seconds: f64,
+    /// Those of them in which nothing is walked: networks are built, the flow is solved, files are written.
+    besides: f64,
+    /// The pilot walks by which it was.
+    pilots: Pilots,
+    /// Eroded mass fraction by run, where a pilot walk says.
+    eroded: Option<Vec<f64>>,
+}
+
+impl Foreseen {
+    /// This, and so many times `other`, whose pilot walks were walked once.
+    fn and(self, times: f64, other: &Self) -> Self {
+        let Pilots { took, said } = self.pilots;
+        Self {
+            seconds: self.seconds + times * other.seconds,
+            besides: self.besides + times * other.besides,
+            pilots: Pilots { took: took + other.pilots.took, said: said + other.pilots.said },
+            eroded: self.eroded,
+        }
+    }
+}
+
+/// How many times as long as was said something took; 1 where a clock cannot tell.
+fn pace(took: f64, said: f64) -> f64 {
+    let least = LEAST_TIMED_S.max(LEAST_STEPS * THREAD_SECONDS_STEP);
+    if took >= least && said > 0.0 { took / said } else { 1.0 }
+}
+
+/// Seconds of pilot walks: what they took here, and what the rates of this module say.
+#[derive(Clone, Copy, Default)]
+struct Pilots {
+    took: f64,
+    said: f64,
+}
+
+/// Seconds of a run, those in which the flow is solved apart.
+struct Guess {
+    seconds: f64,
+    solved: f64,
+}
+
+impl PackingPlan {
+    /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever
+    /// it is asked for.
+    pub fn core_seconds(&self) -> f64 {
+        // Stiffer grains move in shorter steps.
+        let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
+        let grains = self.compression.grains as f64;
+        let wider = libm::pow(self.line_cu() / 1.5, WIDTH_POWER);
+        let step_s = GRAIN_STEP_S * wider * libm::pow(grains / GRAINS, GRAINS_POWER);
+        grains * (self.usual_steps() as f64 * stiffness * step_s + MEASURED_GRAIN_S)
+    }
+
+    /// The same for this machine, whose pace a small packing tells.
+    pub fn core_seconds_here(&self) -> f64 {
+        self.core_seconds() * pace(small_packing_seconds(), SMALL_PACKING_S)
+    }
+
+    /// Cu of the straight line between the same largest and smallest diameters.
+    fn line_cu(&self) -> f64 {
+        libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm())
+    }
+
+    /// Steps that packings of this friction and width of gradation took.
+    pub fn usual_steps(&self) -> u64 {
+        let cu = self.line_cu();
+        let (at_1_5, power, most) = STEPS;
+        let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
+        let steps = if self.compression.friction == 0.0 { steps.max(DENSE_STEPS) } else { steps };
+        let steps = if is_wide(&self.gradation) { WIDE_STEPS * steps } else { steps };
+        let gives_way = self.compression.friction > self.compression.final_friction;
+        let steps = if gives_way { GIVING_WAY * steps } else { steps };
+        100 * (steps / 100.0).round() as u64
+    }
+
+    /// The most bytes that packing it takes.
+    pub fn program_bytes(&self) -> u64 {
+        PROGRAM_BYTES + self.compression.grains as u64 * GRAIN_BYTES
+    }
+}
+
+/// Seconds that a case takes on so many threads of its own.
+pub fn seconds_on(case: &Case, threads: u64) -> f64 {
+    case.core_seconds() / (threads as f64 * BUSY)
+}
+
+/// Seconds and bytes that collecting so many cases takes, `measuring_s` for the packing of each.
+pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
+    let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
+    (cases as f64 * (COLLECTING_S + measuring_s), bytes)
+}
+
+/// Seconds in words: `40 s`, `12 min`, `3.5 h`.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{:.0} s", s.ceil()),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+    use crate::run::prepare::Draft;
+
+    #[test]
+    fn a_clock_that_cannot_tell_changes_nothing() {
+        assert_eq!([pace(0.0, 0.1), pace(0.001, 0.0001), pace(0.5, 0.0)], [1.0; 3]);
+        // On any system with a clock.
+        assert_eq!(pace(0.2, 0.1), 2.0);
+    }
+
+    /// The packing of a Cu 1.5 filter with friction 0.7, by the model written out.
+    #[test]
+    fn a_packing_takes_what_the_model_says_and_here_as_many_times_that_as_the_machine_is_slower() {
+        let text = b"[filter]\ncu = 1.5\nfriction = 0.7\n[base]\ncu = 1.5\nd85_at_dc = 5\n";
+        let draft = Draft::new(Scene::parse(text, "s.toml", &[]).unwrap()).unwrap();
+        let plan = draft.packing.unwrap();
+        let (seconds, grains) = (plan.core_seconds(), plan.compression.grains as f64);
+        let expected = grains * (12_000.0 * 1.8 * 7.5e-8 * (grains / 9_000.0).powf(0.3) + 5e-5);
+        assert!((seconds / expected - 1.0).abs() < 1e-9, "{seconds} for {expected}");
+        let here = seconds * pace(small_packing_seconds(), SMALL_PACKING_S);
+        assert_eq!(plan.core_seconds_here(), here);
+    }
+
+    #[test]
+    fn a_duration_has_the_unit_that_one_would_say() {
+        let said = [0.2, 89.0, 90.0, 5399.0, 5400.0].map(duration);
+        assert_eq!(said, ["1 s", "89 s", "2 min", "90 min", "1.5 h"]);
+    }
+}

@@ -1,0 +1,436 @@
+//! Claims the folder that a command writes to, by one rule for all commands.
+
+use std::path::{Path, PathBuf};
+
+use super::checkpoints::Checkpoints;
+use super::error::RunError;
+use super::unfinished::{self, Unfinished};
+use crate::case::{GRAINS, INPUT_FILES, RECORD};
+use voidwalk_core::store::format::{self, Format};
+use voidwalk_core::store::{Folder, StoreError};
+use voidwalk_core::text::plain;
+
+/// The files of the checkpoint of a compression that is not finished.
+pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
+
+/// The files of the checkpoint of a search of boundaries that is not finished.
+pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
+
+/// The files of the checkpoint of a percolation study that is not finished.
+pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
+
+/// What `voidwalk export` writes into a folder of that name ...
+const EXPORTED: [&str; 6] =
+    ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
+
+/// ... and how the names of the moments of a walk begin, before their numbers.
+const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
+
+/// What a folder holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FolderKind {
+    /// A scene that was walked.
+    Run,
+    /// A packing of grains with its constrictions.
+    Packing,
+    /// The cases of a plan.
+    Campaign,
+    /// A study of the percolation threshold.
+    Percolation,
+    /// Many samples against filters.
+    Batch,
+    /// Boundaries of the model.
+    Boundary,
+    /// Specifications for many samples.
+    Designs,
+    /// The specification of a filter by practice alone.
+    Specification,
+    /// Sheets and jobs of a page on this machine.
+    Serve,
+    /// Constrictions of a packing from elsewhere.
+    Constrictions,
+}
+
+impl FolderKind {
+    /// Every kind; a packing holds constrictions of its own and so comes before them.
+    pub const ALL: [Self; 10] = [
+        Self::Run,
+        Self::Packing,
+        Self::Campaign,
+        Self::Percolation,
+        Self::Batch,
+        Self::Boundary,
+        Self::Designs,
+        Self::Specification,
+        Self::Serve,
+        Self::Constrictions,
+    ];
+
+    /// What a user calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run => "run",
+            Self::Packing => "packing",
+            Self::Campaign => "campaign",
+            Self::Percolation => "percolation study",
+            Self::Batch => "batch",
+            Self::Boundary => "study of boundaries",
+            Self::Designs => "set of designs",
+            Self::Specification => "specification",
+            Self::Serve => "page's sheets and jobs",
+            Self::Constrictions => "set of constrictions",
+        }
+    }
+
+    /// The form of its record.
+    pub fn format(self) -> Format {
+        match self {
+            Self::Run => format::OUTCOME,
+            Self::Packing => format::PACKING,
+            Self::Campaign => format::CAMPAIGN,
+            Self::Percolation => format::PERCOLATION,
+            Self::Batch => format::BATCH,
+            Self::Boundary => format::BOUNDARY,
+            Self::Designs => format::DESIGNS,
+            Self::Specification => format::SPECIFICATION,
+            Self::Serve => format::SERVE,
+            Self::Constrictions => format::CONSTRICTIONS,
+        }
+    }
+
+    /// The file from which its page is made, which a finished folder holds.
+    pub fn record(self) -> &'static str {
+        self.format().file
+    }
+
+    /// Whether a page is made of its record.
+    pub fn has_page(self) -> bool {
+        !matches!(self, Self::Constrictions | Self::Serve)
+    }
+
+    /// Whether it holds cases that continue by themselves, each in a folder of its own.
+    pub(crate) fn has_cases(self) -> bool {
+        self == Self::Batch
+    }
+
+    /// What else marks such a folder, finished or not.
+    fn marks(self) -> &'static [&'static str] {
+        match self {
+            Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
+            Self::Packing => &STATES,
+            Self::Campaign => &["cases"],
+            Self::Percolation => &LATTICES,
+            Self::Batch => &["pairs"],
+            Self::Boundary => &NETWORKS,
+            // Versions that wrote no record had them.
+            Self::Serve => &["sheets"],
+            _ => &[],
+        }
+    }
+
+    /// The files that such a folder holds, in the order in which they are removed: the first makes it one
+    /// that is not finished.
+    fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Run => &[
+                "scene.toml",
+                "manifest.json",
+                "outcome.json",
+                "report.html",
+                "verdict.xlsx",
+                "series.csv",
+                "layers.csv",
+                "flow.csv",
+                "retained.csv",
+                "eroded.csv",
+                "voids.csv",
+                "constrictions_of_network.csv",
+                "blocked.csv",
+                "retained_by_void.csv",
+            ],
+            Self::Packing => &[
+                RECORD,
+                "report.html",
+                GRAINS,
+                "grains.vtp",
+                "constrictions.csv",
+                "constrictions.json",
+                "constrictions.vtp",
+                STATES[0],
+                STATES[1],
+            ],
+            Self::Campaign | Self::Serve => &[],
+            Self::Percolation => {
+                &["percolation.json", "report.html", "percolation.csv", LATTICES[0], LATTICES[1]]
+            }
+            // Its cases stay, as all that a campaign holds.
+            Self::Batch => &["batch.json", "batch.html", "batch.csv"],
+            Self::Boundary => &["boundary.json", "boundary.html", "boundary.csv", NETWORKS[0], NETWORKS[1]],
+            Self::Designs => &["designs.json", "designs.html", "designs.csv"],
+            Self::Specification => &[
+                "specification.json",
+                "specification.html",
+                "specification.csv",
+                "specification_steps.csv",
+                "specification_products.csv",
+                "specification.xlsx",
+            ],
+            Self::Constrictions => {
+                &["constrictions.json", "constrictions.csv", "constrictions.vtp", "graph.csv", "grains.vtp"]
+            }
+        }
+    }
+
+    /// The figures of its page, in `figures`; those of a campaign stay, as all that it holds.
+    pub fn figures(self) -> &'static [&'static str] {
+        match self {
+            Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "slice"],
+            Self::Packing => &["curves", "slice", "connectivity"],
+            Self::Percolation => &["percolation-sd", "percolation-threshold"],
+            Self::Batch => &["batch-curves", "batch-limits", "batch-eroded"],
+            Self::Boundary => &["boundary"],
+            Self::Designs => &["designs"],
+            Self::Specification => &["specification"],
+            Self::Campaign | Self::Serve | Self::Constrictions => &[],
+        }
+    }
+
+    /// The kind of finished work that a folder holds, if any.
+    pub fn of(folder: &Path) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| folder.join(kind.record()).is_file())
+    }
+
+    /// Whether the work in a folder is finished, its page included; that of a campaign or a server can always
+    /// be added to.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
+        let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
+        Ok(!has(unfinished::FILE)
+            && match self {
+                // With checkpoints, its studies are still to come.
+                Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
+                // With a state beside it, whoever wrote the record was killed before all was done.
+                Self::Packing => has(RECORD) && !STATES.iter().any(|state| has(state)),
+                Self::Campaign | Self::Serve => false,
+                other => has(other.record()),
+            })
+    }
+}
+
+/// Claims a folder for work of this kind: makes it where it is missing, and locks it. That of a campaign may
+/// be shared.
+///
+/// # Errors
+/// A folder that is not the program's own, that another process holds, that holds work of another kind or,
+/// without `overwrite`, finished work of this kind. Nothing in it was changed then.
+pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, RunError> {
+    let folder = match kind {
+        FolderKind::Campaign => Folder::open_shared(path).map_err(no_locks)?,
+        _ => Folder::open(path).map_err(RunError::Claim)?,
+    };
+    let refuse = |problem: String| Err(RunError::Refused(format!("{}: {problem}", shown(path))));
+    // Work that has begun says what it is; that of a corrupt mark is told by its files.
+    let begun = Unfinished::read(&folder)?.map(|begun| begun.kind);
+    let of_begun = |other: &FolderKind| begun.as_deref() == Some(other.name());
+    if let Some(other) = FolderKind::ALL.into_iter().find(|other| *other != kind && of_begun(other)) {
+        return refuse(format!("holds a {}; name another folder", other.name()));
+    }
+    // A packing has constrictions of its own, which are no other work; those of somebody's own grains are.
+    let packed = folder.has(RECORD) || STATES.iter().any(|state| folder.has(state));
+    let packed = kind == FolderKind::Packing && (packed || of_begun(&kind));
+    let is_part = |other| packed && other == FolderKind::Constrictions;
+    for other in FolderKind::ALL.into_iter().filter(|other| *other != kind && !is_part(*other)) {
+        if folder.has(other.record()) || other.marks().iter().any(|mark| folder.has(mark)) {
+            return refuse(format!("holds a {}; name another folder", other.name()));
+        }
+    }
+    if !overwrite && kind.is_finished(folder.path())? {
+        return refuse(format!("holds a {} already; name another folder or add --overwrite", kind.name()));
+    }
+    Ok(folder)
+}
+
+/// Clears a claimed folder of what earlier work of this kind left there, but for the checkpoints of a run,
+/// before the first file of other work is written. The first file that goes makes the folder one that is not
+/// finished; what the program does not know to be its own stays.
+///
+/// # Errors
+/// What the system says.
+pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    let files = kind.files();
+    if kind == FolderKind::Packing && folder.has(RECORD) {
+        // Or its constrictions would be taken for those of somebody's own grains when the record is gone.
+        Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)?;
+    }
+    folder.remove_all(&files[..files.len().min(1)])?;
+    clear_results(folder, kind)?;
+    if kind == FolderKind::Run {
+        folder.remove_all_in("inputs", &INPUT_FILES)?;
+    }
+    folder.remove_all(&[unfinished::FILE])
+}
+
+/// Clears a claimed folder, and marks it as one whose work of this kind is not whole yet.
+///
+/// # Errors
+/// What the system says.
+pub fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    clear(folder, kind)?;
+    Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)
+}
+
+/// Clears a claimed folder as [`clear`], but for the scene of a run and its input files.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
+    clear_results(folder, FolderKind::Run)?;
+    folder.remove_all(&[unfinished::FILE])
+}
+
+fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+    let files: Vec<&str> = kind.files().iter().copied().filter(|name| *name != "scene.toml").collect();
+    folder.remove_all(&files)?;
+    // The pictures were made of the drawings by others, as `scripts/browser/figures_to_png.sh`.
+    let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
+    let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
+    folder.remove_all_in("figures", &figures)?;
+    folder.remove_all_in("export", &exported(folder.path()))
+}
+
+/// Refuses files from which work is begun and that [`clear`] would take away before it is: a kill in between
+/// would lose them.
+///
+/// # Errors
+/// The file.
+pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]) -> Result<(), RunError> {
+    let Ok(own) = folder.path().canonicalize() else { return Ok(()) };
+    let goes = |name: &Path| match (name.parent(), name.file_name().and_then(|name| name.to_str())) {
+        (Some(parent), Some(name)) if parent == Path::new("") => kind.files().contains(&name),
+        (Some(parent), Some(name)) => parent == Path::new("inputs") && INPUT_FILES.contains(&name),
+        _ => false,
+    };
+    let is_cleared =
+        |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&own).is_ok_and(&goes));
+    match files.iter().find(is_cleared) {
+        Some(file) => Err(RunError::Refused(format!(
+            "{}: lies in {}, and goes before new results are written there: a kill would lose it; name \
+             another folder by --out",
+            shown(file),
+            shown(folder.path())
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Names of what `voidwalk export` wrote in a folder.
+fn exported(folder: &Path) -> Vec<String> {
+    let is_moment = |name: &str| {
+        let number = EXPORTED_MOMENTS.iter().find_map(|begin| name.strip_prefix(begin)?.strip_suffix(".vtu"));
+        number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+    };
+    let inside = std::fs::read_dir(folder.join("export")).into_iter().flatten().flatten();
+    let moments = inside.filter_map(|entry| entry.file_name().into_string().ok()).filter(|n| is_moment(n));
+    EXPORTED.iter().map(ToString::to_string).chain(moments).collect()
+}
+
+/// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without
+/// results.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
+    let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
+    for name in names {
+        match claim(Path::new(&name), FolderKind::Run, false) {
+            Ok(folder) if folder.has("outcome.json") || Checkpoints::is_in(folder.path())? => {}
+            Err(RunError::Refused(_)) => {}
+            Err(RunError::Claim(
+                StoreError::Held { .. } | StoreError::NotOurs { .. } | StoreError::NotAFolder { .. },
+            )) => {}
+            other => return other,
+        }
+    }
+    unreachable!("there is no last name")
+}
+
+/// Refuses a folder of packings inside one of the program's own that is a link to one elsewhere, which then
+/// would be written to.
+pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
+    match packings.symlink_metadata() {
+        Ok(meta) if meta.is_symlink() => Err(RunError::Refused(format!(
+            "{}: is a symbolic link, which is not followed; put the folder itself there, or remove the link",
+            shown(packings)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// A file system without locks, where cases cannot be claimed, in words.
+fn no_locks(error: StoreError) -> RunError {
+    match &error {
+        StoreError::Io { action: "lock the folder", .. } => RunError::refused(format!(
+            "{error}: this file system has no locks, by which cases are claimed; name a folder on another one"
+        )),
+        _ => RunError::Claim(error),
+    }
+}
+
+/// A path in one line.
+pub(crate) fn shown(path: &Path) -> String {
+    plain(&path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_of_one_kind_never_goes_into_a_folder_of_another() {
+        let root = tempfile::tempdir().unwrap();
+        for held in FolderKind::ALL {
+            let path = root.path().join(held.name());
+            claim(&path, held, false).unwrap().write(held.record(), b"{}").unwrap();
+            for kind in FolderKind::ALL {
+                let own = kind == held;
+                for overwrite in [false, true] {
+                    let claimed = claim(&path, kind, overwrite);
+                    if own {
+                        continue;
+                    }
+                    let error = claimed.unwrap_err();
+                    let message = format!("holds a {}; name another folder", held.name());
+                    assert!(error.to_string().ends_with(&message), "{kind:?} into {held:?}: {error}");
+                    assert_eq!(error.exit().code(), 2);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn finished_work_is_replaced_only_where_that_is_asked_for() {
+        let root = tempfile::tempdir().unwrap();
+        for kind in FolderKind::ALL {
+            let path = root.path().join(kind.name());
+            let folder = claim(&path, kind, false).unwrap();
+            folder.write(kind.record(), b"{}").unwrap();
+            folder.write("manifest.json", b"{}").unwrap();
+            if kind == FolderKind::Run {
+                folder.write("scene.toml", b"").unwrap();
+            }
+            drop(folder);
+            assert_eq!(FolderKind::of(&path), Some(kind));
+            assert!(claim(&path, kind, true).is_ok());
+            match (kind, claim(&path, kind, false)) {
+                (FolderKind::Campaign | FolderKind::Serve, claimed) => assert!(claimed.is_ok()),
+                (_, claimed) => {
+                    let message =
+                        format!("holds a {} already; name another folder or add --overwrite", kind.name());
+                    assert!(claimed.unwrap_err().to_string().ends_with(&message));
+                }
+            }
+        }
+    }
+}

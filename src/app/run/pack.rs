@@ -1,0 +1,278 @@
+//! Packs a filter into a folder, in as many starts of the program as it takes.
+//!
+//! The folder holds, once whole: `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
+//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the
+//! checkpoint `compression` instead ([`voidwalk_core::store::checkpoint`]), from which the next start
+//! continues with the same bits: sections `state` ([`Compression::to_bytes`]) and `seconds` (one number),
+//! under the fingerprint of the plan.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use super::callbacks::{Callbacks, Event};
+use super::cost::duration;
+use super::error::RunError;
+use super::folder::{FolderKind, STATES, claim, clear, shown};
+use super::machine::on_threads;
+use super::packing_record::record;
+use super::unfinished::{self, Unfinished};
+use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
+use crate::outcome::packing::PackingRecord;
+use crate::scene::PackingSpec;
+use voidwalk_core::constrictions::Constrictions;
+use voidwalk_core::packing::{Compression, PackReport, PackingError, draw, tall_start};
+use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
+use voidwalk_core::store::format::{self, from_json};
+use voidwalk_core::store::{Folder, StoreError};
+
+/// The checkpoint of a compression that is not finished; its files are [`STATES`].
+const STATE: &str = "compression";
+
+/// How often a compression is saved, where the user does not say.
+const SAVE_EVERY: Duration = Duration::from_secs(60);
+
+/// How often a packing that another process makes is looked for.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// How a filter is packed; only `overwrite` changes what is there afterwards.
+#[derive(Clone, Debug)]
+pub struct PackOptions {
+    /// Folder for the packing; without one, one of its own in `packings`.
+    pub out: Option<PathBuf>,
+    /// Folder in which packings are kept.
+    pub packings: PathBuf,
+    /// Whether a packing that is there is made anew.
+    pub overwrite: bool,
+    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    pub threads: Option<usize>,
+    /// How often the compression is saved.
+    pub checkpoint_interval: Duration,
+}
+
+impl Default for PackOptions {
+    fn default() -> Self {
+        Self {
+            out: None,
+            packings: "voidwalk-packings".into(),
+            overwrite: false,
+            threads: None,
+            checkpoint_interval: SAVE_EVERY,
+        }
+    }
+}
+
+/// A packing that is whole.
+pub struct FinishedPacking {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What `packing.json` says, as it is.
+    pub json: String,
+    /// The same, read.
+    pub record: PackingRecord,
+    /// What a walk needs of it.
+    pub filter: PackedFilter,
+}
+
+/// Packs a filter into a folder, continuing a packing there that was stopped.
+///
+/// # Errors
+/// A filter that cannot be packed and a folder that cannot be claimed are refused before any work; after a
+/// stop the next call continues.
+pub fn pack(
+    spec: &PackingSpec,
+    options: &PackOptions,
+    callbacks: &Callbacks,
+) -> Result<FinishedPacking, RunError> {
+    let plan = PackingPlan::new(spec).map_err(with_time)?;
+    let out = options.out.clone().unwrap_or_else(|| options.packings.join(plan.folder_name()));
+    let folder = claim(&out, FolderKind::Packing, options.overwrite)?;
+    let begun = Unfinished::read(&folder)?.is_some_and(|begun| begun.work == plan.fingerprint());
+    let saved = STATES.iter().any(|state| folder.has(state));
+    if options.overwrite || !(begun || saved) {
+        clear(&folder, FolderKind::Packing)?;
+    }
+    on_threads(options.threads, || make(&folder, &plan, options.checkpoint_interval, callbacks))?;
+    let json = folder.read(RECORD)?.unwrap_or_default();
+    let record = from_json(&json)?;
+    let filter = PackedFilter::read(&out, &plan)?.ok_or_else(|| gone(&out))?;
+    Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
+}
+
+/// A plan that is refused for its few grains, with the time that grains enough would take.
+pub(super) fn with_time(error: CaseError) -> RunError {
+    let CaseError::NarrowCell { would_do, .. } = &error else { return error.into() };
+    let time = duration(would_do.core_seconds_here());
+    RunError::Refused(format!(
+        "{error}, in about {time} of one core or more; or packing.coarsest = 90, say, packs the finer 90 % \
+         of the mass alone; or filter.library, in place of the density, takes the constrictions from \
+         packings of filters like it"
+    ))
+}
+
+/// The packing of a scene's filter: taken from where packings are kept, its own or else one of the same shape
+/// in another size, or made and kept there; one that another process makes is waited for.
+///
+/// # Errors
+/// As [`pack`].
+pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
+    let path = packings.join(plan.folder_name());
+    let has_page = || path.join(unfinished::FILE).symlink_metadata().is_err();
+    if let Some(filter) = PackedFilter::read(&path, plan)?.filter(|_| has_page()) {
+        return Ok(filter);
+    }
+    if let Some(filter) = PackedFilter::of_same_shape(packings, plan)? {
+        return Ok(filter);
+    }
+    let folder = wait_for(&path, callbacks)?;
+    if !folder.has(RECORD) || folder.has(unfinished::FILE) {
+        make(&folder, plan, SAVE_EVERY, callbacks)?;
+    }
+    PackedFilter::read(&path, plan)?.ok_or_else(|| gone(&path))
+}
+
+fn gone(folder: &Path) -> RunError {
+    RunError::failed(format!("{}: the packing is gone", shown(folder)))
+}
+
+/// The folder of a packing, as soon as no other process is at it.
+fn wait_for(path: &Path, callbacks: &Callbacks) -> Result<Folder, RunError> {
+    let mut told = false;
+    loop {
+        let holder = match Folder::open(path) {
+            Err(StoreError::Held { holder, .. }) => holder,
+            other => return other.map_err(RunError::Claim),
+        };
+        if callbacks.is_stopped() {
+            let problem = "while another process made the packing; continue with the same command";
+            return Err(RunError::Stopped(problem.into()));
+        }
+        if !told {
+            (callbacks.on_event)(Event::PackingElsewhere { folder: path, holder: &holder });
+            told = true;
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// Makes the packing in a folder that was claimed, continuing where an earlier start stopped.
+fn make(
+    folder: &Folder,
+    plan: &PackingPlan,
+    save_every: Duration,
+    callbacks: &Callbacks,
+) -> Result<(), RunError> {
+    // A killed process may have left all but the page.
+    if matches!(PackedFilter::read(folder.path(), plan), Ok(Some(_))) {
+        return finish(folder, callbacks);
+    }
+    let mark = Unfinished {
+        kind: FolderKind::Packing.name().into(),
+        work: plan.fingerprint(),
+        ..Default::default()
+    };
+    mark.begin(folder)?;
+    let begun = Instant::now();
+    (callbacks.on_event)(Event::PackingBegun(plan));
+    let compressed = compress(folder, plan, save_every, callbacks);
+    (callbacks.on_event)(Event::PackingEnded);
+    let (compression, report, seconds_before) = compressed?;
+    let packing = compression.packing();
+    let found = Constrictions::measure(&packing, plan.merge_overlap)?;
+    let grains = packing.to_csv();
+    folder.write(GRAINS, grains.as_bytes())?;
+    folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
+    for (name, text) in found.files(&found.summary()?)? {
+        folder.write(name, text.as_bytes())?;
+    }
+    let seconds = seconds_before + begun.elapsed().as_secs_f64();
+    let record = record(plan, &packing, &grains, &report, seconds)?;
+    folder.write(RECORD, &super::results::json(format::PACKING, &record)?)?;
+    finish(folder, callbacks)
+}
+
+/// Ends a packing whose record is written: only then its checkpoint goes.
+fn finish(folder: &Folder, callbacks: &Callbacks) -> Result<(), RunError> {
+    STATES.iter().try_for_each(|state| folder.remove(state))?;
+    callbacks.finish(FolderKind::Packing, folder)
+}
+
+/// Compresses the grains; with the seconds that earlier starts spent.
+fn compress(
+    folder: &Folder,
+    plan: &PackingPlan,
+    save_every: Duration,
+    callbacks: &Callbacks,
+) -> Result<(Compression, PackReport, f64), RunError> {
+    let settings = &plan.compression;
+    let (mut compression, seconds_before, mut generation) = match saved(folder, plan, callbacks)? {
+        Some(saved) => saved,
+        None => {
+            let sizes = draw(&plan.gradation, settings.grains, settings.seed);
+            let start = tall_start(&sizes, plan.aspect, settings)?;
+            (Compression::new(&start, settings)?.of_gradation(&plan.gradation), 0.0, 0)
+        }
+    };
+    let begun = Instant::now();
+    let mut save_state = |compression: &Compression| {
+        generation += 1;
+        let label = Label { identity: identity(plan), generation, ..Label::default() };
+        let (seconds, state) = ([seconds_before + begun.elapsed().as_secs_f64()], compression.to_bytes());
+        let sections = [Section::new("seconds", &seconds), Section::new("state", &state)];
+        save(folder.path(), STATE, &label, &sections)
+    };
+    loop {
+        let since = Instant::now();
+        let run = compression.run_until(
+            || callbacks.is_stopped(),
+            |progress| {
+                (callbacks.on_event)(Event::Packing(progress));
+                since.elapsed() < save_every
+            },
+        );
+        match run {
+            Ok(report) => return Ok((compression, report, seconds_before)),
+            Err(PackingError::Stopped(steps)) => {
+                save_state(&compression)?;
+                if callbacks.is_stopped() {
+                    let saved = shown(folder.path());
+                    return Err(RunError::Stopped(format!(
+                        "after {steps} steps of the packing; progress saved in {saved}; continue with the \
+                         same command"
+                    )));
+                }
+            }
+            Err(other) => return Err(other.into()),
+        }
+    }
+}
+
+/// The compression that was saved, the seconds spent on it and its generation.
+fn saved(
+    folder: &Folder,
+    plan: &PackingPlan,
+    callbacks: &Callbacks,
+) -> Result<Option<(Compression, f64, u64)>, RunError> {
+    let refused = |error: CheckpointError| match error.is_unreadable() {
+        true => RunError::Checkpoint(error),
+        false => RunError::Refused(format!(
+            "{}: the unfinished compression there cannot be continued: {error}; name another folder or add \
+             --overwrite",
+            shown(folder.path())
+        )),
+    };
+    let (saved, passed_over) = newest(folder.path(), STATE, &identity(plan)).map_err(refused)?;
+    for error in passed_over {
+        (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
+    }
+    let Some(saved) = saved else { return Ok(None) };
+    let seconds = saved.read::<f64>("seconds").map_err(refused)?;
+    let state = saved.read::<u8>("state").map_err(refused)?;
+    let compression = Compression::from_bytes(&plan.compression, &state);
+    let compression = compression.map_err(|e| refused(saved.corrupt(e.to_string())))?;
+    Ok(Some((compression, seconds.first().copied().unwrap_or(0.0), saved.label.generation)))
+}
+
+/// What its checkpoints are of.
+fn identity(plan: &PackingPlan) -> Identity {
+    Identity { scene: plan.fingerprint(), seed: plan.compression.seed, ..Identity::default() }
+}

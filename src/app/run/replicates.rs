@@ -1,0 +1,443 @@
+//! Walks the replicates of a case: a new network and a new walk each.
+
+use std::borrow::Cow;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+use std::time::Instant;
+
+use bitvec::slice::BitSlice;
+use bitvec::vec::BitVec;
+use rayon::prelude::*;
+
+use super::callbacks::{Callbacks, Event};
+use super::checkpoints::{Checkpoints, Done, WalkId};
+use super::error::RunError;
+use super::planned::first_replicates;
+use super::shared_networks::{NetworkToWalk, SharedNetworks};
+use crate::case::{Case, replicate_seed};
+use crate::outcome::record::{Replicate, Run, Stopping, Verdict};
+use crate::outcome::stopping::{Look, ReplicateValues};
+use crate::outcome::verdict::classify;
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{Network, NetworkError};
+
+use crate::outcome::{Recorded, RunId, RunMetrics};
+use crate::scene::NetworkSource;
+use crate::verdict::walks::{self, Walked, is_clogged};
+use voidwalk_core::store::checkpoint::{Checkpoint, CheckpointError};
+use voidwalk_core::walk::{
+    Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Supply, Walk,
+    WalkControl, WalkError, from_words,
+};
+use voidwalk_practice::Note;
+
+/// How replicates are walked: who follows them, and what saves them.
+#[derive(Clone, Copy)]
+pub struct ReplicateContext<'a> {
+    /// Who follows the walks and stops them.
+    pub callbacks: &'a Callbacks<'a>,
+    /// Saves what is done, so that the next start continues from there; nothing is saved without it.
+    pub checkpoints: Option<&'a Checkpoints>,
+    /// Networks that other cases walk, too; each replicate builds its own without them.
+    pub networks: Option<&'a SharedNetworks>,
+}
+
+impl ReplicateContext<'_> {
+    pub(super) fn tell(&self, event: Event) {
+        (self.callbacks.on_event)(event);
+    }
+
+    fn network(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
+        match self.networks {
+            Some(shared) => shared.get(case, seed),
+            None => case.network(seed).map(NetworkToWalk::own),
+        }
+    }
+}
+
+/// One replicate: its figures, and its rows of the CSV files.
+pub struct ReplicateResult {
+    /// What `outcome.json` keeps.
+    pub replicate: Replicate,
+    /// Rows of the CSV files.
+    pub recorded: Recorded,
+    /// The engine that walked the first run.
+    pub engine: Engine,
+    /// What the first run did not need.
+    pub left_out: Vec<Shortcut>,
+    /// Whether less than 7.5 % of the mass eroded, by run.
+    pub(super) below: Vec<bool>,
+}
+
+/// Walks every replicate of the case: as many as the scene says, or until its rule stops.
+///
+/// # Errors
+/// A walk that loses particles, or that was stopped.
+pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+    tell_needs(case, first_replicates(case), context);
+    all_replicates(case, 0, context)
+}
+
+/// Says that the verdict needs so many replicates, as far as is known.
+fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
+    let readings = !case.filter.curve_ends.is_empty();
+    context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
+}
+
+fn all_replicates(
+    case: &Case,
+    part: u64,
+    context: &ReplicateContext,
+) -> Result<Vec<ReplicateResult>, RunError> {
+    let (mut wanted, mut walked) = (first_replicates(case), Vec::new());
+    loop {
+        let more = walked.len() as u64 + 1..=wanted;
+        walked.extend(some_replicates(case, part, more, case.supply.n_base, context)?);
+        match look(case, &walked) {
+            Some(Look::Until(next)) => {
+                context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
+                wanted = next;
+                if part == 0 {
+                    tell_needs(case, wanted, context);
+                }
+            }
+            _ => return Ok(walked),
+        }
+    }
+}
+
+/// What the scene's rule came to, where it has one.
+pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
+    match look(case, walked)? {
+        Look::Stop(stopping) => Some(stopping),
+        Look::Until(_) => None,
+    }
+}
+
+/// A look of the scene's rule at what is walked.
+fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
+    let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
+    Some(rule.look_at_one_of(case.curves(), case.scene.walk.replicates, &values_by_run(walked)))
+}
+
+/// The eroded mass of each run, replicate by replicate, and whether it is below the threshold.
+pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> {
+    let runs = walked.first().map_or(0, |w| w.below.len());
+    let of_run = |run: usize| {
+        walked.iter().map(|w| (w.replicate.runs[run].eroded_mass_fraction, w.below[run])).collect()
+    };
+    (0..runs).map(of_run).collect()
+}
+
+/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
+/// recorded.
+pub(super) fn some_replicates(
+    case: &Case,
+    part: u64,
+    which: RangeInclusive<u64>,
+    n_base: u64,
+    context: &ReplicateContext,
+) -> Result<Vec<ReplicateResult>, RunError> {
+    let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
+    each(which.collect(), case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1, one)
+}
+
+/// Does the same for each of several, side by side where their walks fit into the memory together.
+pub(super) fn each<T: Send, R: Send>(
+    all: Vec<T>,
+    fit: bool,
+    one: impl Fn(T) -> Result<R, RunError> + Sync + Send,
+) -> Result<Vec<R>, RunError> {
+    if fit { all.into_par_iter().map(one).collect() } else { all.into_iter().map(one).collect() }
+}
+
+/// Walks one replicate with `n_base` particles, or takes it from its checkpoint.
+pub(super) fn walk_replicate(
+    case: &Case,
+    part: u64,
+    replicate: u64,
+    n_base: u64,
+    context: &ReplicateContext,
+) -> Result<ReplicateResult, RunError> {
+    go_on(context.callbacks)?;
+    let seed = replicate_seed(case.scene.walk.seed, replicate);
+    let id = WalkId { part, replicate, seed, n_base };
+    let to_walk = context.network(case, seed)?;
+    let network = &to_walk.network;
+    let mut clogged = Clogged::none(network);
+    let first = plan(case, network, &clogged.blocked, n_base);
+    let (mut done, mut saved) = load(id, context)?;
+    let mut exits = if done.complete { None } else { to_walk.exits(case).map(Cow::Borrowed) };
+    while !done.complete {
+        let of = RunId {
+            replicate,
+            run: done.runs.len() as u64 + 1,
+            d15f_mm: case.filter.gradation.d(15.0).unwrap_or(f64::NAN),
+            pan_fraction: case.pan_by_mass_only(),
+        };
+        let run = RunContext { case, network, id, of };
+        let begun = Instant::now();
+        let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
+        run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
+        // What the run leaves open is what the next begins with.
+        (clogged, exits) = (end.state.into_clogged(), end.exits.map(Cow::Owned));
+    }
+    let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
+    Ok(ReplicateResult {
+        replicate: Replicate { seed, verdict, runs: done.runs },
+        recorded: done.recorded,
+        engine: first.engine(),
+        left_out: first.left_out().to_vec(),
+        below: done.below,
+    })
+}
+
+/// What is done of a replicate, and where a run of it was saved; a replicate that is whole is told.
+fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoint>), RunError> {
+    let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
+    let Some(Some((done, saved))) = loaded.transpose().map_err(RunError::Checkpoint)? else {
+        return Ok((Done::default(), None));
+    };
+    if done.complete {
+        done.runs.iter().for_each(|_| context.tell(Event::RunDone));
+        done.runs.iter().zip(&done.below).for_each(|(run, below)| tell_walked(id, run, *below, context));
+    }
+    Ok((done, Some(saved)))
+}
+
+/// Ends a replicate that has not begun, where the caller asked to stop.
+fn go_on(callbacks: &Callbacks) -> Result<(), RunError> {
+    if callbacks.is_stopped() { Err(WalkError::Stopped { increment: 0 }.into()) } else { Ok(()) }
+}
+
+/// Says what came of a run, if it is one of the case itself.
+fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &ReplicateContext) {
+    let (replicate, run, eroded_mass_fraction) = (id.replicate, run.run, run.eroded_mass_fraction);
+    if id.part == 0 {
+        context.tell(Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold });
+    }
+}
+
+/// How a run with these constrictions blocked is walked.
+pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
+    let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
+    let clogging = (case.arching(), case.scene.leaves_openings());
+    RunPlan::with_clogging(engine, network, &case.supply.sampler, blocked, share, clogging)
+        .sampled(case.scene.walk.sampling)
+}
+
+/// What the first run of the first replicate does not need.
+///
+/// # Errors
+/// As [`Case::network`].
+pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
+    let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
+    let open: BitVec = BitVec::repeat(false, network.constrictions());
+    Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
+}
+
+/// Finds out whether every replicate that is known to be walked has a network: one with a distribution of
+/// connectivity is searched for at random, and another replicate's search may fail.
+///
+/// # Errors
+/// A replicate that has none; a stop.
+pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
+    if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
+        return Ok(());
+    }
+    let one = |replicate| {
+        go_on(callbacks)?;
+        let network = case.network(replicate_seed(case.scene.walk.seed, replicate));
+        network.map(drop).map_err(|error| RunError::Refused(format!("replicate {replicate}: {error}")))
+    };
+    let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
+    let fit = case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1;
+    each(replicates.collect(), fit, one).map(drop)
+}
+
+/// What is left of a run.
+struct RunEnd<'a> {
+    state: State,
+    network: Cow<'a, Network>,
+    flow: Option<FlowRecord>,
+    exits: Option<PlainExits>,
+}
+
+/// One run of one replicate.
+struct RunContext<'a> {
+    case: &'a Case,
+    network: &'a Arc<Network>,
+    id: WalkId,
+    of: RunId,
+}
+
+impl RunContext<'_> {
+    /// Walks from the start, with the network's exits where they are known, or from where it was saved.
+    fn walk(
+        &self,
+        clogged: Clogged,
+        exits: Option<Cow<PlainExits>>,
+        done: &mut Done,
+        saved: Option<Checkpoint>,
+        context: &ReplicateContext,
+    ) -> Result<RunEnd<'_>, RunError> {
+        let Self { case, network, id, of } = *self;
+        let (supply, mut state) = self.begin(clogged, saved)?;
+        let mut walk = Walk::with_exits(network, &supply, &state, exits);
+        let (mut last, mut failed) = (Instant::now(), None);
+        let mut wanted = case.scene.record.wanted();
+        // One replicate is picture enough.
+        wanted.voids = wanted.voids.filter(|_| of.replicate == 1);
+        let walked = walk.run(&mut state, &mut |state| {
+            if id.part == 0 {
+                done.recorder.observe(&wanted, state);
+            }
+            let (increment, moving) = (state.increment, state.tally.moving);
+            context.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            let stop = context.callbacks.is_stopped();
+            let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
+            if let Some(checkpoints) = context.checkpoints.filter(due) {
+                if let Err(error) = checkpoints.save_walk(id, network, state, done) {
+                    failed = Some(error);
+                    return WalkControl::Stop;
+                }
+                last = Instant::now();
+            }
+            match stop {
+                true => WalkControl::Stop,
+                false => WalkControl::Continue,
+            }
+        });
+        if let Some(error) = failed {
+            return Err(RunError::Save(error));
+        }
+        walked?;
+        let (end, flow, exits) = walk.end_with_exits(&state)?;
+        // The network outlives what the run was fed from.
+        let network = match end {
+            Cow::Borrowed(_) => Cow::Borrowed(&**network),
+            Cow::Owned(directed) => Cow::Owned(directed),
+        };
+        Ok(RunEnd { state, network, flow, exits })
+    }
+
+    /// What the run is fed from, and its state at the start or where it was saved.
+    fn begin(&self, clogged: Clogged, saved: Option<Checkpoint>) -> Result<(Supply, State), RunError> {
+        let Self { case, network, id: WalkId { seed, n_base, .. }, of } = *self;
+        let clogged = match &saved {
+            // What is left of constrictions now comes with the state.
+            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
+            _ => clogged,
+        };
+        let (plan, sampler) = (plan(case, network, &clogged.blocked, n_base), &case.supply.sampler);
+        let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, of.run);
+        let classes = case.scene.record.wanted().size_classes;
+        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), classes);
+        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
+        let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
+        if let Some(saved) = saved {
+            if saved.label.network != network.fingerprint() {
+                return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
+                    file: saved.path().to_owned(),
+                }));
+            }
+            state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
+        }
+        Ok((supply, state))
+    }
+
+    /// Adds the run to what is done of its replicate, tells of it, and saves the replicate where it is whole.
+    fn record(&self, end: &RunEnd, seconds: f64, done: &mut Done, context: &ReplicateContext) {
+        let RunEnd { state, network, flow, .. } = end;
+        let metrics = RunMetrics::new(network, state, flow.as_ref(), self.of, seconds);
+        let recorder = std::mem::take(&mut done.recorder);
+        if self.id.part == 0 {
+            done.recorded.append(Recorded::new(network, state, flow.as_ref(), &recorder, self.of));
+        }
+        context.tell(Event::RunDone);
+        tell_walked(self.id, &metrics.run, metrics.below_threshold, context);
+        done.below.push(metrics.below_threshold);
+        done.runs.push(metrics.run);
+        done.complete = done.runs.len() as u64 == self.case.scene.walk.runs;
+        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
+            checkpoints.save_finished(self.id, done);
+        }
+    }
+}
+
+/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked
+/// itself.
+fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, RunError> {
+    let mut blocked = from_words(&saved.read("blocked")?, network.constrictions());
+    for constriction in saved.read::<u32>("history_constriction")? {
+        if (constriction as usize) < blocked.len() {
+            network.set_blocked(&mut blocked, constriction as usize, false);
+        }
+    }
+    Ok(blocked)
+}
+
+/// What walks say themselves against their verdict: of a base, in so many increments, through so many layers,
+/// with openings or without.
+pub fn said_by_walks<'a>(
+    verdict: Verdict,
+    walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,
+    base: &Gradation,
+    increments: u64,
+    (layers, openings): (u64, bool),
+) -> Vec<Note> {
+    let walked = walked.into_iter();
+    let mut clogged: Vec<[u64; 3]> = Vec::new();
+    let is_none = |k_over_k0| is_clogged(k_over_k0, openings);
+    for row in walked.clone().flat_map(|w| &w.recorded.flow).filter(|row| is_none(row.k_over_k0)) {
+        // The first row of its run.
+        if clogged.last().is_none_or(|last| last[..2] != [row.replicate, row.run]) {
+            clogged.push([row.replicate, row.run, row.increment]);
+        }
+    }
+    let replicates = walked.map(|w| &w.replicate).collect();
+    let share = 1.0 / increments as f64;
+    walks::notes(verdict, &Walked { replicates, clogged, base, share, layers, openings })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// The figures and rows of a replicate, times apart.
+    fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
+        let context = ReplicateContext { callbacks: &Callbacks::default(), checkpoints: None, networks };
+        let mut walked = walk_replicate(case, 0, 1, case.supply.n_base, &context).unwrap();
+        walked.replicate.runs.iter_mut().for_each(|run| run.seconds = 0.0);
+        assert_eq!(walked.replicate.runs.len(), 2);
+        format!("{:?} {:?}", walked.replicate, walked.recorded)
+    }
+
+    /// Without kept exits, with those that the case has just worked out, and with those that another case
+    /// left: to the bit.
+    #[test]
+    fn a_replicate_is_the_same_whichever_case_has_left_its_network() {
+        let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
+        for engine in ["engine=counts", "engine=expected"] {
+            let case = |more: &[&str]| {
+                let settings: Vec<String> =
+                    small.iter().chain(&[engine]).chain(more).map(ToString::to_string).collect();
+                Case::new(Scene::built_in(&settings).unwrap()).unwrap()
+            };
+            let (before, of) = (case(&["base.cu=3", "replicates=1"]), case(&["base.n_base=30000"]));
+            let (shared, seed) = (SharedNetworks::new(1 << 27), replicate_seed(of.scene.walk.seed, 1));
+            let exits_of = |case: &Case| {
+                let found = shared.get(case, seed).unwrap();
+                found.exits(case).map(|exits| std::ptr::from_ref(exits) as usize).unwrap()
+            };
+            walked(&before, Some(&shared));
+            let left = exits_of(&before);
+            let alone = walked(&of, None);
+            assert_eq!(walked(&of, Some(&shared)), alone, "{engine}: left by another");
+            assert_eq!(exits_of(&of), left);
+            assert_eq!(walked(&of, Some(&SharedNetworks::new(1 << 27))), alone, "{engine}: its own");
+            assert_eq!(walked(&of, Some(&SharedNetworks::new(0))), alone, "{engine}: no room");
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Networks that several cases of a campaign walk, built once.
+//!
+//! Cases with one seed draw their networks from the same random numbers; where nothing that makes a network
+//! differs, it is the same network, and one of them is enough. The bits are those of networks that each case
+//! builds for itself. With a network stay the exits that first runs begin with, as far as there is room.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, OnceLock};
+
+use crate::case::Case;
+use voidwalk_core::network::{Network, NetworkError};
+use voidwalk_core::walk::PlainExits;
+
+/// Networks that are kept take no more than this (bytes), and no more than one part in so many of what the
+/// walks may take.
+const MOST_BYTES: u64 = 1 << 27;
+const PART: u64 = 16;
+
+/// Which exits draws pick on a network of which nothing is blocked, once a case has worked them out.
+type KeptExits = Arc<OnceLock<PlainExits>>;
+
+/// A network to walk, and its exits as far as somebody keeps them.
+pub struct NetworkToWalk {
+    /// The network.
+    pub network: Arc<Network>,
+    exits: Option<KeptExits>,
+}
+
+impl NetworkToWalk {
+    /// A network that nobody keeps.
+    pub fn own(network: Network) -> Self {
+        Self { network: Arc::new(network), exits: None }
+    }
+
+    /// The exits that the first run of a case begins with: worked out by the first case that asks. `None`
+    /// where nobody keeps them, or the case begins with others.
+    pub fn exits(&self, case: &Case) -> Option<&PlainExits> {
+        let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
+        if kept.get().is_none() {
+            // Nobody waits here: two that work them out find the same bits.
+            let _ = kept.set(PlainExits::unblocked(&self.network));
+        }
+        kept.get()
+    }
+}
+
+/// A network that is kept.
+struct KeptNetwork {
+    key: u128,
+    network: Arc<Network>,
+    exits: Option<KeptExits>,
+    /// Bytes of the network and of its exits.
+    bytes: [u64; 2],
+}
+
+impl KeptNetwork {
+    fn bytes(&self) -> u64 {
+        let [network, exits] = self.bytes;
+        network.saturating_add(if self.exits.is_some() { exits } else { 0 })
+    }
+
+    fn to_walk(&self) -> NetworkToWalk {
+        NetworkToWalk { network: self.network.clone(), exits: self.exits.clone() }
+    }
+}
+
+/// Networks by what makes them.
+pub struct SharedNetworks {
+    kept: Mutex<VecDeque<KeptNetwork>>,
+    most_bytes: u64,
+}
+
+impl SharedNetworks {
+    /// What is kept, where walks and networks together may take so much memory (bytes).
+    pub fn bytes(memory: u64) -> u64 {
+        MOST_BYTES.min(memory / PART)
+    }
+
+    /// Keeps none yet, and never more than so many bytes. Exits go before networks, and what was kept first
+    /// goes first.
+    pub fn new(most_bytes: u64) -> Self {
+        Self { kept: Mutex::default(), most_bytes }
+    }
+
+    /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
+    ///
+    /// # Errors
+    /// As [`Case::network`].
+    pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
+        let Some(key) = case.network_key(seed) else {
+            return Ok(NetworkToWalk::own(case.network(seed)?));
+        };
+        if let Some(found) = self.find(key) {
+            return Ok(found);
+        }
+        // Others are found meanwhile; two that build the same one build the same bits.
+        let network = Arc::new(case.network(seed)?);
+        let bytes = case.shared_network_bytes();
+        let exits = (bytes[1] > 0).then(KeptExits::default);
+        self.keep(KeptNetwork { key, network: network.clone(), exits, bytes });
+        Ok(self.find(key).unwrap_or(NetworkToWalk { network, exits: None }))
+    }
+
+    fn keep(&self, new: KeptNetwork) {
+        let Ok(mut kept) = self.kept.lock() else { return };
+        if kept.iter().any(|other| other.key == new.key) {
+            return;
+        }
+        kept.push_back(new);
+        let mut bytes = kept.iter().map(KeptNetwork::bytes).fold(0, u64::saturating_add);
+        for of in kept.iter_mut() {
+            if bytes > self.most_bytes && of.exits.take().is_some() {
+                bytes -= of.bytes[1];
+            }
+        }
+        while bytes > self.most_bytes
+            && let Some(first) = kept.pop_front()
+        {
+            bytes -= first.bytes();
+        }
+    }
+
+    fn find(&self, key: u128) -> Option<NetworkToWalk> {
+        let kept = self.kept.lock().ok()?;
+        kept.iter().find(|other| other.key == key).map(KeptNetwork::to_walk)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn case(settings: &[&str]) -> Case {
+        let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
+        let settings: Vec<String> = small.iter().chain(settings).map(|s| s.to_string()).collect();
+        Case::new(Scene::built_in(&settings).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn what_makes_no_network_shares_it_and_what_makes_one_does_not() {
+        let shared = SharedNetworks::new(MOST_BYTES);
+        let own = case(&[]);
+        let network = shared.get(&own, 5).unwrap().network;
+        assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
+        for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
+        {
+            assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap().network), "{same:?}");
+        }
+        for other in [
+            vec!["network.nx=7"],
+            vec!["filter.curve=shire2016-cu1.5-dense"],
+            vec!["walk.exit=flux"],
+            vec!["network.connectivity=table3"],
+            vec!["filter.d0_mm=2"],
+        ] {
+            let (other, name) = (case(&other), other);
+            let found = shared.get(&other, 5).unwrap().network;
+            assert!(!Arc::ptr_eq(&network, &found), "{name:?}");
+            assert_eq!(found.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+        }
+        assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap().network));
+    }
+
+    /// Exits are worked out only where first runs begin with them, whichever case the network was built for.
+    #[test]
+    fn exits_stay_with_the_networks_whose_walks_take_them() {
+        let shared = SharedNetworks::new(MOST_BYTES);
+        let exits_of = |set: &[&str]| {
+            let (case, mut at) = (case(set), None);
+            let found = shared.get(&case, 5).unwrap();
+            let has_some = found.exits(&case).inspect(|exits| at = Some(std::ptr::from_ref(*exits) as usize));
+            assert_eq!(has_some.is_some(), case.begins_with_plain_exits(), "{set:?}");
+            at
+        };
+        for without in [vec!["engine=particles"], vec!["network.connectivity=table3"], vec!["walk.exit=flux"]]
+        {
+            assert_eq!(exits_of(&without), None, "{without:?}");
+        }
+        let first = exits_of(&["engine=expected"]);
+        assert!(first.is_some() && exits_of(&["engine=counts", "base.cu=3"]) == first);
+    }
+
+    #[test]
+    fn exits_go_before_networks_and_the_oldest_first() {
+        let case = case(&["engine=expected"]);
+        let [network, exits] = case.shared_network_bytes();
+        assert!(exits > network && network > 0);
+        let kept = |most: u64, seeds: u64| {
+            let shared = SharedNetworks::new(most);
+            for seed in 0..seeds {
+                let has_room = network + exits <= most && most >= seeds * network + exits;
+                let of = shared.get(&case, seed).unwrap();
+                assert!(!has_room || of.exits(&case).is_some());
+            }
+            let kept = shared.kept.lock().unwrap();
+            let bytes: u64 = kept.iter().map(KeptNetwork::bytes).sum();
+            assert!(bytes <= most);
+            let shown: String = kept.iter().map(|of| if of.exits.is_some() { '+' } else { '-' }).collect();
+            (shown, kept.iter().map(|of| of.key).collect::<Vec<_>>())
+        };
+        assert_eq!(kept(3 * (network + exits), 3).0, "+++");
+        assert_eq!(kept(3 * (network + exits), 4).0, "--++");
+        assert_eq!(kept(7 * network, 7).0, "-------");
+        let (shown, keys) = kept(7 * network, 9);
+        assert_eq!((shown.as_str(), keys[0]), ("-------", case.network_key(2).unwrap()));
+        // None where none has room, and no exits are worked out for nobody.
+        assert_eq!(kept(network - 1, 2).0, "");
+        let none = SharedNetworks::new(0).get(&case, 1).unwrap();
+        assert!(none.exits(&case).is_none());
+        assert_eq!((SharedNetworks::bytes(1 << 40), SharedNetworks::bytes(160)), (MOST_BYTES, 10));
+    }
+}

@@ -1,0 +1,67 @@
+//! The mark of a folder whose work has begun and is not whole yet, its page included.
+//!
+//! It is written before the first file of the work and removed after the last, so a folder that holds it is
+//! not finished, whatever else it holds. It says what the work is, so that the same command continues it, and
+//! what a run was told that changes no result.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use voidwalk_core::store::format::from_json;
+use voidwalk_core::store::{Folder, StoreError};
+
+/// The file.
+pub const FILE: &str = ".voidwalk.unfinished";
+
+/// What work in a folder is not whole yet.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unfinished {
+    /// Kind of the folder, as a user calls it.
+    pub kind: String,
+    /// Fingerprint of everything that the results follow from.
+    pub work: String,
+    /// How often a run was told to be saved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint_every: Option<String>,
+}
+
+impl Unfinished {
+    /// What a folder says; `None` where no work is under way, and nothing known where the file is corrupt.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
+        let bytes = folder.read(FILE)?;
+        Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))
+    }
+
+    /// The record of this very work, where all but the page that is made of it was written.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn whole<T: DeserializeOwned>(&self, folder: &Folder, record: &str) -> Result<Option<T>, StoreError> {
+        if Self::read(folder)?.as_ref() != Some(self) {
+            return Ok(None);
+        }
+        Ok(folder.read(record)?.and_then(|bytes| from_json(&bytes).ok()))
+    }
+
+    /// Marks a folder, unless it says the same already.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn begin(&self, folder: &Folder) -> Result<(), StoreError> {
+        if Self::read(folder)?.as_ref() == Some(self) {
+            return Ok(());
+        }
+        folder.write(FILE, &serde_json::to_vec(self).expect("words"))
+    }
+}
+
+/// Takes the mark away: the work is whole.
+///
+/// # Errors
+/// What the system says.
+pub fn end(folder: &Folder) -> Result<(), StoreError> {
+    folder.remove(FILE)
+}

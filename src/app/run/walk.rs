@@ -1,0 +1,381 @@
+//! Walks a scene into a folder, continues a run that was stopped, and walks a case in memory.
+
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+
+use super::callbacks::{Callbacks, Event};
+use super::case_walks::CaseWalks;
+use super::checkpoints::{self, CheckpointInterval, Checkpoints};
+use super::error::{Exit, RunError};
+use super::folder::{
+    FolderKind, claim, claim_first_free, clear, clear_but_scene, outlive_clear, own_packings, shown,
+};
+use super::machine::on_threads;
+use super::planned::runs_to_walk;
+use super::prepare::{PrepareOptions, prepare_into};
+use super::replicates::{ReplicateContext, ReplicateResult};
+use super::results;
+use super::studies::Studies;
+use super::unfinished::{self, Unfinished};
+use crate::case::Case;
+use crate::outcome::Recorded;
+use crate::outcome::record::Outcome;
+use crate::scene::{CurveSource, Scene};
+use voidwalk_core::store::Folder;
+use voidwalk_core::store::format::from_json;
+use voidwalk_core::text::{plain, shell_word};
+use voidwalk_practice::Note;
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{Decision, ordered};
+use voidwalk_sheets::file_and_soil;
+
+/// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
+///
+/// ```
+/// use voidwalk_app::RunOptions;
+/// let options = RunOptions { out: Some("my-run".into()), overwrite: true, ..RunOptions::default() };
+/// assert_eq!(options.prepare.threads, None);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
+    pub out: Option<PathBuf>,
+    /// Whether the results of an earlier run in `out` are replaced.
+    pub overwrite: bool,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// How often the walks are saved, so that a run which is killed can be continued; without it as often as
+    /// the run that is continued was told, else every ten minutes.
+    pub checkpoint_interval: Option<CheckpointInterval>,
+    /// What `manifest.json` says that the run was started with.
+    pub command: String,
+}
+
+/// A run that is whole.
+pub struct FinishedRun {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What came of it, as `outcome.json` says.
+    pub outcome: Outcome,
+    /// The decision of practice on its pair.
+    pub decision: Decision,
+    /// The unit of sizes that its scene asks for (`about.units`).
+    pub unit: SizeUnit,
+}
+
+/// Walks a scene and writes its folder; what a stopped run of this very scene has saved there is continued.
+///
+/// # Errors
+/// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before
+/// any work; then whatever the packing, the walk or the folder brings. After a stop, [`resume`] continues.
+///
+/// # Example
+/// ```
+/// use voidwalk_app::run::{Callbacks, RunOptions, walk_scene};
+/// use voidwalk_app::scene::Scene;
+///
+/// let settings = ["replicates=2", "runs=1", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
+/// let folder = tempfile::tempdir()?;
+/// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+/// let run = walk_scene(Scene::built_in(&settings)?, &options, &Callbacks::default())?;
+/// println!("{}: {}", run.folder.display(), run.outcome.model.class.words());
+/// assert!(run.folder.join("outcome.json").is_file());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn walk_scene(
+    scene: Scene,
+    options: &RunOptions,
+    callbacks: &Callbacks,
+) -> Result<FinishedRun, RunError> {
+    on_threads(options.prepare.threads, || walk_here(scene, options, false, callbacks))
+}
+
+/// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
+/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] say nothing.
+///
+/// # Errors
+/// A folder that holds no run, or a finished one, is refused; then as [`walk_scene`].
+///
+/// # Example
+/// A walk is stopped after its first run, and continued.
+/// ```
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use voidwalk_app::run::{Event, Exit};
+/// use voidwalk_app::{Callbacks, RunOptions, Scene, resume, walk_scene};
+///
+/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
+/// let folder = tempfile::tempdir()?;
+/// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
+/// let stop = AtomicBool::new(false);
+/// let on_event = |event: Event| {
+///     stop.fetch_or(matches!(event, Event::RunDone), Ordering::Relaxed);
+/// };
+/// let callbacks = Callbacks { on_event: &on_event, stop: &stop, ..Callbacks::default() };
+/// let stopped = walk_scene(Scene::built_in(&small.map(String::from))?, &options, &callbacks);
+/// assert_eq!(stopped.err().map(|error| error.exit()), Some(Exit::Stopped));
+/// let run = resume(&folder.path().join("run"), &RunOptions::default(), &Callbacks::default())?;
+/// assert_eq!(run.outcome.replicates.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
+    let (scene, name) = (folder.join("scene.toml"), shown(folder));
+    if !scene.is_file() {
+        let problem = "holds no scene.toml; name the folder of a run that was stopped, or walk a scene into \
+             it: voidwalk run SCENE --out DIR";
+        return Err(RunError::Refused(format!("{name}: {problem}")));
+    }
+    if FolderKind::Run.is_finished(folder)? {
+        let problem = "this run is finished; voidwalk report writes its page again";
+        return Err(RunError::Refused(format!("{name}: {problem}")));
+    }
+    own_packings(&options.prepare.packings)?;
+    let options = RunOptions { out: Some(folder.to_owned()), overwrite: false, ..options.clone() };
+    let scene = Scene::read(&scene, &[])?;
+    on_threads(options.prepare.threads, || walk_here(scene, &options, true, callbacks))
+}
+
+/// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one
+/// per core.
+///
+/// # Errors
+/// A walk that goes wrong, or that was stopped.
+///
+/// # Example
+/// ```
+/// use voidwalk_app::case::Case;
+/// use voidwalk_app::run::{Callbacks, walk_case};
+/// use voidwalk_app::scene::Scene;
+///
+/// let settings = ["replicates=2", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
+/// let case = Case::new(Scene::built_in(&settings)?)?;
+/// let outcome = walk_case(&case, &Callbacks::default())?;
+/// assert_eq!(outcome.replicates.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
+    Ok(walk_case_recorded(case, callbacks)?.0)
+}
+
+/// The same, and the rows of the CSV files of a run folder.
+///
+/// # Errors
+/// As [`walk_case`].
+pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
+    let walk = || {
+        let (begun, notes) = (Instant::now(), case.notes());
+        let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
+        (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
+        let walks = CaseWalks::walk(case, &context)?;
+        let (first, decision) = results::outcome(case, &notes, &walks, Studies::default(), seconds(begun));
+        if !Studies::are_none(case) {
+            let unit = case.about_page().unit;
+            (callbacks.on_event)(Event::VerdictStands { outcome: &first, decision: &decision, unit });
+        }
+        let studies = Studies::walk(case, &walks, &context)?;
+        let (outcome, _) = results::outcome(case, &notes, &walks, studies, seconds(begun));
+        let mut recorded = Recorded::default();
+        walks.replicates.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
+        Ok((outcome, recorded))
+    };
+    match rayon::current_thread_index() {
+        Some(_) => walk(),
+        None => on_threads(None, walk),
+    }
+}
+
+fn walk_here(
+    scene: Scene,
+    options: &RunOptions,
+    resumed: bool,
+    callbacks: &Callbacks,
+) -> Result<FinishedRun, RunError> {
+    let files = files_of(&scene);
+    let at = options.out.as_deref().unwrap_or(Path::new("."));
+    let claim = || claim_for(options, &files);
+    let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
+    let unit = case.about_page().unit;
+    let notes = ordered(case.notes());
+    (callbacks.on_event)(Event::Noted { notes: &notes, unit });
+    let started = SystemTime::now();
+    let fingerprint = case.fingerprint();
+    if resumed {
+        unchanged(&folder, &fingerprint)?;
+    }
+    let begun = begun(&folder, &fingerprint, options.overwrite)?;
+    if begun.is_none() {
+        clear_for(&folder, &files, resumed)?;
+    } else if let Some(outcome) = without_page(&folder, &case)? {
+        callbacks.results(FolderKind::Run, folder.path(), None)?;
+        checkpoints::discard(folder.path())?;
+        unfinished::end(&folder)?;
+        let decision = outcome.decision();
+        return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit });
+    }
+    let told = || begun?.checkpoint_every?.parse().ok();
+    let every = options.checkpoint_interval.or_else(told).unwrap_or_default();
+    let mark = Unfinished {
+        kind: FolderKind::Run.name().into(),
+        work: fingerprint.clone(),
+        checkpoint_every: Some(every.to_string()),
+    };
+    mark.begin(&folder)?;
+    results::write_scene(&folder, &case)?;
+    let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
+    let run =
+        CaseRun { case: &case, notes: &notes, unit, folder: &folder, checkpoints: &checkpoints, callbacks };
+    let (outcome, decision) = run.walk(|answer, walked| {
+        let threads = rayon::current_num_threads() as u64;
+        let manifest = results::manifest(&case, threads, started, options.command.clone());
+        let files = results::files(&case, answer.clone(), walked, manifest)?;
+        results::write(&folder, &case, &files)?;
+        callbacks.results(FolderKind::Run, folder.path(), Some(files))
+    })?;
+    checkpoints.clear()?;
+    unfinished::end(&folder)?;
+    Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
+}
+
+/// Claims the folder of a run of a scene of these files, which must not go with what it replaces.
+fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
+    let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
+    let folder = claim(path, FolderKind::Run, options.overwrite)?;
+    if options.overwrite {
+        outlive_clear(&folder, FolderKind::Run, files)?;
+    }
+    Ok(folder)
+}
+
+/// Clears the folder of a run that begins anew.
+fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
+    if resumed {
+        // Its own scene and files are all that there is of it.
+        clear_but_scene(folder)?;
+    } else {
+        outlive_clear(folder, FolderKind::Run, files)?;
+        clear(folder, FolderKind::Run)?;
+    }
+    Ok(checkpoints::discard(folder.path())?)
+}
+
+/// The files that a scene is made of, itself included where it is one.
+fn files_of(scene: &Scene) -> Vec<PathBuf> {
+    let curve = |source: &Option<CurveSource>| match source {
+        Some(CurveSource::File(path)) => Some(path.clone()),
+        _ => None,
+    };
+    let (filter, base, network) = (&scene.filter, &scene.base, &scene.network);
+    let tables = [&filter.sieve, &filter.measured, &base.sieve, &network.file, &network.packing];
+    let named = tables.into_iter().cloned().chain([curve(&filter.curve), curve(&base.dc_curve)]).flatten();
+    // A soil of a workbook is no part of its path.
+    std::iter::once(scene.name.clone().into()).chain(named.map(|path| file_and_soil(&path).0)).collect()
+}
+
+/// Refuses a run to be continued that is no longer the one that was begun.
+fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
+    match Unfinished::read(folder)? {
+        // Of a corrupt mark nothing is known.
+        Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
+            Err(RunError::Refused(format!(
+                "{}: scene.toml or a file in inputs is not what this run was begun with, or another version \
+                 of voidwalk began it; put it back, or walk the scene anew into another folder: \
+                 voidwalk run SCENE --out DIR",
+                shown(folder.path())
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What is known of an earlier start of this very run in its folder; `None` where there was none, or where
+/// its results are to be replaced, and all that is there is to be cleared.
+fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<Unfinished>, RunError> {
+    if overwrite {
+        return Ok(None);
+    }
+    let begun = Unfinished::read(folder)?.filter(|begun| begun.work == fingerprint);
+    match Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)? {
+        Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
+        // Without a scene they are what was left when a run was to be replaced: nothing continues from them.
+        Some(_) if folder.has("scene.toml") => Err(RunError::Refused(format!(
+            "{}: holds checkpoints of another scene, or of another version of voidwalk; continue with that \
+             one by `voidwalk resume`, or add --overwrite",
+            shown(folder.path())
+        ))),
+        _ => Ok(begun),
+    }
+}
+
+/// The outcome of a run that was killed when all but its page was written.
+fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunError> {
+    if !folder.has("scene.toml") || !folder.has("manifest.json") {
+        return Ok(None);
+    }
+    let outcome = folder.read(FolderKind::Run.record())?;
+    let outcome: Option<Outcome> = outcome.and_then(|bytes| from_json(&bytes).ok());
+    Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
+}
+
+fn seconds(begun: Instant) -> f64 {
+    begun.elapsed().as_secs_f64()
+}
+
+/// A case that is walked into a folder.
+struct CaseRun<'a> {
+    case: &'a Case,
+    notes: &'a [Note],
+    unit: SizeUnit,
+    folder: &'a Folder,
+    checkpoints: &'a Checkpoints,
+    callbacks: &'a Callbacks<'a>,
+}
+
+impl CaseRun<'_> {
+    /// Walks what the verdict follows from, the replicates and what is walked besides, writes what came of
+    /// them, then adds the studies and writes the whole.
+    fn walk(
+        &self,
+        write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
+    ) -> Result<(Outcome, Decision), RunError> {
+        let begun = Instant::now();
+        let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
+        let context = ReplicateContext { callbacks, checkpoints, networks: None };
+        (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
+        let walks = CaseWalks::walk(self.case, &context).map_err(|error| self.ended(error))?;
+        let answer =
+            |studies: Studies| results::outcome(self.case, self.notes, &walks, studies, seconds(begun));
+        for problem in self.checkpoints.passed_over() {
+            (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
+        }
+        let mut first = answer(Studies::default());
+        if Studies::are_none(self.case) {
+            write(&first, &walks.replicates)?;
+            return Ok(first);
+        }
+        // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
+        self.checkpoints.flush()?;
+        first.0.studies_to_come = true;
+        write(&first, &walks.replicates)?;
+        let (outcome, decision) = &first;
+        (self.callbacks.on_event)(Event::VerdictStands { outcome, decision, unit: self.unit });
+        let studies = Studies::walk(self.case, &walks, &context).map_err(|error| self.ended(error))?;
+        let whole = answer(studies);
+        write(&whole, &walks.replicates)?;
+        Ok(whole)
+    }
+
+    /// Saves what is done and not on the disk yet, whatever ended the walk, and says how to continue.
+    fn ended(&self, error: RunError) -> RunError {
+        let flushed = self.checkpoints.flush();
+        match (error.exit(), flushed) {
+            (Exit::Stopped, Ok(())) => RunError::Stopped(format!(
+                "progress saved; continue with `voidwalk resume {}`",
+                plain(&shell_word(&self.folder.path().display().to_string()))
+            )),
+            (Exit::Stopped, Err(error)) => error.into(),
+            (Exit::Refused, _) => {
+                RunError::Refused(format!("{error}; --overwrite begins anew, another --out leaves it alone"))
+            }
+            _ => error,
+        }
+    }
+}

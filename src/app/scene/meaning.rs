@@ -1,0 +1,304 @@
+//! What the settings of a scene mean together: settings that exclude each other, as one value that is one of
+//! several.
+
+use std::path::PathBuf;
+
+use super::keys::{Base, Filter, NetworkKeys, Record};
+use super::values::{CurveSource, NetworkMadeOf};
+use super::{PackingKeys, SceneError};
+use crate::outcome::Wanted;
+use voidwalk_core::network::Connectivity;
+use voidwalk_core::packing::{self, ReadOptions};
+
+/// The filter's gradation by mass.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FilterGradation {
+    /// Linear on semi-log paper from `d0_mm`; `cu` from the shipped curve where it is not given.
+    Linear {
+        /// Smallest grain (mm).
+        d0_mm: f64,
+        /// D60 / D10.
+        cu: Option<f64>,
+    },
+    /// A sieve table, and where its open tail ends (mm).
+    Sieve(PathBuf, Option<f64>),
+}
+
+/// The base's gradation by mass.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BaseGradation {
+    /// Linear on semi-log paper with a given D85B.
+    Linear {
+        /// D60 / D10.
+        cu: f64,
+        /// What sets D85B.
+        d85: D85,
+    },
+    /// A sieve table, and where its open tail ends (mm).
+    Sieve(PathBuf, Option<f64>),
+    /// One size (mm).
+    Single(f64),
+}
+
+/// What sets D85B.
+#[derive(Clone, Debug, PartialEq)]
+pub enum D85 {
+    /// A length (mm).
+    Mm(f64),
+    /// Dc at this percent of the filter's constriction curve, or of another one.
+    AtDc(f64, Option<CurveSource>),
+    /// D15F over this ratio.
+    Ratio(f64),
+}
+
+/// How many base particles.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Amount {
+    /// Mass of base over mass of filter, Eq. (2), and a cap.
+    MassRatio(f64, Option<u64>),
+    /// The number itself.
+    Number(u64),
+}
+
+/// Where a scene's network comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NetworkSource {
+    /// The directed cubic lattice with this many voids along x, y, z.
+    Cubic([u32; 3]),
+    /// The lattice changed until its voids have this distribution of connectivity.
+    Connected([u32; 3], Connectivity),
+    /// A CSV file.
+    File(PathBuf),
+    /// The voids of a packing: of the filter that was packed, or of a file of grains.
+    Graph(Option<PathBuf>, Extent),
+}
+
+/// How far a filter reaches along the flow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// As many layers of voids as the paper's lattice.
+    Usual,
+    /// Copies of a packing.
+    Copies(u32),
+    /// Thickness (mm).
+    Mm(f64),
+    /// Thickness over D50F by mass.
+    D50F(f64),
+}
+
+impl Extent {
+    /// Thickness (mm) of the filter, where it is given as such.
+    pub fn thickness_mm(self, d50f_mm: f64) -> Option<f64> {
+        match self {
+            Self::Mm(mm) => Some(mm),
+            Self::D50F(multiple) => Some(multiple * d50f_mm),
+            Self::Usual | Self::Copies(_) => None,
+        }
+    }
+}
+
+/// Mass of base over mass of filter where a scene does not say: the paper's.
+const MASS_RATIO: f64 = 0.05;
+
+/// Voids along x, y, z where a scene does not say: the paper's.
+const VOIDS: [u64; 3] = [40, 40, USUAL_LAYERS];
+
+/// Layers of voids where a scene does not say: the paper's.
+pub const USUAL_LAYERS: u64 = 60;
+
+impl Filter {
+    pub(super) fn fill_in(&mut self) {
+        if self.sieve.is_none() {
+            self.d0_mm.get_or_insert(1.0);
+        }
+    }
+
+    /// Its gradation by mass.
+    pub fn gradation(&self) -> FilterGradation {
+        match &self.sieve {
+            Some(path) => FilterGradation::Sieve(path.clone(), self.d0_mm),
+            None => FilterGradation::Linear { d0_mm: self.d0_mm.unwrap_or(1.0), cu: self.cu },
+        }
+    }
+}
+
+impl Base {
+    pub(super) fn fill_in(&mut self) {
+        if self.n_base.is_none() {
+            self.mass_ratio.get_or_insert(MASS_RATIO);
+        }
+    }
+
+    /// Its gradation by mass.
+    pub fn gradation(&self) -> BaseGradation {
+        if let Some(path) = &self.sieve {
+            return BaseGradation::Sieve(path.clone(), self.d0_mm);
+        }
+        match (self.single_mm, self.d85()) {
+            (Some(size), _) => BaseGradation::Single(size),
+            (None, d85) => BaseGradation::Linear {
+                cu: self.cu.unwrap_or(1.0),
+                // A scene without any of the three has been refused.
+                d85: d85.unwrap_or(D85::Ratio(1.0)),
+            },
+        }
+    }
+
+    /// What sets D85B of a linear gradation.
+    pub fn d85(&self) -> Option<D85> {
+        let at_dc = self.d85_at_dc.map(|percent| D85::AtDc(percent, self.dc_curve.clone()));
+        self.d85_mm.map(D85::Mm).or(at_dc).or(self.d15f_over_d85b.map(D85::Ratio))
+    }
+
+    /// How much of it.
+    pub fn amount(&self) -> Amount {
+        match self.n_base {
+            Some(n) => Amount::Number(n),
+            None => Amount::MassRatio(self.mass_ratio.unwrap_or(MASS_RATIO), self.cap),
+        }
+    }
+}
+
+impl NetworkKeys {
+    /// Whether it is a file of arrays, whose constrictions can be passed both ways.
+    pub fn is_of_arrays(&self) -> bool {
+        let ending = |path: &PathBuf| path.extension().map(|ending| ending.to_ascii_lowercase());
+        self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
+    }
+
+    /// What the scene says of its packing that the packing's file does not.
+    pub fn read_options(&self) -> ReadOptions {
+        ReadOptions { unit: self.unit, cell: self.cell }
+    }
+
+    pub(super) fn fill_in(&mut self) {
+        if self.file.is_some() || self.kind == Some(NetworkMadeOf::Graph) {
+            return;
+        }
+        let is_thick = self.extent() != Extent::Usual;
+        for (given, usual) in [&mut self.nx, &mut self.ny].into_iter().zip(VOIDS) {
+            given.get_or_insert(usual);
+        }
+        if !is_thick {
+            self.nz.get_or_insert(VOIDS[2]);
+        }
+    }
+
+    /// How far it reaches along the flow.
+    pub fn extent(&self) -> Extent {
+        match (self.copies, self.thickness_mm, self.thickness_d50f) {
+            (Some(copies), ..) => Extent::Copies(copies as u32),
+            (None, Some(mm), _) => Extent::Mm(mm),
+            (None, None, Some(multiple)) => Extent::D50F(multiple),
+            (None, None, None) => Extent::Usual,
+        }
+    }
+
+    /// Says how many layers a lattice of this thickness has.
+    pub fn set_layers(&mut self, layers: u64) {
+        self.nz = Some(layers);
+        (self.thickness_mm, self.thickness_d50f) = (None, None);
+    }
+
+    /// Makes a lattice at most so many voids wide, both ways.
+    pub fn narrow_to(&mut self, across: u64) {
+        let narrow = |width: Option<u64>, usual: u64| Some(width.unwrap_or(usual).min(across));
+        (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
+    }
+
+    /// Says how many copies of a packing its graph is made of.
+    pub fn set_copies(&mut self, copies: u64) {
+        self.copies = Some(copies);
+        (self.thickness_mm, self.thickness_d50f) = (None, None);
+    }
+
+    /// Where it comes from.
+    pub fn source(&self) -> NetworkSource {
+        if self.kind == Some(NetworkMadeOf::Graph) {
+            return NetworkSource::Graph(self.packing.clone(), self.extent());
+        }
+        if let Some(path) = &self.file {
+            return NetworkSource::File(path.clone());
+        }
+        let given = [self.nx, self.ny, self.nz];
+        let shape = std::array::from_fn(|axis| given[axis].unwrap_or(VOIDS[axis]) as u32);
+        match &self.connectivity {
+            Some(wanted) => NetworkSource::Connected(shape, wanted.0.clone()),
+            None => NetworkSource::Cubic(shape),
+        }
+    }
+}
+
+impl NetworkSource {
+    /// Voids along x, y, z, where the network is a lattice.
+    pub fn shape(&self) -> Option<[u32; 3]> {
+        match self {
+            Self::Cubic(shape) | Self::Connected(shape, _) => Some(*shape),
+            Self::File(_) | Self::Graph(..) => None,
+        }
+    }
+}
+
+impl Record {
+    /// What is kept of a run.
+    pub fn wanted(&self) -> Wanted {
+        Wanted {
+            series_every: self.series_every,
+            size_curves: self.size_curves.clone(),
+            size_classes: self.size_classes as usize,
+            voids: self.voids.clone(),
+        }
+    }
+}
+
+/// How a filter is to be packed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PackingSpec {
+    /// Its gradation; `cu` is given where it is linear.
+    pub gradation: FilterGradation,
+    /// Grains, where the user says how many.
+    pub grains: Option<usize>,
+    /// Height of the cell by its width.
+    pub aspect: f64,
+    /// Percent of the mass, from the finest grain on, that is packed, where the user says it.
+    pub coarsest: Option<f64>,
+    /// How the grains are compressed; its number of grains counts only where the user gave one.
+    pub compression: packing::Settings,
+    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    pub merge_overlap: f64,
+    /// What errors call the file.
+    pub file: String,
+}
+
+impl PackingSpec {
+    /// What the settings of a filter and its packing state; `file` names them in errors.
+    ///
+    /// # Errors
+    /// The gradation is missing, or the settings of the compression cannot be used together.
+    pub fn new(filter: &Filter, packing: &PackingKeys, file: &str) -> Result<Self, SceneError> {
+        let clash = |problem: String| SceneError::Clash { file: file.to_owned(), problem };
+        let gradation = filter.gradation();
+        if matches!(gradation, FilterGradation::Linear { cu: None, .. }) {
+            let problem =
+                "filter.cu or filter.sieve is missing: a filter that is to be packed needs its gradation";
+            return Err(clash(problem.into()));
+        }
+        let mut compression = packing.compression.clone();
+        compression.friction =
+            filter.friction.or(filter.density.map(|d| d.friction())).unwrap_or(compression.friction);
+        let grains = packing.filter.grains.map(|n| n as usize);
+        compression.grains = grains.unwrap_or(compression.grains);
+        compression.check().map_err(|e| clash(format!("packing.{e}")))?;
+        let merge_overlap = packing.filter.merge_overlap;
+        let (coarsest, aspect) = (packing.filter.coarsest, packing.filter.aspect.unwrap_or(1.0));
+        Ok(Self { gradation, grains, aspect, coarsest, compression, merge_overlap, file: file.to_owned() })
+    }
+
+    /// The sieve table of the gradation, if there is one.
+    pub fn sieve(&self) -> Option<&PathBuf> {
+        match &self.gradation {
+            FilterGradation::Sieve(path, _) => Some(path),
+            FilterGradation::Linear { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! The scene of two sieve tables: what a user means who names a base and a filter and nothing else.
+
+use std::path::Path;
+
+use super::values::{Density, LibraryDensity};
+use super::{Origin, Scene, SceneError};
+use voidwalk_core::schema::setting_name;
+use voidwalk_practice::PairOptions;
+
+/// What a scene of two tables is given besides them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TableOptions {
+    /// How densely the filter lies. Its constrictions come from the library of packings; without a density,
+    /// and where `changes` do not say what the constrictions are, loose and dense are both walked.
+    pub density: Option<Density>,
+    /// This very filter is packed, loose where no density is given.
+    pub pack: bool,
+    /// A first look: fewer replicates.
+    pub quick: bool,
+    /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
+    /// regrades it, where `changes` do not say `base.regrade`.
+    pub as_sampled: bool,
+    /// Base and filter are taken as they are given, though their sizes look exchanged.
+    pub as_given: bool,
+    /// Further settings, as `name=value`; they go before all of these.
+    pub changes: Vec<String>,
+}
+
+/// Replicates of a first look.
+const QUICK: u64 = 5;
+
+/// Settings that say what the filter's constrictions are.
+const CONSTRICTIONS: [&str; 7] = [
+    "filter.curve",
+    "filter.density",
+    "filter.friction",
+    "filter.library",
+    "filter.estimate",
+    "network.file",
+    "network.packing",
+];
+
+/// Settings that say how many replicates are walked.
+const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
+
+/// Settings that say how the filter's own packing is made.
+const PACKED: [&str; 2] = ["filter.density", "filter.friction"];
+
+/// Settings that say what the base is.
+const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
+
+/// Settings that say what the filter is.
+const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
+
+/// Settings that no sieve table states and that rules of practice depend on.
+const OF_RULES: [&str; 2] = ["base.dispersive", "filter.joint_mm"];
+
+impl TableOptions {
+    /// The setting by which a base is walked as it was sampled.
+    pub(crate) const AS_SAMPLED: &str = "base.regrade=\"no\"";
+
+    /// The settings that state all of this.
+    ///
+    /// # Errors
+    /// [`SceneError::Clash`]: a change says the density, or how the base is walked, too.
+    fn settings(&self) -> Result<Vec<String>, SceneError> {
+        let clash = |problem: String| SceneError::Clash { file: Origin::CommandLine.to_string(), problem };
+        if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
+            return Err(clash(format!(
+                "density {} and filter.density or filter.library say the same thing twice: give one",
+                density.name()
+            )));
+        }
+        let mut settings: Vec<String> = self.density_setting().into_iter().collect();
+        if self.quick && !self.is_set(&REPLICATES) {
+            settings.push(format!("replicates={QUICK}"));
+        }
+        match (self.as_sampled, self.is_set(&["base.regrade"])) {
+            (true, true) => {
+                let problem = "--as-sampled and base.regrade say the same thing twice: give one";
+                return Err(clash(problem.into()));
+            }
+            (true, false) => settings.push(Self::AS_SAMPLED.into()),
+            (false, false) => settings.push("base.regrade=\"practice\"".into()),
+            (false, true) => {}
+        }
+        settings.extend(self.changes.iter().cloned());
+        Ok(settings)
+    }
+
+    /// The setting of the density: that of the filter's own packing, which is loose where nothing else is
+    /// stated, or that of the library, which is unknown where nothing states the constrictions.
+    pub(crate) fn density_setting(&self) -> Option<String> {
+        let (name, density, stated): (_, _, &[&str]) = match self.pack {
+            true => ("density", self.density.unwrap_or(Density::Loose).name(), &PACKED),
+            false => {
+                let density = self.density.map_or(LibraryDensity::Unknown, LibraryDensity::from);
+                ("library", density.name(), &CONSTRICTIONS)
+            }
+        };
+        let is_needed = self.density.is_some() || !self.is_set(stated);
+        is_needed.then(|| format!("filter.{name}=\"{density}\""))
+    }
+
+    /// The facts that the rules of practice are told besides the two tables.
+    ///
+    /// # Errors
+    /// A value that is not allowed.
+    pub fn of_rules(&self) -> Result<PairOptions, SceneError> {
+        let is_one = |change: &&String| OF_RULES.contains(&setting_name(change));
+        let stated: Vec<String> = self.changes.iter().filter(is_one).cloned().collect();
+        let scene = Scene::built_in(&stated)?;
+        Ok(PairOptions {
+            dispersive: scene.base.dispersive == Some(true),
+            joint_mm: scene.filter.joint_mm,
+            as_given: self.as_given,
+        })
+    }
+
+    fn is_set(&self, names: &[&str]) -> bool {
+        set_among(&self.changes, names).is_some()
+    }
+}
+
+impl Scene {
+    /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); the
+    /// rest is that of the built-in scene. It reads no file.
+    ///
+    /// # Errors
+    /// As [`Scene::built_in`]; a change would replace one of the two; a name is not UTF-8.
+    pub fn of_tables(base: &Path, filter: &Path, options: &TableOptions) -> Result<Self, SceneError> {
+        let [named_base, named_filter] = [base, filter].map(|path| path.display().to_string());
+        keep_soils(&options.changes, Some(&named_base), Some(&named_filter))?;
+        let mut settings = Vec::new();
+        for (name, path) in [("filter.sieve", filter), ("base.sieve", base)] {
+            settings.push(format!("{name}={}", quoted(path)?));
+        }
+        // A pair is judged as it is given; other amounts and thicknesses are a researcher's question.
+        settings.push("record.sensitivity=[]".into());
+        let changes = options.settings()?;
+        let mut scene = Self::built_in(&[&settings[..], &changes].concat())?;
+        // Passive particles by the million scatter by less than anyone reads, and their expectation is quick;
+        // where blocked constrictions leave openings there are none.
+        if !scene.leaves_openings() {
+            settings.push("engine=\"expected\"".into());
+            scene = Self::built_in(&[settings, changes].concat())?;
+        }
+        scene.is_guarded = !options.as_given;
+        Ok(scene)
+    }
+
+    /// What the filter's constrictions come from, in a sentence.
+    pub fn constrictions_in_words(&self) -> String {
+        let filter = &self.filter;
+        if let Some(friction) = filter.friction {
+            return format!("The filter's grains are packed, with friction {friction}.");
+        }
+        if let Some(density) = filter.density {
+            return format!("The filter's grains are packed: {}.", density.name());
+        }
+        if let Some(density) = filter.library {
+            let density = match density {
+                LibraryDensity::Unknown => "loose and dense are both walked",
+                density => density.name(),
+            };
+            return format!(
+                "The filter's constrictions are those of packings of filters like it: {density}. Where the \
+                 library holds none like it, they are guessed."
+            );
+        }
+        match (&filter.estimate, &filter.curve) {
+            (Some(estimate), _) => format!(
+                "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends \
+                 of the range from 0 (loose) to 1 (dense): how densely it lies was not given."
+            ),
+            (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
+            (None, None) => "The constrictions are those of the network that was given.".into(),
+        }
+    }
+}
+
+/// Refuses settings that would put another soil in the place of one that is named besides them: what is said
+/// of the named soil would be said of the other.
+///
+/// # Errors
+/// [`SceneError::Clash`], with the setting and the soil.
+pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) -> Result<(), SceneError> {
+    for (role, named, names) in [("base", base, &BASE[..]), ("filter", filter, &FILTER)] {
+        if let (Some(named), Some(name)) = (named, set_among(changes, names)) {
+            return Err(SceneError::Clash {
+                file: Origin::CommandLine.to_string(),
+                problem: format!(
+                    "{name} would put another soil in the place of the {role}, {named}: name the other \
+                     instead, or leave {name} out"
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The first of these settings that is among the changes.
+fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
+    let is_set = |name: &str| changes.iter().any(|change| setting_name(change) == name);
+    names.iter().copied().find(|name| is_set(name))
+}
+
+/// A path as a TOML string, so that one like `1e5` stays a name.
+pub fn quoted(path: &Path) -> Result<String, SceneError> {
+    let text = path.to_str().ok_or_else(|| SceneError::Clash {
+        file: path.display().to_string(),
+        problem: "its name is not UTF-8 text; give it another".into(),
+    })?;
+    Ok(toml::Value::String(text.to_owned()).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Regrade;
+    use voidwalk_core::walk::Engine;
+
+    fn scene(options: &TableOptions) -> Result<Scene, SceneError> {
+        Scene::of_tables(Path::new("1e5"), Path::new("a \"b\".xlsx#Filter A"), options)
+    }
+
+    fn with(changes: &[&str]) -> TableOptions {
+        TableOptions { changes: changes.iter().map(ToString::to_string).collect(), ..Default::default() }
+    }
+
+    #[test]
+    fn two_names_are_a_scene() {
+        let scene = scene(&TableOptions::default()).unwrap();
+        assert_eq!(scene.filter.sieve.as_deref(), Some(Path::new("a \"b\".xlsx#Filter A")));
+        assert_eq!(scene.base.sieve.as_deref(), Some(Path::new("1e5")));
+        let filter = &scene.filter;
+        assert_eq!((&filter.curve, filter.estimate, filter.cu), (&None, None, None));
+        assert_eq!(filter.library, Some(LibraryDensity::Unknown));
+        assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
+    }
+
+    /// However it is written; and what was asked for goes before.
+    #[test]
+    fn the_engine_follows_from_what_blocked_constrictions_are() {
+        let of = |changes: &[&str]| scene(&with(changes)).unwrap().walk.engine;
+        assert_eq!([of(&[]), of(&["walk.blocked=closed"])], [Engine::Expected; 2]);
+        for open in ["walk.blocked=open", "walk.blocked='open'", " walk.blocked = \"open\" "] {
+            assert_eq!(of(&[open]), Engine::Auto, "{open}");
+        }
+        assert_eq!(of(&["engine=auto"]), Engine::Auto);
+        assert!(scene(&with(&["walk.blocked='open'", "engine=expected"])).is_err());
+    }
+
+    #[test]
+    fn a_base_in_a_table_is_walked_as_practice_regrades_it_unless_it_is_said_otherwise() {
+        let of = |options: &TableOptions| scene(options).unwrap().base.regrade;
+        assert_eq!(of(&with(&[])), Some(Regrade::Practice));
+        assert_eq!(of(&TableOptions { as_sampled: true, ..with(&[]) }), Some(Regrade::No));
+        for (set, wanted) in [("base.regrade=no", Regrade::No), ("base.regrade=practice", Regrade::Practice)]
+        {
+            assert_eq!(of(&with(&[set])), Some(wanted), "{set}");
+            let twice = TableOptions { as_sampled: true, ..with(&[set]) };
+            assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+        }
+    }
+
+    #[test]
+    fn a_density_is_one_of_the_library_unless_it_is_packed_and_changes_go_before_all() {
+        let dense = TableOptions { density: Some(Density::Dense), ..Default::default() };
+        let looked_up = scene(&dense).unwrap();
+        assert!(looked_up.packing.is_none() && looked_up.filter.library == Some(LibraryDensity::Dense));
+        let packed = scene(&TableOptions { pack: true, ..dense }).unwrap();
+        assert!(packed.packing.is_some() && packed.filter.density == Some(Density::Dense));
+        let loose = scene(&TableOptions { pack: true, ..Default::default() }).unwrap();
+        assert_eq!((loose.filter.density, loose.filter.library), (Some(Density::Loose), None));
+        let rough = scene(&TableOptions { pack: true, ..with(&["filter.friction=0.2"]) }).unwrap();
+        assert_eq!((rough.filter.density, rough.filter.friction), (None, Some(0.2)));
+        let given = scene(&with(&["filter.curve=cu3-loose", "replicates=3"])).unwrap();
+        assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
+        let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };
+        assert!(scene(&both).unwrap_err().to_string().contains("both say what the filter's constrictions"));
+        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.density=dense"]) };
+        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.library=dense"]) };
+        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+        let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
+        assert!(odd.contains("there is no setting `base.uc`"), "{odd}");
+    }
+
+    #[test]
+    fn rules_are_told_of_dispersion_and_joints_by_the_same_settings_as_walks() {
+        let told = with(&["base.dispersive=true", "filter.joint_mm=1/8in", "filter.d0_mm=2"]).of_rules();
+        assert_eq!(told.unwrap(), PairOptions { dispersive: true, joint_mm: Some(3.175), as_given: false });
+        assert_eq!(with(&["base.dispersive=false"]).of_rules().unwrap(), PairOptions::default());
+        let refused = with(&["filter.joint_mm=wide"]).of_rules().unwrap_err().to_string();
+        assert!(refused.contains("filter.joint_mm: `wide` is not allowed"), "{refused}");
+    }
+
+    #[test]
+    fn no_change_replaces_a_soil_that_is_named() {
+        for change in [
+            "base.sieve=\"other.csv\"",
+            " base.sieve = other",
+            "base.cu=2",
+            "base.single_mm=0.2",
+            "filter.cu=3",
+        ] {
+            let said = scene(&with(&[change])).unwrap_err().to_string();
+            assert!(said.contains("would put another soil in the place of the"), "{change}: {said}");
+        }
+        let said = scene(&with(&["filter.sieve=b.csv"])).unwrap_err().to_string();
+        assert!(said.contains("in the place of the filter, a \"b\".xlsx#Filter A: name the other"), "{said}");
+        assert!(scene(&with(&["base.d0_mm=0.01", "filter.d0_mm=0.1", "base.mass_ratio=0.1"])).is_ok());
+        assert!(keep_soils(&["base.cu=2".into()], None, Some("f")).is_ok());
+    }
+
+    #[test]
+    fn a_pair_is_walked_with_another_amount_or_thickness_where_that_is_set_alone() {
+        let of = |sets: &[&str]| {
+            let record = scene(&with(sets)).unwrap().record;
+            (record.sensitivity, record.thickness)
+        };
+        assert_eq!(of(&[]), (Vec::new(), None));
+        assert_eq!(of(&["record.sensitivity=[2]"]), (vec![2.0], None));
+        assert_eq!(of(&["record.thickness=[0.5]"]), (Vec::new(), Some(vec![0.5])));
+    }
+
+    #[test]
+    fn a_quick_look_walks_fewer_replicates_of_the_same_model() {
+        let quick = scene(&TableOptions { quick: true, ..with(&[]) }).unwrap();
+        assert_eq!(quick.walk.replicates, QUICK);
+        let whole = scene(&with(&[])).unwrap();
+        assert_eq!(quick.network, whole.network);
+        let told = scene(&TableOptions { quick: true, ..with(&["replicates=7"]) }).unwrap();
+        assert_eq!(told.walk.replicates, 7);
+    }
+}

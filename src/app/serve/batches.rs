@@ -1,0 +1,184 @@
+//! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown,
+//! which grows as the walks are done.
+
+use std::path::PathBuf;
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use super::sheets::Sheets;
+use crate::cases::BatchWalks;
+use crate::cases::numbered;
+use crate::outcome::table::{ColumnKind, Columns, PageColumn};
+use crate::verdict::{WalkedBatch, WalkedRow};
+use crate::words::batch::{answer, of_filter, walked_columns, walks};
+use crate::words::left_out::left_out_in_brief;
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{BatchFilter, BatchRow};
+
+/// What the page asks for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AskedBatch {
+    /// The sheet whose every soil is a sample, by its number; or the one base, for walks of `filters`.
+    pub base: String,
+    /// The sheets of the filters.
+    pub filters: Vec<String>,
+    /// Which pairs are walked, and how: `governing`, `look`, `alone`, or `filters` for one base.
+    pub walks: String,
+    #[serde(flatten)]
+    pub tables: AskedTables,
+}
+
+/// What goes with two sheets.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct AskedTables {
+    /// A word, or none.
+    pub density: String,
+    /// This very filter is packed.
+    pub pack: bool,
+    pub quick: bool,
+    /// The base is walked as it was sampled, not as practice regrades it.
+    pub as_sampled: bool,
+    /// The two are taken as they are given, though they look exchanged.
+    pub as_given: bool,
+    pub changes: Vec<String>,
+}
+
+/// Most filters of a table.
+const FILTERS: usize = 6;
+
+/// The paths of the filters that the page names.
+///
+/// # Errors
+/// There is no such sheet; no filter, or too many of them.
+pub fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBuf>, String> {
+    match (1..=FILTERS).contains(&named.len()) {
+        true => named.iter().map(|name| sheets.path(name.as_ref())).collect(),
+        false => Err(format!("name one to {FILTERS} filters")),
+    }
+}
+
+/// What the page calls these filters: by their own names, numbered where two have the same.
+pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
+    numbered(paths.iter().map(|path| sheets.as_named(&path.display().to_string())).collect())
+}
+
+impl AskedBatch {
+    /// Which pairs are walked.
+    ///
+    /// # Errors
+    /// A word that is none.
+    pub fn walks(&self) -> Result<BatchWalks, String> {
+        match self.walks.as_str() {
+            "governing" => Ok(BatchWalks::GoverningInFull),
+            "look" => Ok(BatchWalks::FirstLook),
+            "alone" => Ok(BatchWalks::GoverningAlone),
+            "filters" => Ok(BatchWalks::OneBase),
+            other => Err(format!("walks: {other}: governing, look, alone or filters")),
+        }
+    }
+
+    /// The samples, and the filters.
+    ///
+    /// # Errors
+    /// There is no such sheet; no filter, or too many of them.
+    pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
+        let filters = filter_paths(sheets, &self.filters)?;
+        let base = if self.has_one_base() { &self.base } else { whole_sheet(&self.base) };
+        Ok((sheets.path(base)?, filters))
+    }
+
+    fn has_one_base(&self) -> bool {
+        self.walks == "filters"
+    }
+
+    /// What its job is called, of samples and filters with these names.
+    pub fn title(&self, samples: &str, filters: &[String]) -> String {
+        let every = if self.has_one_base() { "" } else { "Every sample of " };
+        format!("{every}{samples} on {}", filters.join(", "))
+    }
+}
+
+/// The sheet in which a soil is.
+pub fn whole_sheet(soil: &str) -> &str {
+    soil.split_once('#').map_or(soil, |(sheet, _)| sheet)
+}
+
+/// A table as the page shows it: headings, what stands under each, cells, and the class of each row's result.
+pub fn table<'r, T: 'r>(
+    columns: Columns<T>,
+    rows: impl IntoIterator<Item = &'r T>,
+    class: impl Fn(&T) -> Option<&'static str>,
+) -> Value {
+    let columns: Vec<_> = columns.of_page().collect();
+    let kind = |column: &PageColumn<T>| match column.kind {
+        _ if column.name == "result" => "result",
+        ColumnKind::Name => "name",
+        ColumnKind::Text => "text",
+        ColumnKind::Number => "number",
+    };
+    let cells = |row: &T| columns.iter().map(|column| (column.cell)(row).line()).collect();
+    let (rows, classes): (Vec<Vec<String>>, Vec<_>) =
+        rows.into_iter().map(|row| (cells(row), class(row))).unzip();
+    json!({
+        "headings": columns.iter().map(|column| &column.heading.text).collect::<Vec<_>>(),
+        "kinds": columns.iter().map(kind).collect::<Vec<_>>(),
+        "rows": rows,
+        "classes": classes,
+    })
+}
+
+/// The class of the result of a sample: what is met and in doubt does not stand in green.
+pub fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
+    match row.met {
+        Some(true) if !is_doubted && !row.breaks_if_dispersive => Some("keeps"),
+        Some(false) => Some("breaks"),
+        _ => None,
+    }
+}
+
+/// The rows of a batch as far as they are walked.
+pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
+    let columns = walked_columns(SizeUnit::of(false, inches));
+    table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
+}
+
+/// What the page shows of a batch that is done: its table, and what a client asks of each filter.
+pub fn of_batch(batch: &WalkedBatch) -> Value {
+    let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
+    let unit = SizeUnit::of(false, batch.inches);
+    let lines = |filter: &BatchFilter| -> Vec<String> {
+        let answers = batch.governing(&filter.name).into_iter();
+        let answers = answers.map(|row| format!("{}: {}", row.rules.sample, answer(row)));
+        let walks = walks(batch, &filter.name, unit).into_iter();
+        of_filter(filter, &rules, unit).into_iter().chain(walks).chain(answers).collect()
+    };
+    let mut value = so_far(&batch.rows, batch.inches);
+    value["filters"] = json!(batch.filters.iter().map(lines).collect::<Vec<_>>());
+    value["notes"] = json!(batch.notes);
+    value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::PairOptions;
+    use voidwalk_sheets::SoilSample;
+
+    #[test]
+    fn what_is_met_and_in_doubt_does_not_stand_in_green() {
+        let curve = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
+        let base = curve(&[(0.08, 0.0), (0.3, 100.0)]);
+        let sample = SoilSample { name: "A".into(), path: "A".into(), curve: base };
+        let filter = vec![("F".to_owned(), curve(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());
+        assert_eq!([class_of(&row, false), class_of(&row, true)], [Some("keeps"), None]);
+        let dispersive = BatchRow { breaks_if_dispersive: true, ..row.clone() };
+        let broken = BatchRow { met: Some(false), ..row };
+        assert_eq!([class_of(&dispersive, false), class_of(&broken, true)], [None, Some("breaks")]);
+    }
+}

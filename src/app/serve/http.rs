@@ -1,0 +1,376 @@
+//! One HTTP/1.1 request a connection, read within limits, and its answer.
+//!
+//! Heads are parsed by `httparse`; whatever is larger or slower than the limits below is refused before it is
+//! kept. A body has a length that is said before it; there are no chunks, no second request on a connection,
+//! and so nothing that two readers could divide differently.
+
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpStream};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use voidwalk_core::text::visible;
+
+/// The largest head of a request (bytes).
+const HEAD: usize = 16 << 10;
+
+/// Most header fields of a request.
+const FIELDS: usize = 64;
+
+/// The largest body of a request (bytes): a workbook.
+pub const BODY: u64 = 32 << 20;
+
+/// How long the head of a request may take to arrive, and then its body, in all.
+const ARRIVAL: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
+
+/// How long an answer may take to leave: from one piece of it to the next, and in all with so many bytes more
+/// a second.
+const DEPARTURE: (Duration, Duration, u64) = (Duration::from_secs(20), Duration::from_secs(60), 1 << 20);
+
+/// How long, and how much of, what is sent after a refusal is thrown away, so that the refusal is read.
+const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
+
+/// A request whose body has not been read.
+#[derive(Debug)]
+pub struct Request {
+    /// `GET`, `POST`.
+    pub method: String,
+    /// What stands before the `?`.
+    pub path: String,
+    /// What stands after it.
+    pub query: String,
+    fields: Vec<(String, String)>,
+    /// What of the body came with the head.
+    begun: Vec<u8>,
+    length: u64,
+}
+
+impl Request {
+    /// The only value of a header field; `None` where it is not given, or given twice.
+    pub fn field(&self, name: &str) -> Option<&str> {
+        let mut values = self.fields.iter().filter(|(field, _)| field.eq_ignore_ascii_case(name));
+        match (values.next(), values.next()) {
+            (Some((_, value)), None) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Whether a header field is given at all.
+    pub fn has(&self, name: &str) -> bool {
+        self.fields.iter().any(|(field, _)| field.eq_ignore_ascii_case(name))
+    }
+
+    /// The value of a parameter of the query, decoded.
+    pub fn parameter(&self, name: &str) -> Option<String> {
+        let pairs = self.query.split('&').filter_map(|pair| pair.split_once('='));
+        pairs.into_iter().find(|(key, _)| *key == name).map(|(_, value)| decoded(value))
+    }
+}
+
+/// Text without its `%41`; what is no UTF-8 is replaced.
+fn decoded(text: &str) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let [first, more @ ..] = rest {
+        let digit = |at: usize| more.get(at).and_then(|b| char::from(*b).to_digit(16));
+        match (first, digit(0), digit(1)) {
+            (b'%', Some(high), Some(low)) => {
+                bytes.push((16 * high + low) as u8);
+                rest = &more[2..];
+            }
+            (b'+', ..) => {
+                bytes.push(b' ');
+                rest = more;
+            }
+            _ => {
+                bytes.push(*first);
+                rest = more;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// What is answered.
+pub struct Answer {
+    /// As 200.
+    pub status: u16,
+    /// Type of the body.
+    pub kind: &'static str,
+    /// The body.
+    pub body: Body,
+    /// The content security policy; nothing at all is allowed without one.
+    pub policy: Option<String>,
+    /// Name under which a browser saves it.
+    pub download: Option<String>,
+}
+
+/// What an answer holds.
+pub enum Body {
+    /// In memory.
+    Bytes(Vec<u8>),
+    /// In a file, from its start, with its length.
+    File(std::fs::File, u64),
+}
+
+impl Answer {
+    /// A body in memory.
+    pub fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
+        Self { status, kind, body: Body::Bytes(body.into()), policy: None, download: None }
+    }
+
+    /// A file.
+    pub fn file(kind: &'static str, file: std::fs::File) -> io::Result<Self> {
+        let length = file.metadata()?.len();
+        Ok(Self { body: Body::File(file, length), ..Self::new(200, kind, "") })
+    }
+
+    /// A value as JSON for the page, without hidden characters.
+    pub fn json(status: u16, mut value: Value) -> Self {
+        show(&mut value);
+        Self::new(status, "application/json; charset=utf-8", value.to_string())
+    }
+
+    /// What is wrong, in words.
+    pub fn problem(status: u16, words: &str) -> Self {
+        Self::json(status, serde_json::json!({ "problem": words }))
+    }
+}
+
+/// Replaces hidden characters in every text of a value.
+fn show(value: &mut Value) {
+    match value {
+        Value::String(text) => *text = text.chars().map(visible).collect(),
+        Value::Array(values) => values.iter_mut().for_each(show),
+        Value::Object(fields) => fields.values_mut().for_each(show),
+        _ => {}
+    }
+}
+
+/// A connection until a time: nothing that is read or written takes longer, in however small pieces.
+struct Until<'a> {
+    stream: &'a mut TcpStream,
+    end: Instant,
+    /// How long one piece may take.
+    piece: Duration,
+}
+
+impl<'a> Until<'a> {
+    fn new(stream: &'a mut TcpStream, piece: Duration, all: Duration) -> Self {
+        Self { stream, end: Instant::now() + all, piece }
+    }
+
+    fn left(&self) -> io::Result<Duration> {
+        match self.end.saturating_duration_since(Instant::now()) {
+            Duration::ZERO => Err(io::ErrorKind::TimedOut.into()),
+            left => Ok(left.min(self.piece)),
+        }
+    }
+}
+
+impl Read for Until<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(Some(self.left()?))?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for Until<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(Some(self.left()?))?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+/// The head of a request, or the answer to one that is none.
+pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
+    let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
+    let mut bytes = Vec::new();
+    loop {
+        let mut piece = [0; 4096];
+        let count = stream.read(&mut piece)?;
+        if count == 0 {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        bytes.extend_from_slice(&piece[..count]);
+        let mut fields = [httparse::EMPTY_HEADER; FIELDS];
+        let mut parsed = httparse::Request::new(&mut fields);
+        match parsed.parse(&bytes) {
+            Ok(httparse::Status::Complete(length)) => {
+                let request = request(&parsed, bytes[length..].to_vec());
+                return Ok(request);
+            }
+            Ok(httparse::Status::Partial) if bytes.len() < HEAD => {}
+            Ok(httparse::Status::Partial) => return Ok(Err(Answer::problem(431, "the head is too large"))),
+            Err(httparse::Error::TooManyHeaders) => {
+                return Ok(Err(Answer::problem(431, "there are too many header fields")));
+            }
+            Err(_) => return Ok(Err(Answer::problem(400, "this is no HTTP request"))),
+        }
+    }
+}
+
+/// A parsed head as a request.
+fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer> {
+    let target = parsed.path.unwrap_or_default();
+    let (path, query) = target.split_once('?').unwrap_or((target, ""));
+    let text = |value: &[u8]| String::from_utf8_lossy(value).into_owned();
+    let fields = parsed.headers.iter().map(|field| (field.name.to_owned(), text(field.value))).collect();
+    let mut request = Request {
+        method: parsed.method.unwrap_or_default().to_owned(),
+        path: path.to_owned(),
+        query: query.to_owned(),
+        fields,
+        begun,
+        length: 0,
+    };
+    if request.has("transfer-encoding") {
+        return Err(Answer::problem(411, "a body needs Content-Length"));
+    }
+    if request.has("content-length") {
+        let length = request.field("content-length").filter(|text| text.bytes().all(|b| b.is_ascii_digit()));
+        request.length = match length.map(str::parse) {
+            Some(Ok(length)) => length,
+            _ => return Err(Answer::problem(400, "Content-Length is no number")),
+        };
+    } else if request.method == "POST" {
+        return Err(Answer::problem(411, "a body needs Content-Length"));
+    }
+    Ok(request)
+}
+
+/// The body of a request; the answer to one that is too large, of which nothing is read.
+pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Result<Vec<u8>, Answer>> {
+    if request.length > BODY {
+        let words = format!("too large: at most {} MB", BODY >> 20);
+        return Ok(Err(Answer::problem(413, &words)));
+    }
+    let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.1);
+    if request.field("expect").is_some_and(|value| value.eq_ignore_ascii_case("100-continue")) {
+        stream.write_all(b"HTTP/1.1 100 Continue\r\n\r\n")?;
+    }
+    let length = request.length as usize;
+    let mut bytes = std::mem::take(&mut request.begun);
+    bytes.truncate(length);
+    let mut piece = vec![0; 64 << 10];
+    while bytes.len() < length {
+        let wanted = piece.len().min(length - bytes.len());
+        let count = stream.read(&mut piece[..wanted])?;
+        if count == 0 {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        bytes.extend_from_slice(&piece[..count]);
+    }
+    Ok(Ok(bytes))
+}
+
+/// Sends an answer and ends the connection.
+pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
+    let (length, refused) = match &answer.body {
+        Body::Bytes(bytes) => (bytes.len() as u64, answer.status >= 400),
+        Body::File(_, length) => (*length, false),
+    };
+    let policy = answer.policy.as_deref().unwrap_or("default-src 'none'; sandbox");
+    let mut head = format!(
+        "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {length}\r\nConnection: close\r\n\
+         Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\n\
+         Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
+         Cross-Origin-Opener-Policy: same-origin\r\nContent-Security-Policy: {policy}\r\n",
+        answer.status,
+        reason(answer.status),
+        answer.kind
+    );
+    if let Some(name) = &answer.download {
+        head += &format!("Content-Disposition: attachment; filename=\"{name}\"\r\n");
+    }
+    head += "\r\n";
+    let all = DEPARTURE.1 + Duration::from_secs(length / DEPARTURE.2);
+    let mut leaving = Until::new(stream, DEPARTURE.0, all);
+    leaving.write_all(head.as_bytes())?;
+    match answer.body {
+        Body::Bytes(bytes) => leaving.write_all(&bytes)?,
+        Body::File(file, length) => drop(io::copy(&mut file.take(length), &mut leaving)?),
+    }
+    leaving.flush()?;
+    stream.shutdown(Shutdown::Write)?;
+    if refused {
+        drain(stream)?;
+    }
+    Ok(())
+}
+
+/// Throws away what is still sent: an end with bytes unread would take the answer with it.
+fn drain(stream: &mut TcpStream) -> io::Result<()> {
+    let (mut stream, mut drained) = (Until::new(stream, DRAIN.0, DRAIN.0), 0);
+    let mut piece = vec![0; 64 << 10];
+    while drained < DRAIN.1 {
+        match stream.read(&mut piece)? {
+            0 => break,
+            count => drained += count as u64,
+        }
+    }
+    Ok(())
+}
+
+fn reason(status: u16) -> &'static str {
+    match status {
+        200 => "OK",
+        400 => "Bad Request",
+        403 => "Forbidden",
+        404 => "Not Found",
+        405 => "Method Not Allowed",
+        409 => "Conflict",
+        411 => "Length Required",
+        413 => "Content Too Large",
+        422 => "Unprocessable Content",
+        429 => "Too Many Requests",
+        431 => "Request Header Fields Too Large",
+        _ => "Error",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_browser_encodes_is_decoded() {
+        assert_eq!(decoded("a%20b+c%2F..%2fx%3C"), "a b c/../x<");
+        assert_eq!(decoded("100%"), "100%");
+        assert_eq!(decoded("%zz%4"), "%zz%4");
+        assert_eq!(decoded("%E2%80%AE%FF"), "\u{202e}\u{fffd}");
+    }
+
+    /// Small pieces, each in time, do not make more of it.
+    #[test]
+    fn a_connection_ends_in_time_however_slowly_it_is_fed_or_read() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut other = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (mut stream, _) = listener.accept().unwrap();
+        let (piece, all) = (Duration::from_secs(5), Duration::from_millis(300));
+        let slow = std::thread::spawn(move || {
+            // One byte after another, and then one read after another.
+            for _ in 0..100 {
+                let _ = other.write_all(b"x");
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            while other.read(&mut [0; 1000]).is_ok_and(|count| count > 0) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        });
+        let begun = Instant::now();
+        let mut bytes = Vec::new();
+        assert!(Until::new(&mut stream, piece, all).read_to_end(&mut bytes).is_err());
+        assert!(!bytes.is_empty() && begun.elapsed() < piece, "{:?}", begun.elapsed());
+        let begun = Instant::now();
+        assert!(Until::new(&mut stream, piece, all).write_all(&vec![0; 256 << 20]).is_err());
+        assert!(begun.elapsed() < piece, "{:?}", begun.elapsed());
+        drop(stream);
+        slow.join().unwrap();
+    }
+}

@@ -1,0 +1,287 @@
+//! What the page has asked for: one job is walked at a time, the others wait.
+//!
+//! A job is a call of the library into a folder of its own, which is that of a run or a batch
+//! as of the command line. What it was asked for is kept there before any work (`job_file.rs`), so that a
+//! later server on the same folder can do it. A kind of job more is a variant of [`Work`], what it does in
+//! `WorkContext::work`, and how its request is read (`Routes::planned`).
+
+mod earlier;
+mod job;
+#[cfg(test)]
+mod tests;
+mod work;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+use serde_json::Value;
+
+use super::job_file::JobFile;
+use super::live::Live;
+use crate::run::error::Exit;
+use crate::run::{PrepareOptions, RunError};
+use earlier::{LAST, earlier};
+use job::{Job, JobState, has_scene, how_to_continue};
+use voidwalk_core::store::remove_folder;
+use voidwalk_core::text::shell_word;
+use work::WorkContext;
+pub use work::{OnResults, Work, of_cases};
+
+/// Most jobs that wait.
+const WAITING: usize = 20;
+
+/// Most jobs that are listed; of more, those that ended first are left out. Their folders stay.
+const LISTED: usize = 200;
+
+/// All jobs of a server.
+pub struct JobQueue {
+    context: WorkContext,
+    all: Mutex<Vec<Job>>,
+    /// The last number that a job was given.
+    last: AtomicUsize,
+    wake: Condvar,
+    /// Nothing more is begun.
+    ends: AtomicBool,
+}
+
+impl JobQueue {
+    /// The jobs in `root`: those of an earlier server there, and none else yet.
+    pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
+        let all = earlier(root, LISTED);
+        let last = AtomicUsize::new(all.iter().map(|job| job.id).max().unwrap_or(0));
+        let context = WorkContext { root: root.to_owned(), prepare, command, on_results };
+        let (all, ends) = (Mutex::new(all), AtomicBool::new(false));
+        Self { context, all, last, wake: Condvar::new(), ends }
+    }
+
+    fn locked(&self) -> MutexGuard<'_, Vec<Job>> {
+        self.all.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether one job more may wait.
+    fn has_room(&self, all: &[Job]) -> Result<(), String> {
+        if self.ends.load(Ordering::Relaxed) {
+            return Err("the server ends".into());
+        }
+        match all.iter().filter(|job| job.state == JobState::Waiting).count() >= WAITING {
+            true => Err(format!("{WAITING} jobs wait already; stop some first")),
+            false => Ok(()),
+        }
+    }
+
+    /// Adds a job, keeps what it was asked for in its folder, and gives its number.
+    ///
+    /// # Errors
+    /// Too many wait, which is a refusal; its folder cannot be written.
+    pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
+        let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
+        has_room(&self.locked())?;
+        let path = |id: &usize| self.context.root.join(format!("{}-{id}", work.name()));
+        let is_free = |id: &usize| path(id).symlink_metadata().is_err();
+        let numbers = std::iter::repeat_with(|| self.last.fetch_add(1, Ordering::Relaxed) + 1);
+        let id = numbers.take_while(|id| *id <= LAST).find(is_free);
+        let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
+        let written = file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()));
+        let mut all = self.locked();
+        // Meanwhile others may have been added, or the server told to end.
+        if let Err(error) = written.and_then(|()| has_room(&all)) {
+            drop(all);
+            // It was free, so what is there is of this job, which is none.
+            let _ = remove_folder(&path(&id));
+            let _ = self.last.compare_exchange(id, id - 1, Ordering::Relaxed, Ordering::Relaxed);
+            return Err(error);
+        }
+        let folder = format!("{}-{id}", work.name());
+        let JobFile { title, asked, .. } = file;
+        let at = all.partition_point(|job| job.id < id);
+        all.insert(at, Job { asked, ..Job::new(id, title, folder, work, JobState::Waiting) });
+        shorten(&mut all);
+        self.wake.notify_all();
+        Ok(id)
+    }
+
+    /// Stops a job, or takes it out of those that wait.
+    ///
+    /// # Errors
+    /// There is none of this number that could be stopped.
+    pub fn stop(&self, id: usize) -> Result<(), String> {
+        let mut all = self.locked();
+        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
+        match job.state {
+            JobState::Running => job.stop.store(true, Ordering::Relaxed),
+            JobState::Waiting => {
+                (job.state, job.message) = (JobState::Stopped, "stopped before it began".into());
+            }
+            _ => return Err("this job is not under way".into()),
+        }
+        Ok(())
+    }
+
+    /// What a job that can continue was asked for; `None` where that is to resume the run in its folder.
+    ///
+    /// # Errors
+    /// There is none of this number that could continue.
+    pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
+        let (folder, resumes) = {
+            let mut all = self.locked();
+            let job = self.that_continues(&mut all, id)?;
+            (self.context.root.join(&job.folder), matches!(job.work, Work::Resume))
+        };
+        match resumes {
+            true => Ok(None),
+            false => match JobFile::read(&folder) {
+                None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
+                file => Ok(file),
+            },
+        }
+    }
+
+    fn that_continues<'a>(&self, all: &'a mut [Job], id: usize) -> Result<&'a mut Job, String> {
+        let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
+        if job.can_continue(&self.context.root) { Ok(job) } else { Err("this job cannot continue".into()) }
+    }
+
+    /// Whether the folder of a job holds the scene of a run that has begun, from which it can be resumed.
+    pub fn has_scene(&self, id: usize) -> bool {
+        let all = self.locked();
+        all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
+    }
+
+    /// Lets a job that was stopped or has failed continue, with its work planned anew.
+    ///
+    /// # Errors
+    /// There is none of this number that could continue; too many wait.
+    pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
+        let folder = {
+            let mut all = self.locked();
+            self.has_room(&all)?;
+            let job = self.that_continues(&mut all, id)?;
+            // It begins once its work is set.
+            (job.work, job.state, job.message) = (Work::Nothing, JobState::Waiting, String::new());
+            job.stop.store(false, Ordering::Relaxed);
+            *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
+            self.context.root.join(&job.folder)
+        };
+        // How it ended before is no longer so.
+        if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
+            let _ = JobFile { ended: None, ..file }.write(&folder);
+        }
+        let mut all = self.locked();
+        all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?.work = work;
+        self.wake.notify_all();
+        Ok(())
+    }
+
+    /// Stops everything, and lets nothing more begin; gives the numbers of what was under way or waited.
+    pub fn stop_all(&self) -> Vec<usize> {
+        let mut all = self.locked();
+        self.ends.store(true, Ordering::Relaxed);
+        let open = all.iter_mut().filter(|job| matches!(job.state, JobState::Waiting | JobState::Running));
+        open.map(|job| {
+            match job.state {
+                JobState::Waiting => job.state = JobState::Stopped,
+                _ => job.stop.store(true, Ordering::Relaxed),
+            }
+            job.id
+        })
+        .collect()
+    }
+
+    /// What became of these jobs, now that nothing is walked any more.
+    ///
+    /// # Errors
+    /// One failed, with its message; else some are not done.
+    pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
+        let all = self.locked();
+        let of = |state: JobState| all.iter().filter(move |job| ids.contains(&job.id) && job.state == state);
+        let path = |job: &Job| self.context.root.join(&job.folder).display().to_string();
+        if let Some(failed) = of(JobState::Failed).next() {
+            return Err(RunError::failed(format!("{}: {}", path(failed), failed.message)));
+        }
+        let stopped: Vec<String> = of(JobState::Stopped).map(path).collect();
+        match stopped.is_empty() {
+            true => Ok(()),
+            false => Err(RunError::Stopped(format!(
+                "not done, and what is done of it is saved: {}; `voidwalk serve --out {}` lists it, and \
+                 Continue on its page goes on",
+                stopped.join(", "),
+                shell_word(&self.context.root.display().to_string())
+            ))),
+        }
+    }
+
+    /// The folder of a job, by its name.
+    pub fn folder(&self, name: &str) -> Option<PathBuf> {
+        self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
+    }
+
+    /// All jobs, the newest first; messages pass through `said`.
+    pub fn snapshot(&self, said: impl Fn(&str) -> String) -> Value {
+        let all = self.locked();
+        all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &said)).collect()
+    }
+
+    /// Walks one job after another, until `over`.
+    pub fn work_until(&self, over: &AtomicBool) {
+        while !over.load(Ordering::Relaxed) {
+            let Some(next) = self.next() else { continue };
+            let (id, folder, work, live, stop) = next;
+            let walked = catch_unwind(AssertUnwindSafe(|| self.context.work(&folder, &work, &live, &stop)));
+            let walked = walked.unwrap_or_else(|_| Err(RunError::failed("a fault of the program")));
+            let (state, message, result) = match walked {
+                Ok(result) => (JobState::Done, String::new(), result),
+                Err(error) => match error.exit() {
+                    Exit::Stopped => (JobState::Stopped, how_to_continue(&folder), Value::Null),
+                    exit => {
+                        let state = if exit == Exit::Refused { JobState::Refused } else { JobState::Failed };
+                        let advice = error.advice().map_or(String::new(), |advice| format!("\n{advice}"));
+                        (state, format!("{error}{advice}"), Value::Null)
+                    }
+                },
+            };
+            let ended = matches!(state, JobState::Refused | JobState::Failed);
+            let file = JobFile::read(&folder);
+            if let Some(file) = file.clone().filter(|_| ended) {
+                // Where this cannot be written, the next server has it continue, which it can.
+                let ended = Some((state.words().to_owned(), message.clone()));
+                let _ = JobFile { ended, ..file }.write(&folder);
+            }
+            let mut all = self.locked();
+            let Some(job) = all.iter_mut().find(|job| job.id == id) else { continue };
+            if state == JobState::Done {
+                job.live.lock().unwrap_or_else(PoisonError::into_inner).end_batch();
+            }
+            (job.state, job.message, job.result) = (state, message, result);
+            // A scene is large, and needed no more.
+            if file.is_some() {
+                job.work = Work::Kept;
+            }
+        }
+    }
+
+    /// The job that has waited longest, now running; waits a little for one.
+    #[allow(clippy::type_complexity)]
+    fn next(&self) -> Option<(usize, PathBuf, Work, Arc<Mutex<Live>>, Arc<AtomicBool>)> {
+        let mut all = self.locked();
+        if !all.iter().any(Job::can_begin) {
+            let patience = std::time::Duration::from_millis(200);
+            all = self.wake.wait_timeout(all, patience).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        let job = all.iter_mut().find(|job| job.can_begin())?;
+        job.state = JobState::Running;
+        let folder = self.context.root.join(&job.folder);
+        Some((job.id, folder, job.work.clone(), Arc::clone(&job.live), Arc::clone(&job.stop)))
+    }
+}
+
+/// Leaves out the jobs that ended first, where there are too many.
+fn shorten(all: &mut Vec<Job>) {
+    let mut more = all.len().saturating_sub(LISTED);
+    all.retain(|job| {
+        let stays = more == 0 || matches!(job.state, JobState::Waiting | JobState::Running);
+        more -= usize::from(!stays);
+        stays
+    });
+}

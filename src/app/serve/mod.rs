@@ -1,0 +1,169 @@
+//! A page on this machine alone: sheets in, curves, rules, walks and their verdicts out.
+//!
+//! Nobody else can reach it: it listens on the loopback address, answers only who knows the secret in the
+//! address, by this machine's own name, and no page of another origin (`guard.rs`). Requests are bounded
+//! (`http.rs`), the page fetches nothing from outside and runs its own script only.
+//!
+//! Every answer is a call of the library (`routes.rs`); what is walked is a folder of a run or a batch
+//! in the server's folder (`jobs.rs`), as the command line makes them. What was asked is kept there
+//! too, so that a later server on the folder lists every job and continues it; `voidwalk resume` continues a
+//! run that has begun to walk.
+
+mod archive;
+mod batches;
+mod connections;
+mod downloads;
+mod guard;
+mod http;
+mod job_file;
+mod jobs;
+mod live;
+mod routes;
+mod rules_of_pair;
+mod samples;
+mod sheets;
+
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+pub use jobs::OnResults;
+
+use crate::run::folder::{FolderKind, claim};
+use crate::run::{PrepareOptions, RunError};
+use connections::{Connections, Place};
+use guard::Guard;
+use jobs::JobQueue;
+use routes::Routes;
+use sheets::Sheets;
+use voidwalk_core::store::Folder;
+use voidwalk_core::store::format;
+
+/// How long nothing is accepted after that has failed: there may be no more file handles for a while.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// How a server is started.
+pub struct ServeOptions {
+    /// Port of the loopback address; 0 takes a free one.
+    pub port: u16,
+    /// Folder for sheets and results; the first new of `voidwalk-serve`, `voidwalk-serve-2`, ... without one.
+    pub folder: Option<PathBuf>,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// What is done with results that are whole: their pages are written.
+    pub on_results: OnResults,
+    /// What `manifest.json` says that a run was started with.
+    pub command: String,
+}
+
+/// A page on this machine, with its folder and its port taken.
+pub struct Server {
+    listener: TcpListener,
+    folder: Folder,
+    routes: Arc<Routes>,
+}
+
+impl Server {
+    /// Takes a folder and a port.
+    ///
+    /// # Errors
+    /// A folder that is not the program's own, holds work of another kind, or that another server has; a port
+    /// that is taken.
+    pub fn open(options: ServeOptions) -> Result<Self, RunError> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)).map_err(|error| {
+            RunError::Refused(format!("port {}: {error}; name another by --port", options.port))
+        })?;
+        let folder = match &options.folder {
+            Some(path) => claim(path, FolderKind::Serve, false),
+            None => first_new("voidwalk-serve"),
+        }?;
+        let record = format::SERVE.json(&())?;
+        folder.write(FolderKind::Serve.record(), record.as_bytes())?;
+        let port = listener.local_addr().map_err(RunError::failed)?.port();
+        let root = folder.path();
+        let routes = Routes {
+            guard: Guard::new(port).map_err(RunError::failed)?,
+            sheets: Sheets::new(root),
+            jobs: JobQueue::new(root, options.prepare.clone(), options.command, options.on_results),
+            prepare: options.prepare,
+            root: root.to_owned(),
+        };
+        Ok(Self { listener, routes: Arc::new(routes), folder })
+    }
+
+    /// The page's address, with its secret.
+    pub fn address(&self) -> String {
+        self.routes.guard.address()
+    }
+
+    /// Where sheets and results are.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Answers requests and walks jobs, until `stop`; then saves what is under way.
+    ///
+    /// # Errors
+    /// A job that was under way or waited then is not done, and can be continued; or it failed.
+    pub fn run(self, stop: &AtomicBool) -> Result<(), RunError> {
+        let (routes, listener) = (Arc::clone(&self.routes), self.listener);
+        // It ends with the process: what it waits for may never come.
+        let answering = std::thread::Builder::new().spawn(move || accept(&listener, &routes));
+        answering.map_err(RunError::no_thread)?;
+        std::thread::scope(|scope| {
+            let worker =
+                std::thread::Builder::new().spawn_scoped(scope, || self.routes.jobs.work_until(stop));
+            let worker = worker.map_err(RunError::no_thread)?;
+            while !stop.load(Ordering::Relaxed) && !worker.is_finished() {
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            let open = self.routes.jobs.stop_all();
+            // The worker has saved what it was at when it is over.
+            worker.join().map_err(|_| RunError::failed("a fault of the program, while a job was done"))?;
+            self.routes.jobs.ended(&open)
+        })
+    }
+}
+
+/// Takes a folder that is not there yet.
+fn first_new(name: &str) -> Result<Folder, RunError> {
+    let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
+    let mut names = names.filter(|name| Path::new(name).symlink_metadata().is_err());
+    claim(Path::new(&names.next().expect("there is no last name")), FolderKind::Serve, false)
+}
+
+/// Answers every connection, so many at a time.
+fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
+    let connections = Arc::new(Connections::default());
+    for stream in listener.incoming() {
+        let place = stream.and_then(|stream| Ok((connections.place(&stream)?, stream)));
+        let Ok((place, stream)) = place else {
+            std::thread::sleep(PAUSE);
+            continue;
+        };
+        let routes = Arc::clone(routes);
+        // Where there is no thread for it, the connection ends and its place is free again.
+        let _ = std::thread::Builder::new().name("answer".into()).spawn(move || {
+            answer(stream, &place, &routes);
+        });
+    }
+}
+
+/// Answers one connection; a browser that has left is no fault of ours.
+fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
+    let answered = http::read_head(&mut stream).and_then(|head| {
+        let answer = match head {
+            Ok(request) => {
+                if routes.guard.path(&request).is_some() {
+                    place.keep();
+                }
+                routes.answer(request, &mut stream)?
+            }
+            Err(refusal) => refusal,
+        };
+        http::send(&mut stream, answer)
+    });
+    drop(answered);
+}

@@ -1,0 +1,422 @@
+//! What is answered to which request: each answer is a call of the library.
+
+use std::io;
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+
+use super::archive::archive;
+use super::batches::{self, AskedBatch, AskedTables};
+use super::downloads::example;
+use super::guard::Guard;
+use super::http::{Answer, BODY, Request, read_body};
+use super::job_file::JobFile;
+use super::jobs::{JobQueue, Work, of_cases};
+use super::rules_of_pair::rules_of_pair;
+use super::samples::SampleTable;
+use super::sheets::Sheets;
+use crate::case::LibraryFilter;
+use crate::cases::BatchPlan;
+use crate::report;
+use crate::run::error::Exit;
+use crate::run::prepare::Draft;
+use crate::run::{self, PrepareOptions, RunError};
+use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
+use crate::words::sentence;
+use voidwalk_core::constrictions::shipped;
+use voidwalk_core::gradation::{CurvePoint, Gradation};
+use voidwalk_core::store::open_regular;
+use voidwalk_core::text::is_plain_part;
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{PairOptions, PairRules};
+use voidwalk_sheets::curves_in_file;
+
+const PAGE: &str = include_str!("page.html");
+const SCRIPT: &str = include_str!("page.js");
+const STYLE: &str = include_str!("page.css");
+const ICON: &str = include_str!("icon.svg");
+
+/// What the page may do: its own script and style, its own pictures and requests, and nothing else.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
+    connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// What a drawing may do.
+const POLICY_OF_DRAWING: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
+
+/// Longest list of settings, and longest setting.
+const SETTINGS: (usize, usize) = (200, 2000);
+
+/// What the page asks to be walked.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Asked {
+    base: String,
+    filter: String,
+    #[serde(flatten)]
+    tables: AskedTables,
+}
+
+impl Asked {
+    /// The two sheets.
+    fn sheets(&self) -> Value {
+        json!({ "base": self.base, "filter": self.filter })
+    }
+}
+
+/// A request, understood.
+struct Planned {
+    /// Title of the job's card.
+    title: String,
+    /// The sheets of its card.
+    asked: Value,
+    work: Work,
+}
+
+/// Everything that a request may reach.
+pub struct Routes {
+    /// Who may ask.
+    pub guard: Guard,
+    /// The sheets.
+    pub sheets: Sheets,
+    /// The jobs.
+    pub jobs: JobQueue,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+    /// The server's folder.
+    pub root: PathBuf,
+}
+
+/// An answer that is no success: its status and words.
+type Problem = (u16, String);
+
+/// The constriction curves of a filter, loose and dense, by their names; none where the library has none like
+/// it.
+fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
+    let curve = |density: LibraryDensity| {
+        let found = LibraryFilter::find(filter, density).ok()??.found;
+        Some((format!("constrictions, {}, by number", density.name()), found.curve.points()))
+    };
+    [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
+}
+
+/// What the input says is wrong with it.
+fn wrong(error: impl std::fmt::Display) -> Problem {
+    (422, on_page(&error.to_string()))
+}
+
+/// What the command line says, in the words of the page: its ticks and fields stand for options.
+fn on_page(said: &str) -> String {
+    let said = said.strip_prefix("--set: ").or_else(|| said.strip_prefix("--set, ")).unwrap_or(said);
+    said.replace("(--as-given)", "(the tick \"base and filter are as given\")")
+        .replace("--as-sampled", "the tick \"walk the base as it was sampled\"")
+}
+
+impl Routes {
+    /// The answer to a request.
+    ///
+    /// # Errors
+    /// The connection ends before the request does.
+    pub fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
+        let Some(path) = self.guard.path(&request).map(str::to_owned) else {
+            let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
+            return Ok(Answer::problem(403, words));
+        };
+        let answered = match request.method.as_str() {
+            "GET" => self.get(&path, &request),
+            "POST" => match read_body(&mut request, stream)? {
+                Ok(body) => self.post(&path, &request, &body),
+                Err(refusal) => return Ok(refusal),
+            },
+            _ => Err((405, "GET or POST".into())),
+        };
+        Ok(answered.unwrap_or_else(|(status, words)| Answer::problem(status, &self.sheets.as_named(&words))))
+    }
+
+    fn get(&self, path: &str, request: &Request) -> Result<Answer, Problem> {
+        let page = |kind, text: &str| Answer { policy: Some(POLICY.into()), ..Answer::new(200, kind, text) };
+        match path {
+            "" => Ok(page("text/html; charset=utf-8", PAGE)),
+            "page.js" => Ok(page("text/javascript; charset=utf-8", SCRIPT)),
+            "icon.svg" => Ok(page("image/svg+xml", ICON)),
+            "page.css" => Ok(page("text/css; charset=utf-8", STYLE)),
+            "api/state" => Ok(Answer::json(200, self.state(request))),
+            "api/form" => Ok(Answer::json(200, form())),
+            "api/rules" => self.rules(request),
+            "api/curves.svg" => self.curves(request),
+            "api/samples" => Ok(Answer::json(200, self.samples(request)?.json())),
+            "samples.csv" => {
+                let answer = Answer::new(200, "text/csv; charset=utf-8", self.samples(request)?.csv());
+                Ok(Answer { download: Some("voidwalk-samples.csv".into()), ..answer })
+            }
+            #[cfg(feature = "xlsx")]
+            "voidwalk-soils.xlsx" => super::downloads::template(path),
+            _ => match path.split_once('/') {
+                Some(("files", file)) => self.file(file),
+                Some(("examples", name)) => example(name),
+                Some(("zip", folder)) => self.zip(folder),
+                _ => Err((404, "there is no such page".into())),
+            },
+        }
+    }
+
+    fn post(&self, path: &str, request: &Request, body: &[u8]) -> Result<Answer, Problem> {
+        let id = || {
+            let id = request.parameter("id").and_then(|id| id.parse().ok());
+            id.ok_or((400, "which job?".to_owned()))
+        };
+        let accepted = |id: usize| Answer::json(200, json!({ "id": id }));
+        match path {
+            "api/sheet" => {
+                let name = request.parameter("name").unwrap_or_default();
+                let sheet = self.sheets.add(&name, body).map_err(wrong)?;
+                Ok(Answer::json(200, json!(*sheet)))
+            }
+            "api/judge" | "api/batch" => {
+                let request: Value =
+                    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
+                let kind = path.trim_start_matches("api/").to_owned();
+                let Planned { title, asked, work } = self.planned(&kind, &request)?;
+                let file = JobFile { kind, title, asked, request, ended: None };
+                let status = |error: RunError| match error.exit() {
+                    Exit::Refused => (429, error.to_string()),
+                    _ => (500, error.to_string()),
+                };
+                self.jobs.add(file, work).map(accepted).map_err(status)
+            }
+            "api/check" => {
+                let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
+                let refusal =
+                    check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
+                let unit = SizeUnit::of(check.inputs.scale_free, false);
+                let notes: Vec<String> = check.notes.iter().map(|note| sentence(note, unit)).collect();
+                let mut value = serde_json::to_value(&check).map_err(wrong)?;
+                value["notes"] = json!(notes);
+                value["refusal"] = json!(refusal);
+                Ok(Answer::json(200, value))
+            }
+            "api/stop" => id().and_then(|id| self.jobs.stop(id).map(|()| accepted(id)).map_err(conflict)),
+            "api/continue" => {
+                let id = id()?;
+                let work = match self.jobs.kept(id).map_err(conflict)? {
+                    Some(file) => match self.planned(&file.kind, &file.request) {
+                        Ok(planned) => planned.work,
+                        // A sheet is gone, and the folder has all that is needed.
+                        Err(_) if self.jobs.has_scene(id) => Work::Resume,
+                        Err(problem) => return Err(problem),
+                    },
+                    None => Work::Resume,
+                };
+                self.jobs.resume(id, work).map(|()| accepted(id)).map_err(conflict)
+            }
+            _ => Err((404, "there is no such page".into())),
+        }
+    }
+
+    /// What a request of this kind asks to be done, now or when it continues.
+    fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
+        match kind {
+            "judge" => {
+                let asked: Asked = read(request)?;
+                let title = format!("{} on {}", self.title(&asked.base), self.title(&asked.filter));
+                let scene = self.scene(&asked)?;
+                Draft::new(scene.clone()).map_err(wrong)?;
+                let work = Work::Judge(Box::new(scene));
+                Ok(Planned { title, asked: asked.sheets(), work })
+            }
+            "batch" => {
+                let asked: AskedBatch = read(request)?;
+                let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
+                let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
+                let names = batches::filter_names(&self.sheets, &filters);
+                let of_samples = self.sheets.as_named(&samples.display().to_string());
+                let plan = self.batch(&asked, &samples, &filters)?;
+                let plan = plan.named(&of_samples, &names, |said| self.sheets.as_named(said));
+                let title = asked.title(&of_samples, &names);
+                Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
+            }
+            _ => Err((404, "there is no such work".into())),
+        }
+    }
+
+    /// All that changes; the sheets only where the page has not as many of them.
+    fn state(&self, request: &Request) -> Value {
+        let sheets = self.sheets.all();
+        let folder = std::path::absolute(&self.root).unwrap_or_else(|_| self.root.clone());
+        let has_all = request.parameter("have") == Some(sheets.len().to_string());
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "folder": folder.display().to_string(),
+            "largest_mb": BODY >> 20,
+            "has_template": cfg!(feature = "xlsx"),
+            "sheets": if has_all { Value::Null } else { sheets.iter().map(|sheet| json!(**sheet)).collect() },
+            "jobs": self.jobs.snapshot(|words| self.sheets.as_named(words)),
+        })
+    }
+
+    fn title(&self, sheet: &str) -> String {
+        let path = self.sheets.path(sheet).unwrap_or_default();
+        self.sheets.as_named(&path.display().to_string())
+    }
+
+    fn path(&self, sheet: &str) -> Result<PathBuf, Problem> {
+        self.sheets.path(sheet).map_err(wrong)
+    }
+
+    fn scene(&self, asked: &Asked) -> Result<Scene, Problem> {
+        let (base, filter) = (self.path(&asked.base)?, self.path(&asked.filter)?);
+        Scene::of_tables(&base, &filter, &table_options(&asked.tables)?).map_err(wrong)
+    }
+
+    fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
+        let tables = table_options(&asked.tables)?;
+        let walks = asked.walks().map_err(wrong)?;
+        let options = of_cases(&self.root, &self.prepare, "");
+        BatchPlan::new(samples, filters, &tables, walks, &options).map_err(wrong)
+    }
+
+    /// Every rule of practice on two sheets.
+    fn rules(&self, request: &Request) -> Result<Answer, Problem> {
+        let curves = |name: &str| {
+            let path = self.path(&request.parameter(name).unwrap_or_default())?;
+            curves_in_file(&path, None).map_err(RunError::refused).map_err(wrong)
+        };
+        let options = pair_options(request)?;
+        let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
+            .map_err(|mistake| wrong(mistake.refusal()))?;
+        Ok(Answer::json(200, rules_of_pair(&pair)))
+    }
+
+    /// The rules of practice on every sample of a sheet.
+    fn samples(&self, request: &Request) -> Result<SampleTable, Problem> {
+        let [base, filters] = ["base", "filter"].map(|name| request.parameter(name).unwrap_or_default());
+        let filters: Vec<&str> = filters.split('\n').filter(|name| !name.is_empty()).collect();
+        SampleTable::new(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
+    }
+
+    /// The sieve curves of the sheets that are named, in one drawing, and what the library knows of the
+    /// filter's constrictions.
+    fn curves(&self, request: &Request) -> Result<Answer, Problem> {
+        let (mut soils, mut passages) = (Vec::new(), Vec::new());
+        for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
+            for sheet in request.parameter(name).iter().flat_map(|all| all.split('\n')) {
+                for (name, curve) in curves_in_file(&self.path(sheet)?, None).map_err(wrong)? {
+                    if role == "filter" {
+                        passages.extend(constrictions(&curve));
+                    }
+                    let named = if role.is_empty() { name } else { format!("{role}: {name}") };
+                    soils.push((named, curve.points()));
+                }
+            }
+        }
+        soils.extend(passages);
+        let drawn =
+            report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])), false);
+        let answer = Answer::new(200, "image/svg+xml", drawn);
+        Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..answer })
+    }
+
+    /// A file of a job's folder: no other folder, and no link.
+    fn file(&self, named: &str) -> Result<Answer, Problem> {
+        let missing = || (404, "there is no such file".to_owned());
+        let (folder, rest) = named.split_once('/').ok_or_else(missing)?;
+        if !rest.split('/').all(is_plain_part) {
+            return Err(missing());
+        }
+        let folder = self.jobs.folder(folder).filter(|folder| is_own(folder)).ok_or_else(missing)?;
+        let path = folder.join(rest);
+        let real = |path: &Path| path.canonicalize().ok();
+        if !real(&path).zip(real(&folder)).is_some_and(|(path, folder)| path.starts_with(folder)) {
+            return Err(missing());
+        }
+        // A pipe would hold the connection for ever.
+        let file = open_regular(&path).ok().flatten();
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let kind = match ending {
+            "html" => "text/html; charset=utf-8",
+            "svg" => "image/svg+xml",
+            "json" => "application/json; charset=utf-8",
+            "csv" | "toml" | "txt" | "jsonl" => "text/plain; charset=utf-8",
+            _ => "application/octet-stream",
+        };
+        let answer =
+            Answer::file(kind, file.ok_or_else(missing)?).map_err(|error| (500, error.to_string()))?;
+        let policy = match ending {
+            // A page of results runs nothing; its links lead to other files here.
+            "html" => Some(format!("{}; frame-ancestors 'none'", report::shell::content_policy())),
+            "svg" => Some(POLICY_OF_DRAWING.to_owned()),
+            _ => None,
+        };
+        Ok(Answer { policy, ..answer })
+    }
+
+    /// A job's folder, to take away.
+    fn zip(&self, named: &str) -> Result<Answer, Problem> {
+        let name = named.strip_suffix(".zip").unwrap_or(named);
+        let folder = self.jobs.folder(name).filter(|folder| is_own(folder));
+        let folder = folder.ok_or_else(|| (404, "there is no such folder yet".to_owned()))?;
+        let packed =
+            archive(&folder, name, &self.root).and_then(|file| Answer::file("application/zip", file));
+        let answer = packed.map_err(|error| (500, error.to_string()))?;
+        Ok(Answer { download: Some(format!("voidwalk-{name}.zip")), ..answer })
+    }
+}
+
+/// What is said of two soils besides their sheets.
+fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
+    let changes: Vec<String> =
+        request.parameter("changes").iter().flat_map(|all| all.lines().map(String::from)).collect();
+    bounded(&changes)?;
+    let as_given = request.parameter("as_given").is_some();
+    TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
+}
+
+/// Whether a job's folder is there itself, and no link to one elsewhere.
+fn is_own(folder: &Path) -> bool {
+    folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
+}
+
+fn read<T: DeserializeOwned>(request: &Value) -> Result<T, Problem> {
+    serde_json::from_value(request.clone()).map_err(|error| (400, error.to_string()))
+}
+
+fn conflict(words: String) -> Problem {
+    (409, words)
+}
+
+fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
+    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
+}
+
+fn table_options(asked: &AskedTables) -> Result<TableOptions, Problem> {
+    let AskedTables { pack, quick, as_sampled, as_given, .. } = *asked;
+    let named = |word| Density::named(word).ok_or_else(|| wrong(format!("density: {}", Density::WORDS)));
+    let density = Some(&*asked.density).filter(|word| !word.is_empty()).map(named).transpose()?;
+    bounded(&asked.changes)?;
+    Ok(TableOptions { density, pack, quick, as_sampled, as_given, changes: asked.changes.clone() })
+}
+
+fn bounded(changes: &[String]) -> Result<(), Problem> {
+    if changes.len() > SETTINGS.0 || changes.iter().any(|change| change.len() > SETTINGS.1) {
+        return Err(wrong(format!("at most {} settings of {} characters", SETTINGS.0, SETTINGS.1)));
+    }
+    Ok(())
+}
+
+/// Every setting of a scene with what it means, and what ships with the program.
+fn form() -> Value {
+    let keys: Vec<Value> = Scene::keys()
+        .iter()
+        .map(|key| {
+            json!({
+                "section": key.section, "name": key.full_name(), "doc": key.doc, "shown": key.shown,
+                "is_set": key.is_set,
+            })
+        })
+        .collect();
+    let curves: Vec<Value> =
+        shipped().iter().map(|curve| json!({ "name": curve.name, "title": curve.title })).collect();
+    json!({ "keys": keys, "curves": curves, "densities": Density::ALL.map(Density::name) })
+}

@@ -1,0 +1,312 @@
+//! Sheets that were dropped or pasted: each in a folder of its own, under a name that is harmless.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use serde::Serialize;
+
+use voidwalk_core::store::{is_device, make_folder, write_whole};
+use voidwalk_core::text::{is_hidden, plain, visible};
+use voidwalk_sheets::{SoilSummary, soils_in_file};
+
+/// Folder of the sheets.
+const FOLDER: &str = "sheets";
+
+/// Most sheets of a server, and all their bytes.
+const MOST: (usize, u64) = (200, 256 << 20);
+
+/// Most soils of a sheet that are kept and can be chosen.
+const MOST_SOILS: usize = 1000;
+
+/// No sheet has this number.
+const LAST: usize = 100_000;
+
+/// Longest name of a file and its ending (letters, bytes): file systems allow 255 bytes.
+const NAME: [(usize, usize); 2] = [(60, 180), (8, 32)];
+
+/// A sheet.
+#[derive(Debug, Serialize)]
+pub struct Sheet {
+    /// Its number.
+    pub id: usize,
+    /// Its name, harmless.
+    pub name: String,
+    /// The soils that can be chosen, the first of the file, as `voidwalk soil` understands them.
+    pub soils: Vec<SoilSummary>,
+    /// Soils in the file.
+    pub in_all: usize,
+}
+
+impl Sheet {
+    /// Reads a sheet.
+    fn of(id: usize, path: &Path) -> Result<Arc<Self>, String> {
+        let mut soils = soils_in_file(path, None).map_err(|error| error.to_string())?;
+        let in_all = soils.len();
+        soils.truncate(MOST_SOILS);
+        soils.shrink_to_fit();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Arc::new(Self { id, name, soils, in_all }))
+    }
+}
+
+/// The sheets of a server.
+pub struct Sheets {
+    folder: PathBuf,
+    kept: Mutex<Kept>,
+}
+
+#[derive(Default)]
+struct Kept {
+    sheets: Vec<Arc<Sheet>>,
+    /// Sheets that are being read.
+    read: usize,
+    /// Bytes of all of them.
+    bytes: u64,
+}
+
+impl Sheets {
+    /// The sheets below `root`: those of an earlier server, and none else yet.
+    pub fn new(root: &Path) -> Self {
+        let folder = root.join(FOLDER);
+        let mut kept = Kept::default();
+        // A folder of sheets that is a link, or cannot be read, has none.
+        let is_own = folder.symlink_metadata().is_ok_and(|meta| meta.is_dir());
+        let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|_| is_own);
+        let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+        let mut ids: Vec<usize> = ids.filter(|id| *id < LAST).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        for (sheet, bytes) in ids.into_iter().filter_map(|id| earlier(&folder, id)).take(MOST.0) {
+            kept.sheets.push(sheet);
+            kept.bytes += bytes;
+        }
+        Self { folder, kept: Mutex::new(kept) }
+    }
+
+    /// Keeps a sheet, if soils can be read from it.
+    ///
+    /// # Errors
+    /// What `voidwalk soil` says of it; there is no more room.
+    pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
+        let size = bytes.len() as u64;
+        {
+            let mut kept = self.locked();
+            if kept.sheets.len() + kept.read >= MOST.0 || kept.bytes + size > MOST.1 {
+                return Err(format!("no room: at most {} sheets and {} MB", MOST.0, MOST.1 >> 20));
+            }
+            kept.read += 1;
+            kept.bytes += size;
+        }
+        // A large one takes a while, in which others are not kept waiting.
+        let added = self.read(name, bytes);
+        let mut kept = self.locked();
+        kept.read -= 1;
+        match &added {
+            Ok(sheet) => kept.sheets.push(sheet.clone()),
+            Err(_) => kept.bytes -= size,
+        }
+        added
+    }
+
+    /// Writes a sheet into a folder of its own, and reads it.
+    fn read(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
+        make_folder(&self.folder).map_err(|error| error.to_string())?;
+        let (id, folder) = self.new_folder()?;
+        let path = folder.join(harmless(name));
+        let written = write_whole(&path, bytes).map_err(|error| error.to_string());
+        written.and_then(|()| Sheet::of(id, &path)).map_err(|problem| {
+            // Nothing is left of what is no sheet; where that fails it stays, and harms nobody.
+            let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
+            self.as_named(&problem)
+        })
+    }
+
+    fn locked(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A number whose folder was not there, and the folder: an earlier server may have left some.
+    fn new_folder(&self) -> Result<(usize, PathBuf), String> {
+        for id in 1..LAST {
+            let folder = self.folder.join(id.to_string());
+            match std::fs::create_dir(&folder) {
+                Ok(()) => return Ok((id, folder)),
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(format!("{}: {error}", folder.display())),
+            }
+        }
+        Err("no room: too many sheets in this folder".into())
+    }
+
+    /// All sheets.
+    pub fn all(&self) -> Vec<Arc<Sheet>> {
+        self.locked().sheets.clone()
+    }
+
+    /// The path of a sheet that a page names by its number, with the soil behind a `#`: `3#Filter A`.
+    ///
+    /// # Errors
+    /// There is no such sheet, or no such soil in it.
+    pub fn path(&self, named: &str) -> Result<PathBuf, String> {
+        let (id, soil) = named.split_once('#').map_or((named, None), |(id, soil)| (id, Some(soil)));
+        let sheets = self.all();
+        let sheet = id.parse().ok().and_then(|id: usize| sheets.into_iter().find(|sheet| sheet.id == id));
+        let sheet = sheet.ok_or_else(|| "there is no such sheet; add it again".to_owned())?;
+        let path = self.folder.join(sheet.id.to_string()).join(&sheet.name);
+        let Some(soil) = soil.filter(|soil| !soil.is_empty()) else { return Ok(path) };
+        if sheet.soils.iter().any(|one| plain(&one.name) == plain(soil)) {
+            return Ok(format!("{}#{soil}", path.display()).into());
+        }
+        let among = match sheet.in_all > sheet.soils.len() {
+            true => format!(" among the first {MOST_SOILS} of its {} soils", sheet.in_all),
+            false => String::new(),
+        };
+        Err(format!("{} holds no soil of this name{among}", sheet.name))
+    }
+
+    /// A message as the command line would give it: a sheet has its name there, and no folder.
+    pub fn as_named(&self, message: &str) -> String {
+        let mut text = message.to_owned();
+        let folder = format!("{}/", self.folder.display());
+        while let Some(at) = text.find(&folder) {
+            let rest = &text[at + folder.len()..];
+            let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
+            let end = at + folder.len() + digits + usize::from(rest[digits..].starts_with('/'));
+            text.replace_range(at..end, "");
+        }
+        text.chars().map(visible).collect()
+    }
+}
+
+/// A sheet that an earlier server kept, with its bytes; `None` where there is none of this number that is a
+/// file of its own and still holds soils.
+fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
+    let folder = folder.join(id.to_string());
+    folder.symlink_metadata().ok().filter(|meta| meta.is_dir())?;
+    let mut files = std::fs::read_dir(&folder).ok()?.flatten().filter_map(|entry| {
+        let name = entry.file_name().into_string().ok()?;
+        let is_harmless = !name.starts_with('.') && name.chars().all(is_plain);
+        // A link is not followed.
+        let meta = entry.metadata().ok().filter(|meta| meta.is_file() && is_harmless)?;
+        Some((name, meta.len()))
+    });
+    let (name, bytes) = files.next().filter(|(_, bytes)| *bytes <= MOST.1)?;
+    Some((Sheet::of(id, &folder.join(name)).ok()?, bytes))
+}
+
+/// Whether no terminal, page or file system takes a letter for more.
+fn is_plain(letter: char) -> bool {
+    !is_hidden(letter) && (letter.is_alphanumeric() || "._- ()+,".contains(letter))
+}
+
+/// A name of a file without folders, and of letters that no terminal, page or file system takes for more.
+fn harmless(name: &str) -> String {
+    let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let kept: String = last.chars().filter(|c| is_plain(*c)).collect();
+    let kept = kept.trim().trim_start_matches('.');
+    let (stem, ending) = kept.rsplit_once('.').unwrap_or((kept, "csv"));
+    let (stem, ending) = (cut(stem, NAME[0]), cut(ending, NAME[1]));
+    let ending = if ending.is_empty() { "csv" } else { ending };
+    match stem.trim() {
+        "" => format!("sheet.{ending}"),
+        device if is_device(device) => format!("sheet {device}.{ending}"),
+        stem => format!("{stem}.{ending}"),
+    }
+}
+
+/// The first letters of a text, at most so many and so many bytes.
+fn cut(text: &str, (letters, bytes): (usize, usize)) -> &str {
+    let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).take(letters);
+    &text[..ends.take_while(|end| *end <= bytes).last().unwrap_or(0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_does_harm() {
+        for (name, expected) in [
+            ("base.csv", "base.csv"),
+            ("../../x", "x.csv"),
+            ("C:\\soils\\site 1.xlsx", "site 1.xlsx"),
+            ("<script>alert(1)</script>", "script.csv"),
+            ("a\u{202e}vsc.exe", "avsc.exe"),
+            ("..", "sheet.csv"),
+            (".hidden", "hidden.csv"),
+            ("", "sheet.csv"),
+            ("a#b.csv", "ab.csv"),
+            ("a.", "a.csv"),
+            ("Con.csv", "sheet Con.csv"),
+            ("nul.x.csv", "sheet nul.x.csv"),
+            ("Größe.ods", "Größe.ods"),
+        ] {
+            assert_eq!(harmless(name), expected, "{name}");
+        }
+        assert!(harmless(&"a".repeat(500)).len() < 80);
+        let wide = harmless(&format!("{}.{}", "\u{20000}".repeat(500), "\u{20000}".repeat(500)));
+        assert_eq!(wide.len(), 180 + 1 + 32);
+    }
+
+    #[test]
+    fn a_sheet_is_kept_if_it_holds_a_soil() {
+        let root = tempfile::tempdir().unwrap();
+        let sheets = Sheets::new(root.path());
+        let error = sheets.add("../bad.csv", b"size_mm,percent\n1,50\n2,x\n").unwrap_err();
+        assert!(error.starts_with("bad.csv") && !error.contains("sheets"), "{error}");
+        assert!(sheets.all().is_empty());
+        let sheet = sheets.add("../../good.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
+        assert_eq!(sheet.name, "good.csv");
+        assert!(sheets.path(&format!("{}#good", sheet.id)).unwrap().starts_with(root.path()));
+        for wrong in ["7", "1#../x", "x", "1#"] {
+            let found = sheets.path(wrong);
+            assert_eq!(found.is_ok(), wrong == "1#", "{wrong}: {found:?}");
+        }
+        let hidden = "size_mm,a\u{1b}\u{202e}b,c\n1,0,0\n2,100,100\n";
+        sheets.add("hidden.csv", hidden.as_bytes()).unwrap();
+        // As the page shows it.
+        let path = sheets.path("2#a\u{fffd}\u{fffd}b").unwrap();
+        assert_eq!(voidwalk_sheets::curves_in_file(&path, None).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn of_a_sheet_of_very_many_soils_the_first_are_kept() {
+        let root = tempfile::tempdir().unwrap();
+        let soils = MOST_SOILS + 5;
+        let names: Vec<String> = (0..soils).map(|i| format!("s{i}")).collect();
+        let row = |size: &str, percent: &str| format!("{size}{}\n", format!(",{percent}").repeat(soils));
+        let table = format!("size_mm,{}\n{}{}", names.join(","), row("1", "0"), row("2", "100"));
+        let sheets = Sheets::new(root.path());
+        let sheet = sheets.add("many.csv", table.as_bytes()).unwrap();
+        assert_eq!((sheet.soils.len(), sheet.in_all), (MOST_SOILS, soils));
+        assert!(Arc::ptr_eq(&sheet, &sheets.all()[0]), "no copy is made");
+        assert!(sheets.path("1#s999").is_ok());
+        assert!(sheets.path("1#s1000").unwrap_err().contains("among the first 1000 of its 1005 soils"));
+        assert_eq!(Sheets::new(root.path()).all()[0].in_all, soils);
+    }
+
+    #[test]
+    fn the_next_server_has_the_sheets_and_no_link() {
+        let root = tempfile::tempdir().unwrap();
+        let sheets = Sheets::new(root.path());
+        let wide = format!("{}.csv", "\u{20000}".repeat(500));
+        for name in ["a.csv", "b.csv", wide.as_str()] {
+            sheets.add(name, b"size_mm,percent\n1,0\n2,100\n").unwrap();
+        }
+        let of =
+            |root: &Path| Sheets::new(root).all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
+        let before: Vec<_> = sheets.all().iter().map(|s| (s.id, s.name.clone())).collect();
+        assert_eq!((of(root.path()), before.len()), (before.clone(), 3));
+        let folder = root.path().join(FOLDER);
+        let outside = root.path().join("outside.csv");
+        std::fs::rename(folder.join("1/a.csv"), &outside).unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(&outside, folder.join("1/a.csv")).unwrap();
+        std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
+        std::fs::create_dir(folder.join("18446744073709551615")).unwrap();
+        assert_eq!(of(root.path()), before[2..]);
+        // What is not listed is not written over.
+        let next = Sheets::new(root.path()).add("c.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
+        assert_eq!(next.id, 4);
+    }
+}

@@ -1,0 +1,363 @@
+//! Boundaries of the model: the D15F/D85B at which, for a filter of some shape, no erosion turns into some,
+//! and some into continuing.
+//!
+//! # Method
+//! One packing a shape and density. Packings are free of scale: a filter s times as large holds a base as it
+//! would hold one 1/s times as large itself, so nothing is packed again. Each network of a boundary is a
+//! replicate of a run, with its own streams of random numbers; they are the same at every ratio, and the
+//! network is the same to the bit. What is searched, and how, stands in `search`; median and band over
+//! networks in [`crate::outcome::boundary`]. A thickness in mm is another number of layers at every ratio,
+//! whose first layers are always the same.
+//!
+//! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
+//! multiples of D50F.
+
+mod judged;
+#[cfg(test)]
+mod note_tests;
+mod options;
+mod plan;
+#[cfg(test)]
+mod range_tests;
+mod row;
+mod search;
+mod spared;
+mod steadiness;
+mod summary;
+#[cfg(test)]
+mod tests;
+
+use std::sync::{Mutex, MutexGuard};
+use std::time::Instant;
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+pub use options::{BoundaryOptions, Thickness, ThicknessList};
+
+use super::specified::{NO_BASE_MM, no_base};
+use crate::cases::kept::{self, Kept};
+use crate::cases::plan::PlannedCase;
+use crate::outcome::boundary::Boundaries;
+use crate::run::callbacks::{Callbacks, Event};
+use crate::run::error::{Exit, RunError};
+use crate::run::folder::{FolderKind, claim};
+use crate::run::machine::on_threads;
+use crate::run::pack::provide;
+use crate::run::prepare::Draft;
+use crate::run::replicates::have_networks;
+use crate::scene::{BaseGradation, D85};
+use plan::{plan, with_any_base};
+use row::Row;
+use search::{Done, Found, Hint, METHOD};
+use spared::{clear_of, holding_less};
+use voidwalk_core::schema::setting_name;
+
+/// Finds the boundaries and writes `boundary.csv` and, last, `boundary.json`.
+///
+/// # Errors
+/// Settings that are wrong and a folder that cannot be claimed are refused before any work; then what a
+/// packing or a walk brings. After a stop or a kill the same command continues with the networks that are
+/// left.
+pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundaries, RunError> {
+    on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
+}
+
+/// Finds whatever is wrong, as [`run`] would before any work; claims and writes nothing.
+///
+/// # Errors
+/// The same.
+pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
+    on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
+}
+
+/// The same between these D15F/D85B.
+fn run_within(
+    options: &BoundaryOptions,
+    bracket: [f64; 2],
+    callbacks: &Callbacks,
+) -> Result<Boundaries, RunError> {
+    let begun = Instant::now();
+    let drafts = drafts(options, bracket)?;
+    let kind = FolderKind::Boundary;
+    let folder = claim(&options.out, kind, options.overwrite)?;
+    let rows = drafts.into_iter().map(|draft| draft.packed(options, callbacks));
+    let rows = with_curve_ends(rows.collect::<Result<_, _>>()?);
+    let work = work(&rows, bracket);
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, done| {
+        let done = searched(&rows, bracket, done.unwrap_or_default(), kept, callbacks)?;
+        folder.write("boundary.csv", &summary::csv(&rows, &done))?;
+        summary::boundaries((&rows, bracket), &done, options, begun.elapsed().as_secs_f64())
+    })
+}
+
+/// D15F/D85B between which boundaries are searched.
+const BRACKET: [f64; 2] = [0.5, 100.0];
+
+/// A density and thickness that has been found sound.
+struct DraftedRow {
+    draft: Draft,
+    /// With a guess at a filter that is to be packed.
+    row: Row,
+}
+
+/// Whatever is wrong, before any work.
+fn drafts(options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Vec<DraftedRow>, RunError> {
+    plan(options)?.cases.into_iter().map(|planned| DraftedRow::new(planned, options, bracket)).collect()
+}
+
+impl DraftedRow {
+    fn new(planned: PlannedCase, options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Self, RunError> {
+        let PlannedCase { scene, mut levels, .. } = planned;
+        let (density, thickness) = (levels.remove(0).1, Thickness::of(&scene.network));
+        let mut draft = Draft::new(with_any_base(&scene))?;
+        let case = &mut draft.case;
+        let stated = case.base_of(&scene)?;
+        let refuse =
+            |problem: String| Err(RunError::from(crate::case::CaseError::from(scene.clash(problem))));
+        let Some(d85) = stated.base.gradation.d(85.0) else {
+            return refuse(
+                "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
+                 base.d0_mm"
+                    .into(),
+            );
+        };
+        // One millimetre where it is stated, else the unit.
+        let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
+        let filter_has_size = states_d0 || !case.is_scale_free();
+        let has_size = match scene.base.gradation() {
+            BaseGradation::Sieve(..) | BaseGradation::Single(_) => true,
+            BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
+        };
+        if has_size && d85 > NO_BASE_MM {
+            return refuse(no_base(d85));
+        }
+        if matches!(thickness, Thickness::Mm(_)) && !has_size {
+            return refuse(
+                "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
+                 multiples of D50F"
+                    .into(),
+            );
+        }
+        let base = stated.base.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
+        case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
+        have_networks(case, &Callbacks::default())?;
+        let row = Row {
+            density,
+            thickness,
+            case: case.clone(),
+            stated,
+            base,
+            d85_mm: has_size.then_some(d85),
+            filter_has_size,
+            limits: limits(options),
+            end_of: None,
+            ends: Vec::new(),
+        };
+        row.check_room(bracket)?;
+        // Of a filter that is still to be packed the curve itself is not known yet.
+        if row.case.filter.packed.is_none() {
+            row.at_curve_ends().iter().try_for_each(|end| end.check_room(bracket))?;
+        }
+        Ok(Self { draft, row })
+    }
+
+    /// With its filter packed.
+    fn packed(self, options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Row, RunError> {
+        let packed = match &self.draft.packing {
+            Some(plan) => Some(provide(plan, &options.prepare.packings, callbacks)?),
+            None => None,
+        };
+        Ok(Row { case: self.draft.finished(packed)?, ..self.row })
+    }
+}
+
+/// Every row, and after it those of the ends of the range in which its constriction curve is known, as a run
+/// walks them: of a guess the densest and the loosest, of a filter whose finer part was packed the coarser
+/// curve. What was asked for as a row of its own is none again.
+fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
+    let same = |a: &Row, b: &Row| a.density == b.density && a.thickness == b.thickness;
+    let mut all: Vec<Row> = Vec::new();
+    for row in &rows {
+        let ends = row.at_curve_ends();
+        let names = ends.iter().map(|end| end.density.clone()).collect();
+        let asked_for = |end: &Row| rows.iter().chain(&all).any(|other| same(end, other));
+        let ends: Vec<Row> = ends.into_iter().filter(|end| !asked_for(end)).collect();
+        all.push(Row { ends: names, ..row.clone() });
+        all.extend(ends);
+    }
+    all
+}
+
+fn limits(options: &BoundaryOptions) -> crate::case::ResourceLimits {
+    options.prepare.limits(&options.out)
+}
+
+/// Hash of everything that the results follow from.
+fn work(rows: &[Row], bracket: [f64; 2]) -> String {
+    let work_of_row = |row: &Row| {
+        let base = row.stated.base.gradation.points();
+        let base: Vec<[f64; 2]> = base.iter().map(|point| [point.size, point.percent]).collect();
+        let thickness = row.thickness.to_string();
+        json!([row.case.fingerprint(), thickness, base, row.d85_mm, row.filter_has_size])
+    };
+    let rows: Vec<Value> = rows.iter().map(work_of_row).collect();
+    kept::hash_of(&json!([METHOD, bracket, rows]).to_string())
+}
+
+/// Searches every network of every row that is not done, side by side, and keeps each as soon as it is done.
+fn searched(
+    rows: &[Row],
+    bracket: [f64; 2],
+    done: Vec<Done>,
+    kept: &Kept,
+    callbacks: &Callbacks,
+) -> Result<Vec<Done>, RunError> {
+    let total: u64 = rows.iter().map(Row::networks).sum();
+    if !done.is_empty() {
+        let text = format!("{} of {total} networks are done already", done.len());
+        (callbacks.on_event)(Event::Studying(&text));
+    }
+    let text = format!("searching up to {} networks", total - done.len() as u64);
+    (callbacks.on_event)(Event::Studying(&text));
+    let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
+    let (ends, others): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&row| !less[row].is_empty());
+    let searched = others.iter().filter(|&&row| rows[row].networks() > 0).count().max(1);
+    let begun_at_once = rayon::current_num_threads().div_ceil(searched);
+    let (done, writing) = (Mutex::new(done), Mutex::new(()));
+    let searching = Searching { rows, bracket, done, writing, kept, callbacks, begun_at_once };
+    let ended = others.into_par_iter().try_for_each(|row| searching.row(row)).and_then(|()| {
+        // Those that hold more by the look of them are searched where they may set the answer all the same.
+        let row_or_less = |row: usize| match searching.holds_clearly_more(row, &less[row])? {
+            true => Ok(()),
+            false => searching.row(row),
+        };
+        ends.into_par_iter().try_for_each(row_or_less)
+    });
+    let mut done = searching.done.into_inner().expect("no search panics while it keeps");
+    if let Err(error) = ended {
+        return Err(match error.exit() {
+            Exit::Stopped => kept.stopped(done.len(), total as usize),
+            _ => error,
+        });
+    }
+    done.sort_by_key(|done| (done.row, done.network));
+    Ok(done)
+}
+
+/// The networks of all rows, those that are done among them.
+struct Searching<'a> {
+    rows: &'a [Row],
+    bracket: [f64; 2],
+    done: Mutex<Vec<Done>>,
+    /// Held by the one thread that writes what is done.
+    writing: Mutex<()>,
+    kept: &'a Kept<'a>,
+    callbacks: &'a Callbacks<'a>,
+    /// Networks of a row that begin before its first has ended, and are in memory until they end.
+    begun_at_once: usize,
+}
+
+impl Searching<'_> {
+    /// Searches every network of a row that is not done. The first says where to look on the others; while
+    /// its second run is searched, some of them begin.
+    fn row(&self, row: usize) -> Result<(), RunError> {
+        let of = &self.rows[row];
+        let found = |network: u64| {
+            let done = self.done();
+            done.iter().find(|done| (done.row, done.network) == (row, network)).map(|done| done.found.clone())
+        };
+        let left: Vec<u64> = (1..=of.networks()).filter(|network| found(*network).is_none()).collect();
+        let with = |hint: Hint| (self.bracket, hint);
+        let (others, mut soon) = match left.split_first() {
+            Some((1, others)) => {
+                let first = of.begun(1, with(Hint::default()), self.callbacks)?;
+                let hint = first.hint();
+                let (soon, others) = others.split_at(others.len().min(self.begun_at_once));
+                let begin = |&network: &u64| Ok((network, of.begun(network, with(hint), self.callbacks)?));
+                let (first, soon) = rayon::join(
+                    || self.keep(row, 1, first.ended(None)?),
+                    || soon.par_iter().map(begin).collect::<Result<Vec<_>, RunError>>(),
+                );
+                first?;
+                (others, soon?)
+            }
+            _ => (&left[..], Vec::new()),
+        };
+        let hint = found(1).map(|first| Hint::of(&first)).unwrap_or_default();
+        let (begun, whole) = rayon::join(
+            || {
+                soon.par_drain(..).try_for_each(|(network, begun)| {
+                    self.keep(row, network, begun.ended(hint.boundaries[1])?)
+                })
+            },
+            || {
+                others.par_iter().try_for_each(|&network| {
+                    self.keep(row, network, of.search(network, with(hint), self.callbacks)?)
+                })
+            },
+        );
+        begun.and(whole)
+    }
+
+    /// Whether the first network of an end holds clearly more than these rows, so that it cannot set the
+    /// answer.
+    fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
+        let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();
+        let first = |done: &Vec<Done>| done.iter().find(|done| done.row == row).map(|of| of.found.spared_at);
+        let (known, ratio) = {
+            let done = self.done();
+            (first(&done), clear_of(&done, &less))
+        };
+        if let Some(spared_at) = known {
+            return Ok(spared_at.is_some());
+        }
+        let Some(ratio) = ratio else { return Ok(false) };
+        match self.rows[row].holding(ratio, self.bracket, self.callbacks)? {
+            Some(found) => self.keep(row, 1, found).map(|()| true),
+            None => Ok(false),
+        }
+    }
+
+    /// Keeps a network that is done.
+    fn keep(&self, row: usize, network: u64, found: Found) -> Result<(), RunError> {
+        let of = &self.rows[row];
+        let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
+        let holds = match found.spared_at {
+            Some(ratio) => format!("D15F/D85B {ratio:.3} holds"),
+            None => format!(
+                "no erosion to D15F/D85B {}, continuing from {}",
+                words(found.no_erosion),
+                words(found.continuing)
+            ),
+        };
+        let text = format!(
+            "{}, {}, network {network} of {}: {holds} ({} ratios walked)",
+            of.density,
+            of.thickness,
+            of.networks(),
+            found.walks.len()
+        );
+        (self.callbacks.on_event)(Event::Studying(&text));
+        self.done().push(Done { row, network, found });
+        self.write()
+    }
+
+    /// Writes what is done, unless another thread writes: that one goes on until nothing is left, so that no
+    /// search waits for a disk.
+    fn write(&self) -> Result<(), RunError> {
+        loop {
+            let Ok(writing) = self.writing.try_lock() else { return Ok(()) };
+            let all = self.done().clone();
+            self.kept.keep(all.len(), &all)?;
+            drop(writing);
+            if self.done().len() == all.len() {
+                return Ok(());
+            }
+        }
+    }
+
+    fn done(&self) -> MutexGuard<'_, Vec<Done>> {
+        self.done.lock().expect("no search panics while it keeps")
+    }
+}

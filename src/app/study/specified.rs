@@ -1,0 +1,170 @@
+//! The specification of a filter by the rules of practice alone, for one base or for each of many samples, in
+//! a folder of its own.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::cases::days::today;
+use crate::cases::inputs::{InputSoils, input_files};
+use crate::outcome::record::commit;
+use crate::outcome::table::csv_of;
+use crate::run::callbacks::Callbacks;
+use crate::run::error::RunError;
+use crate::run::folder::{FolderKind, begin, claim, shown};
+use crate::run::results::json;
+use crate::words::specification::step_rows;
+use crate::words::{designed, products};
+use voidwalk_core::store::{Folder, StoreError};
+use voidwalk_core::text::plain;
+use voidwalk_practice::SheetCover;
+use voidwalk_practice::design::{SieveSeries, Specification};
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{DesignedSample, DesignedSamples, SpecificationOptions};
+use voidwalk_sheets::{SoilSample, file_and_soil};
+
+/// A base coarser than this (D85, mm) is none: its sizes are in another unit.
+pub(super) const NO_BASE_MM: f64 = 100.0;
+
+/// What a specification is asked for, and where it goes.
+#[derive(Clone, Debug)]
+pub struct SpecifyOptions {
+    /// Sieve tables of the base, whose soils are the curves of an envelope; or of samples, also folders of
+    /// tables.
+    pub bases: Vec<PathBuf>,
+    /// Whether the base is dispersive.
+    pub dispersive: bool,
+    /// Whether the band is to lie at the finer end of what is allowed.
+    pub finer: bool,
+    /// The sieves at which the limits are stated.
+    pub sieves: SieveSeries,
+    /// What its page says of itself, besides the day.
+    pub cover: SheetCover,
+    /// Whether its page shows inches beside mm.
+    pub inches: bool,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// Whether earlier results there are replaced.
+    pub overwrite: bool,
+}
+
+impl SpecifyOptions {
+    fn of_practice(&self) -> SpecificationOptions {
+        let (finer, sieves) = (self.finer, self.sieves);
+        SpecificationOptions { dispersive: self.dispersive.then_some(true), finer, sieves }
+    }
+
+    /// Writes tables, record and page into the folder.
+    fn write(
+        &self,
+        (kind, record): (FolderKind, &impl Serialize),
+        callbacks: &Callbacks,
+        tables: impl FnOnce(&Folder) -> Result<(), StoreError>,
+    ) -> Result<(), RunError> {
+        let folder = claim(&self.out, kind, self.overwrite)?;
+        begin(&folder, kind)?;
+        tables(&folder)?;
+        folder.write(kind.record(), &json(kind.format(), record)?)?;
+        callbacks.finish(kind, &folder)
+    }
+}
+
+/// Makes the specification of a filter for a base, step by step, and writes its tables and, last,
+/// `specification.json`.
+///
+/// # Errors
+/// A base that cannot be read or is none, and a folder that cannot be claimed, are refused before anything
+/// is written.
+pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
+    let base = InputSoils::envelope(&options.bases)?;
+    no_filter_within(&base)?;
+    base.soils.iter().try_for_each(is_a_base)?;
+    let curves: Vec<_> = base.soils.iter().map(|soil| (soil.name.clone(), soil.curve.clone())).collect();
+    let specification = Specification::of(&base.name, &curves, options.of_practice());
+    let (inches, cover) = (options.inches, options.cover.clone().dated(today()));
+    let inputs = input_files(&base.soils)?;
+    let specification = Specification { commit: commit(), inches, cover, inputs, ..specification };
+    options.write((FolderKind::Specification, &specification), callbacks, |folder| {
+        write_tables(folder, &specification)
+    })?;
+    Ok(specification)
+}
+
+/// Specifies a filter for every sample (the bases of the options) by practice alone, and writes
+/// `designs.csv`, a row a sample, and, last, `designs.json`.
+///
+/// # Errors
+/// Samples that cannot be read, or one that is none, and a folder that cannot be claimed, are refused before
+/// anything is written.
+pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
+    let input = InputSoils::samples(&options.bases)?;
+    input.soils.iter().try_for_each(is_a_base)?;
+    let row = |sample: &SoilSample| {
+        let curve = (sample.name.clone(), sample.curve.clone());
+        DesignedSample::of(sample, &Specification::of(&sample.name, &[curve], options.of_practice()))
+    };
+    let table = DesignedSamples::new(plain(&input.name), input.soils.iter().map(row).collect());
+    let table = DesignedSamples {
+        commit: commit(),
+        dispersive: options.dispersive,
+        inches: options.inches,
+        cover: options.cover.clone().dated(today()),
+        notes: input.notes(&[])?,
+        inputs: input_files(&input.soils)?,
+        ..table
+    };
+    options.write((FolderKind::Designs, &table), callbacks, |folder| {
+        folder.write("designs.csv", &designed::columns(SizeUnit::Mm).csv(&table.rows))
+    })?;
+    Ok(table)
+}
+
+/// Refuses a base and a filter together: the filter is no curve of the base.
+fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
+    let called = |wanted: &str| {
+        // Of several samples on a sheet each is named `Base/Sample 1`.
+        let sheet = |name: &str| name.split('/').next().unwrap_or_default().trim().to_lowercase();
+        let in_file = |soil: &SoilSample| file_and_soil(&soil.path).1.unwrap_or_else(|| soil.name.clone());
+        base.soils.iter().find(|soil| sheet(&in_file(soil)) == wanted)
+    };
+    match (called("base"), called("filter")) {
+        (Some(soil), Some(filter)) => Err(RunError::Refused(format!(
+            "{}: {}: it holds a base and a filter, and all curves are taken as of the base; name one: {}",
+            plain(&base.name),
+            filter.name,
+            shown(&soil.path)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses stones: a size in micrometres under a header in mm, most likely.
+fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
+    match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
+        Some(d85) => {
+            let problem = format!("{}: {}: {}", shown(&soil.path), soil.name, no_base(d85));
+            Err(RunError::Refused(problem))
+        }
+        None => Ok(()),
+    }
+}
+
+/// What is wrong with so coarse a base.
+pub(super) fn no_base(d85: f64) -> String {
+    format!(
+        "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \
+         header in mm?"
+    )
+}
+
+/// Writes limits, steps and products as CSV.
+///
+/// # Errors
+/// What the system says.
+fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
+    let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
+    let products = products::columns(SizeUnit::Mm).csv(&specification.products);
+    folder.write("specification.csv", &csv_of(&specification.limits))?;
+    folder.write("specification_steps.csv", &csv_of(&steps))?;
+    folder.write("specification_products.csv", &products)
+}

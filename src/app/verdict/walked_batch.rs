@@ -1,0 +1,170 @@
+//! Many samples against filters: what practice says of each pair, and beside it what its walk says.
+
+use serde::{Deserialize, Serialize};
+
+use super::severity::counts_as;
+use crate::outcome::BaseSize;
+use crate::outcome::record::{ModelLimit, Outcome, Ratios, Statistic, Verdict, commit};
+use crate::outcome::verdict::THRESHOLD;
+use voidwalk_practice::BatchFilter;
+use voidwalk_practice::BatchRow;
+use voidwalk_practice::{Headline, SheetCover};
+
+/// The whole of `batch.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct WalkedBatch {
+    /// Version of the program.
+    pub version: String,
+    /// The commit that it was built from; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// Hash of everything that the rows follow from: samples, filters and settings.
+    pub work: String,
+    /// Seed of every walk.
+    pub seed: u64,
+    /// The samples, as they were named.
+    pub samples: String,
+    /// The filters.
+    pub filters: Vec<BatchFilter>,
+    /// The curve of the one base as sampled, rows of (size in mm, percent finer by mass); left out where each
+    /// soil is a sample.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub base: Vec<[f64; 2]>,
+    /// A row for each filter and sample, filter by filter.
+    pub rows: Vec<WalkedRow>,
+    /// What was assumed of the files, a sentence each.
+    pub notes: Vec<String>,
+    /// Eroded mass fraction that divides the classes: 0.075.
+    pub threshold: f64,
+    /// What the sheet says of itself.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
+    /// What no walk contains.
+    pub model_leaves_out: Vec<ModelLimit>,
+}
+
+/// One sample and one filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct WalkedRow {
+    /// What practice says.
+    #[serde(flatten)]
+    pub rules: BatchRow,
+    /// 1 for the sample that governs the filter by the rules, 2 and 3 for those next to it.
+    pub governs: Option<u64>,
+    /// What its walk says; `None` where there was none.
+    pub walk: Option<SampleWalk>,
+    /// Why it was not walked; empty where it was.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub not_walked: String,
+}
+
+/// What the walk of one sample says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct SampleWalk {
+    /// Folder of its results, inside the batch's.
+    pub folder: String,
+    /// Whether it was walked in full; otherwise it was a first look.
+    pub in_full: bool,
+    /// The answer of practice; `None` without two sieve curves in mm.
+    pub headline: Option<Headline>,
+    /// The class that its replicates together support.
+    pub verdict: Verdict,
+    /// The class as which practice counts; `None` without a rule.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_practice: Option<Verdict>,
+    /// Replicates.
+    pub replicates: u64,
+    /// D15F over D85B and D95B.
+    pub ratios: Ratios,
+    /// D85B, and which base it is of.
+    pub base: Option<BaseSize>,
+    /// Eroded mass fraction of each run.
+    pub runs: Vec<Statistic>,
+    /// Least and most eroded over the range of the constriction curve, one pair per run; empty where the
+    /// curve is no range.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve_range: Vec<[f64; 2]>,
+}
+
+impl SampleWalk {
+    /// Of the outcome in this folder.
+    pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
+        let range = outcome.curve_range.as_ref();
+        Self {
+            folder,
+            in_full,
+            headline: outcome.headline,
+            verdict: outcome.model.class,
+            by_practice: counts_as(&outcome.decision()),
+            replicates: outcome.replicates.len() as u64,
+            ratios: outcome.ratios,
+            base: outcome.inputs.base_size(),
+            runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+            curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
+        }
+    }
+}
+
+impl WalkedBatch {
+    /// A batch of these rows.
+    pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
+            work: String::new(),
+            seed: 0,
+            samples,
+            filters,
+            base: Vec::new(),
+            rows,
+            notes: Vec::new(),
+            threshold: THRESHOLD,
+            cover: SheetCover::default(),
+            inches: false,
+            model_leaves_out: Vec::new(),
+        }
+    }
+
+    /// Whether it is of one base and several filters, not of samples.
+    pub fn has_one_base(&self) -> bool {
+        !self.base.is_empty()
+    }
+
+    /// The rows of a filter.
+    pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
+        self.rows.iter().filter(move |row| row.rules.filter == filter)
+    }
+
+    /// The samples that govern a filter, the strictest first.
+    pub fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
+        let mut rows: Vec<&WalkedRow> = self.of_filter(filter).filter(|row| row.governs.is_some()).collect();
+        rows.sort_by_key(|row| row.governs);
+        rows
+    }
+}
+
+impl WalkedRow {
+    /// Whether its walk erodes.
+    pub fn erodes(&self) -> bool {
+        let class = self.walk.as_ref().map(|walk| walk.verdict);
+        matches!(class, Some(Verdict::Some | Verdict::Continuing))
+    }
+
+    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not
+    /// kept, or its walk erodes.
+    pub fn is_doubted(&self) -> bool {
+        self.is_against_practice() || self.erodes()
+    }
+
+    /// Whether a rule of retention or of the filter's own stability is not kept.
+    pub fn is_against_practice(&self) -> bool {
+        let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
+        self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines
+    }
+}

@@ -1,0 +1,25 @@
+//! D85 of a base, and which base it is of: every face says both in the same words.
+
+use crate::outcome::BaseSize;
+use voidwalk_practice::quantity::{SizeUnit, length, significant};
+use voidwalk_sheets::us_sieve;
+
+/// Whether a base is regraded, and on what.
+pub fn grading(of: &BaseSize) -> String {
+    of.regraded_at_mm.map_or_else(|| "as sampled".into(), |at| format!("regraded on {} mm", significant(at)))
+}
+
+/// All of it, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; with inches behind each D85 and
+/// the name of a US sieve where those are shown.
+pub fn base_size(of: &BaseSize, unit: SizeUnit) -> String {
+    let size = |mm: f64| length(mm, unit).to_string();
+    let before = of.as_sampled_mm.filter(|_| of.regraded_at_mm.is_some());
+    let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
+    let comma = if of.regraded_at_mm.is_some() { "," } else { "" };
+    let sieve = of.regraded_at_mm.filter(|_| unit == SizeUnit::MmAndInches);
+    let grading = match sieve.and_then(|at| Some((us_sieve(at)?, at))) {
+        Some((name, at)) => format!("regraded on {name}, {} mm", significant(at)),
+        None => grading(of),
+    };
+    format!("D85B {}{comma} {grading}{before}", size(of.d85_mm))
+}

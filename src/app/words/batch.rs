@@ -1,0 +1,366 @@
+//! Many samples against filters: the columns of their table, and the lines on each filter.
+
+use super::dispersion::dispersive_limit;
+use super::note::sentence;
+use super::practice::tested_in_brief;
+use super::rule_note::rule_note;
+use crate::outcome::record::Verdict;
+use crate::outcome::table::{Columns, TableCell};
+use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
+use voidwalk_practice::IfDispersive;
+use voidwalk_practice::batch::{NAMED, governing, may_govern, more_with_that_limit};
+use voidwalk_practice::quantity::{
+    NumberRole, SizeUnit, Unit, beside_limit, beside_limit_in_cells, length, significant,
+};
+use voidwalk_practice::{BatchFilter, BatchRow};
+
+/// Said of a sample whose limit is open.
+pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
+
+/// Why nothing is applied to a pair, nor walked.
+pub const EXCHANGED: &str = "base and filter look exchanged";
+
+/// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
+/// unit. Details are those that the table of walks leaves out.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
+    let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
+    let limit = move |row: &BatchRow| {
+        let at_most = if row.limit_at_most { " at most" } else { "" };
+        let [_, limit] = d15f_and_limit_in_cells(row, unit);
+        limit.map(|limit| limit + at_most)
+    };
+    Columns::default()
+        .name("sample", "Sample", |row: &BatchRow| row.sample.clone())
+        .text("filter", "Filter", |row| row.filter.clone())
+        .text("group", "Group", |row| row.group.clone())
+        .number("category", "Category", |row| row.category.map(u64::from))
+        .detail()
+        .digits("fines_percent", 1, |row| row.fines_percent)
+        .page_number("Fines, %", |row| row.fines_percent)
+        .detail()
+        .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
+        .digits("d85b_mm", 4, |row| row.d85b_mm)
+        .page_number("D85B, mm", move |row| size(row.d85b_mm))
+        .digits("d15f_mm", 4, |row| row.d15f_mm)
+        .page_number("D15F, mm", move |row| {
+            let [d15f, _] = d15f_and_limit_in_cells(row, unit);
+            d15f
+        })
+        .detail()
+        .digits("limit_mm", 4, |row| row.limit_mm)
+        .page_number("Limit, mm", limit)
+        .column("limit_at_most", |row| row.limit_at_most)
+        .text("rule", "Whose limit", |row| row.rule.clone())
+        .detail()
+        .text("result", "Result", result)
+        .text("tests", "Tests (Foster and Fell)", |row| tested_in_brief(row.tests, row.is_beyond_tests))
+        .detail()
+        .text("note", "Note", move |row| besides(row, unit))
+        .place(9)
+}
+
+/// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
+/// unit.
+pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
+    let walk = |row: &WalkedRow| row.walk.clone();
+    let of_walk = Columns::default()
+        .number("governs", "Governs", |row: &WalkedRow| row.governs)
+        .text("walked", "Walked", |row| depth(row).shown().below(why_not(row)))
+        .text("class", "Class by walk", move |row| walk(row).map(|walk| walk.verdict))
+        .column("replicates", move |row| walk(row).map(|walk| walk.replicates))
+        .digits("d15f_over_d85b", 4, move |row| walk(row).map(|walk| walk.ratios.d15f_over_d85b))
+        .eroded(|row, run| {
+            let walk = row.walk.as_ref();
+            let range = walk.and_then(|walk| walk.curve_range.get(run).copied());
+            (walk.and_then(|walk| walk.runs.get(run).copied()), range)
+        })
+        .detail()
+        .column("not_walked", |row| row.not_walked.clone())
+        .column("folder", move |row| walk(row).map(|walk| walk.folder));
+    columns(unit).of_part(|row: &WalkedRow| &row.rules).and(of_walk).in_brief()
+}
+
+fn depth(row: &WalkedRow) -> &'static str {
+    match &row.walk {
+        None => "not walked",
+        Some(walk) if walk.in_full => "in full",
+        Some(_) => "first look",
+    }
+}
+
+fn why_not(row: &WalkedRow) -> Option<String> {
+    row.walk.is_none().then(|| row.not_walked.clone()).filter(|why| !why.is_empty())
+}
+
+/// D15F of the filter and its limit: with as many digits as tell them apart.
+pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
+    beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
+}
+
+/// The same in the cells of a table that names the unit at its head.
+fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
+    beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
+}
+
+/// The result of a row.
+fn result(row: &BatchRow) -> &'static str {
+    match row.met {
+        Some(true) if row.breaks_if_dispersive => "met unless the base is dispersive",
+        Some(true) => "met",
+        Some(false) => "not met",
+        None => "no result",
+    }
+}
+
+/// What else to know of a row, in the cell of a table.
+fn besides(row: &BatchRow, unit: SizeUnit) -> String {
+    let mut all: Vec<String> = row.notes.iter().map(|note| sentence(note, unit)).collect();
+    all.extend(row.open_sieves.map(|sieves| rule_note(sieves, unit)));
+    if let Some(limit) = row.if_dispersive.filter(|_| row.breaks_if_dispersive) {
+        all.push(format!("if the base is dispersive, D15F must be {}", dispersive_limit(limit, unit)));
+    }
+    match row.too_coarse_without_percent {
+        Some(part) => all.push(format!(
+            "too coarse without its finest {} %, which it may lose",
+            significant(part).decimals(1)
+        )),
+        None if row.may_lose_fines => all.push("may lose its finer part".into()),
+        None => {}
+    }
+    let others = [
+        (row.drains == Some(false), "may not drain"),
+        (row.may_segregate, "may segregate"),
+        (row.is_drainage_judged && row.drains.is_none(), DRAINAGE_UNKNOWN),
+    ];
+    all.extend(others.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words.to_owned()));
+    all.extend(row.joint.map(|joint| match (joint.percent, joint.is_below_source) {
+        (Some(percent), _) => format!("joint: {} % continuing", significant(percent).in_digits(2)),
+        (None, true) => "joint: less than 0.01 % continuing".into(),
+        (None, false) => "joint: no result".into(),
+    }));
+    all.join("; ")
+}
+
+/// Said where drainage has no result.
+const DRAINAGE_UNKNOWN: &str = "drainage not known";
+
+/// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
+pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec<String> {
+    let BatchFilter { name, curves, .. } = filter;
+    let mut lines = vec![format!("{name}: {}", counts(rows, name))];
+    if curves.len() > 1 {
+        lines.push(format!(
+            "an envelope of {} curves ({}): the worst of them counts for each rule",
+            curves.len(),
+            curves.join(", ")
+        ));
+    }
+    let strictest = governing(rows, name, NAMED);
+    for (at, row) in strictest.iter().enumerate() {
+        let what = if at == 0 { "governing sample" } else { "then" };
+        let at_most = if row.limit_at_most { " at most" } else { "" };
+        let [_, limit] = d15f_and_limit(row, unit);
+        let limit = limit.unwrap_or_default();
+        lines.push(format!("{what} {}: D15F up to {limit}{at_most} ({})", row.sample, row.rule));
+    }
+    let more = more_with_that_limit(rows, name, &strictest);
+    if more > 0 {
+        lines.push(format!("and {more} more with the same limit"));
+    }
+    lines.extend(governs_drainage(rows, name, unit));
+    lines.extend(open_limits(rows, name));
+    lines
+}
+
+/// How many samples a filter retains; how many it may not drain, and of how many that is not known, where it
+/// does not drain all.
+pub fn counts(rows: &[BatchRow], filter: &str) -> String {
+    let in_filter = || rows.iter().filter(|row| row.filter == filter);
+    let samples = in_filter().count();
+    let one_or_more = if samples == 1 { "sample" } else { "samples" };
+    let [met, not_met, none] =
+        [Some(true), Some(false), None].map(|met| in_filter().filter(|row| row.met == met).count());
+    let dry = in_filter().filter(|row| row.drains == Some(false)).count();
+    let open = in_filter().filter(|row| row.drains.is_none() && row.d15f_min_mm.is_some()).count();
+    let drainage = [(dry, "may not drain"), (open, DRAINAGE_UNKNOWN)].into_iter();
+    let drainage = drainage.filter(|(count, _)| *count > 0);
+    let drainage: String = drainage.map(|(count, what)| format!("; {count} {what}")).collect();
+    let on_condition = match in_filter().filter(|row| row.breaks_if_dispersive).count() {
+        0 => String::new(),
+        count => format!(" ({count} of them unless the base is dispersive)"),
+    };
+    let others = format!("{not_met} not met, {none} without a result{drainage}");
+    format!("of {samples} {one_or_more} {met} met{on_condition}, {others}")
+}
+
+/// The sample that asks a filter for the maximum D15F to drain, in words; `None` where it drains all, or
+/// without a limit.
+pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Option<String> {
+    let undrained = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
+    let limits = undrained.filter_map(|row| Some((row.d15f_min_mm?, row)));
+    let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let limit = match row.d15f_min_at_most {
+        true => format!(
+            "the minimum D15F is not known, and at most {}",
+            length(least, unit).role(NumberRole::Least)
+        ),
+        false => format!("D15F {} or more", length(least, unit).role(NumberRole::Least)),
+    };
+    Some(format!("drainage is governed by {}: {limit}", row.sample))
+}
+
+/// The samples of a filter that may govern, and those to which nothing was applied, a sentence each without
+/// its end.
+pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
+    let names = |rows: Vec<&BatchRow>| {
+        let names: Vec<&str> = rows.iter().map(|row| row.sample.as_str()).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let refused = rows.iter().filter(|row| row.filter == filter && row.is_refused).collect();
+    let open = names(may_govern(rows, filter)).map(|names| format!("{MAY_GOVERN}: {names}"));
+    let refused = names(refused).map(|names| format!("nothing applied, as {EXCHANGED}: {names}"));
+    open.into_iter().chain(refused).collect()
+}
+
+/// What was walked of a filter, sentences without their ends: how many samples, how, and to which
+/// classes; then those for which the walk is stricter than practice.
+pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
+    let rows: Vec<&WalkedRow> = batch.of_filter(filter).collect();
+    let walks: Vec<&SampleWalk> = rows.iter().filter_map(|row| row.walk.as_ref()).collect();
+    let not_walked = rows.len() - walks.len();
+    let mut said = format!("{} walked", walks.len());
+    if !walks.is_empty() {
+        let in_full = walks.iter().filter(|walk| walk.in_full).count();
+        let looks = walks.len() - in_full;
+        let one_or_more = if looks == 1 { "first look" } else { "first looks" };
+        said += &format!(" ({in_full} in full, {looks} {one_or_more}): {}", classes(&walks));
+    }
+    if not_walked > 0 {
+        said += &format!("; {not_walked} not walked");
+    }
+    let erodes = |row: &&&WalkedRow| row.rules.met == Some(true) && row.erodes();
+    let stricter: Vec<&str> = rows.iter().filter(erodes).map(|row| row.rules.sample.as_str()).collect();
+    let mut all = vec![said];
+    if !stricter.is_empty() {
+        all.push(format!("met by practice, and the walk erodes: {}", stricter.join(", ")));
+    }
+    all.extend(dispersive_samples(&rows, unit));
+    all
+}
+
+/// Whether the filter holds the sample by practice and walk; or why it was not walked.
+pub fn answer(row: &WalkedRow) -> String {
+    let Some(walk) = &row.walk else { return format!("not walked: {}", row.not_walked) };
+    let practice = walk.headline.map(|headline| format!("{}; ", headline.words()));
+    format!("{}{} in the model", practice.unwrap_or_default(), walk.verdict.words())
+}
+
+/// The number of samples that may be dispersive, and those of which practice is not met then.
+fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
+    let limit = |row: &&WalkedRow| Some((row.rules.clone(), row.walk.as_ref().and(row.rules.if_dispersive)?));
+    let open: Vec<(BatchRow, IfDispersive)> = rows.iter().filter_map(limit).collect();
+    let is_broken = |(row, limit): &&(BatchRow, IfDispersive)| {
+        let as_placed = || row.d15f_mm.is_some_and(|d15f| limit.is_broken_by(d15f));
+        row.breaks_if_dispersive || row.met.is_none() && as_placed()
+    };
+    let name = |(row, limit): &(BatchRow, IfDispersive)| {
+        format!("{} (D15F {})", row.sample, dispersive_limit(*limit, unit))
+    };
+    let broken: Vec<String> = open.iter().filter(is_broken).map(name).collect();
+    let samples = if open.len() == 1 { "sample" } else { "samples" };
+    let then = match broken.is_empty() {
+        true => String::new(),
+        false => format!("; if it is, practice allows less for {}", broken.join(", ")),
+    };
+    let said =
+        format!("not known whether dispersive: {} {samples} with 15 % fines or more{then}", open.len());
+    (!open.is_empty()).then_some(said)
+}
+
+/// How many walks came to each class.
+fn classes(walks: &[&SampleWalk]) -> String {
+    let count = |class| walks.iter().filter(|walk| walk.verdict == class).count();
+    let counted = Verdict::ALL.into_iter().filter(|class| count(*class) > 0);
+    counted.map(|class| format!("{} {}", count(class), class.words())).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::record::Ratios;
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::{BatchFilter, BatchRow, PairOptions};
+    use voidwalk_sheets::SoilSample;
+
+    fn walked(sample: &str, met: bool, walk: Option<(Verdict, Verdict, bool)>) -> WalkedRow {
+        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
+        let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
+        let of = SoilSample { name: sample.into(), path: sample.into(), curve };
+        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
+        let rules =
+            BatchRow { if_dispersive: None, ..BatchRow::of(&of, ("F", &filter), PairOptions::default()) };
+        let walk = walk.map(|(verdict, by_practice, in_full)| SampleWalk {
+            folder: String::new(),
+            in_full,
+            headline: None,
+            verdict,
+            by_practice: Some(by_practice),
+            replicates: 2,
+            ratios: Ratios { d15f_over_d85b: 4.0, d15f_over_d95b: 3.0 },
+            base: None,
+            runs: Vec::new(),
+            curve_range: Vec::new(),
+        });
+        let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
+        WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
+    }
+
+    #[test]
+    fn walks_are_counted_by_class_and_practice_speaks_against_some() {
+        let rows = vec![
+            walked("A", true, Some((Verdict::None, Verdict::None, true))),
+            walked("B", false, Some((Verdict::None, Verdict::Some, false))),
+            walked("C", true, Some((Verdict::Some, Verdict::None, false))),
+            walked("D", true, None),
+        ];
+        let against: Vec<bool> = rows.iter().map(WalkedRow::is_against_practice).collect();
+        assert_eq!(against, [false, true, false, false]);
+        let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
+        assert_eq!(doubted, [false, true, true, false]);
+        assert_eq!(answer(&rows[3]), "not walked: no table");
+        let filter =
+            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
+        assert!(walks(&batch, "F", SizeUnit::Mm)[0].contains("2 no erosion, 1 some erosion"));
+    }
+
+    /// The filter has a D15F of 0.725 mm.
+    #[test]
+    fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
+        let of = |name: &str, verdict, d15f_max_mm| {
+            let mut row = walked(name, true, Some((verdict, Verdict::None, true)));
+            row.rules.if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
+            row.rules.breaks_if_dispersive = d15f_max_mm < 0.725;
+            row
+        };
+        let sand = walked("D", true, Some((Verdict::None, Verdict::None, true)));
+        let rows = [
+            of("A", Verdict::None, 0.5),
+            of("B", Verdict::None, 0.9),
+            of("C", Verdict::Some, 0.5),
+            sand.clone(),
+        ];
+        let words = dispersive_samples(&rows.each_ref(), SizeUnit::Mm).unwrap();
+        assert!(
+            words.contains(" 3 samples ") && words.contains("A (D15F at most 0.500\u{202f}mm)"),
+            "{words}"
+        );
+        assert!(!words.contains("B ("), "{words}");
+        assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
+        let filter =
+            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
+        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows.to_vec());
+        let last = walks(&batch, "F", SizeUnit::Mm).pop().unwrap();
+        assert!(last.starts_with("not known whether dispersive: 3 samples"), "{last}");
+    }
+}

@@ -1,0 +1,80 @@
+//! What faces say of the boundaries of the model.
+
+use crate::outcome::boundary::{Boundaries, are_few};
+use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, significant};
+
+/// Which share of so many networks is shown: of few the least and the most of them.
+pub fn share_of_networks(networks: u64) -> &'static str {
+    if are_few(networks) { "least and most" } else { "5 to 95 % range" }
+}
+
+/// The ends of a boundary over so many networks, as `4.77 to 4.97`, and what they are the ends of.
+pub fn over_networks(ends: &str, networks: u64) -> String {
+    match are_few(networks) {
+        true => format!("{ends} over {networks} networks"),
+        false => format!("{ends}, {} of {networks} networks", share_of_networks(networks)),
+    }
+}
+
+/// The share of so many networks that figures draw, which is read between two networks where they are few.
+pub fn drawn_of_networks(networks: u64) -> &'static str {
+    if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
+}
+
+/// The least D15F/D85B that nearly all networks hold, and its D15F where the base has a size.
+pub fn held(boundaries: &Boundaries, unit: SizeUnit) -> String {
+    let Some((row, ratio)) = boundaries.least_held() else {
+        return "no D15F/D85B is known that nearly all networks hold".into();
+    };
+    let size = boundaries
+        .base
+        .d85_mm
+        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(NumberRole::Greatest)));
+    let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
+    format!(
+        "nearly all networks hold D15F/D85B {}{}{}",
+        significant(ratio).role(NumberRole::Greatest),
+        size.unwrap_or_default(),
+        if holds_whole_search { ", as far as was searched" } else { "" }
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::boundary::Boundary;
+
+    /// A record whose networks erode from these D15F/D85B on; none of them where there are none.
+    fn found(ratios: &[f64], d85_mm: Option<f64>) -> Boundaries {
+        let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
+        let no_erosion = if networks.is_empty() { None } else { Boundary::of(&networks, d85_mm) };
+        let text = serde_json::json!({
+            "version": "1", "filter": "f", "curve_name": "c", "filter_cu": 1.5, "filter_d15_mm": null,
+            "base": {"name": "b", "cu": null, "d15_mm": null, "d85_mm": d85_mm, "d95_over_d85": null,
+                "tail_mass_fraction": 0.0},
+            "threshold": 0.075, "replicates": 2, "seed": 1, "engine": "expected", "bracket": [0.5, 100.0],
+            "step": 0.005, "model_leaves_out": [], "settings": [], "seconds": 1.0,
+            "boundaries": [{"density": "loose", "thickness": "60 layers", "layers": 60, "thickness_mm": null,
+                "grains_per_void": 0.6, "no_erosion": no_erosion, "continuing": null, "not_monotone": 0,
+                "networks": []}],
+        });
+        serde_json::from_value(text).unwrap()
+    }
+
+    #[test]
+    fn a_ratio_that_is_held_is_rounded_down_as_is_its_size() {
+        let said = held(&found(&[4.034, 4.034], Some(0.2)), SizeUnit::Mm);
+        assert_eq!(said, "nearly all networks hold D15F/D85B 4.03, D15F 0.806\u{202f}mm");
+    }
+
+    #[test]
+    fn a_row_that_holds_nothing_leaves_no_ratio_known() {
+        let mut two = found(&[3.0, 3.0], None);
+        assert_eq!(two.least_held().map(|(_, ratio)| ratio), Some(3.0));
+        two.boundaries.extend(found(&[], None).boundaries);
+        assert!(two.least_held().is_none());
+        // What holds all that was searched counts to its end, and is said to.
+        two.boundaries[1].holds_to = Some(1.08);
+        assert!(held(&two, SizeUnit::Mm).ends_with("1.08, as far as was searched"));
+    }
+}

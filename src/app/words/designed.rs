@@ -1,0 +1,368 @@
+//! How coarse a filter for many samples may be, in sentences.
+
+use super::dispersion::{beside_dispersive, dispersive_limit, test};
+use super::specification::no_band;
+use crate::outcome::table::Columns;
+use voidwalk_practice::IfDispersive;
+use voidwalk_practice::Note;
+use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, limits};
+use voidwalk_practice::rules::WIDEST_BAND;
+use voidwalk_practice::{DesignedSample, DesignedSamples, least_of_band, no_band_between};
+
+/// Whether a note is of a kind.
+type IsKind = fn(&Note) -> bool;
+
+/// What a specification warns of a base, and how it begins where it is said of several.
+const CAUTIONS: [(IsKind, &str); 5] = [
+    (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
+    (
+        |note| matches!(note, Note::UnstableSide { .. }),
+        "With a side of its own band that is not internally stable",
+    ),
+    (
+        |note| matches!(note, Note::BroadBase { .. } | Note::BroadBaseAtLeast { .. }),
+        "Broadly graded, so that the finer part may move between the coarse grains",
+    ),
+    (|note| matches!(note, Note::GapOfBase { .. }), "Gap-graded by this program's own check"),
+    (
+        |note| matches!(note, Note::FlatBase { .. }),
+        "A curve that is flat somewhere, to be looked at for a gap",
+    ),
+];
+
+/// So many samples.
+fn counted(samples: usize) -> String {
+    format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
+}
+
+/// The sample with the greatest minimum D15F to drain, and that D15F (mm); `None` where none has any.
+fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+    let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
+    limits.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The sample with the least maximum D15F, and that D15F (mm); `None` where none has any.
+fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+    let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_max_mm?)));
+    limits.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The maximum D15F of a sample, and whose rule sets it.
+fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
+    row.d15f_max_mm.map_or_else(
+        || "no maximum D15F is known".into(),
+        |mm| format!("D15F up to {} (practice: {})", length(mm, unit).role(NumberRole::Greatest), row.rule),
+    )
+}
+
+/// Why a sample has no band of its own, without the last full stop; empty where it has one.
+fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
+    row.no_band.as_ref().map_or_else(String::new, |why| no_band(why, unit).trim_end_matches('.').to_owned())
+}
+
+/// The D15F of a filter for all samples, in a sentence without its end.
+///
+/// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
+pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
+    let [most, least_of] = [false, true]
+        .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
+    let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
+    let cap = strictest(others.iter().copied());
+    let Some((first, own)) = strictest(settled.iter().copied()) else {
+        return match cap {
+            Some((row, mm)) => format!(
+                "No filter is known that serves {}: none is settled, and {} allows D15F up to {} at most",
+                if others.len() == 1 {
+                    "the sample".into()
+                } else {
+                    format!("all {}", counted(others.len()))
+                },
+                row.sample,
+                most(mm)
+            ),
+            None => "No maximum D15F is known for any sample".into(),
+        };
+    };
+    let cap = cap.filter(|(_, mm)| *mm < own);
+    let (first, greatest) = cap.unwrap_or((first, own));
+    let of = match (settled.len(), others.len()) {
+        (1, 0) => "the sample".to_owned(),
+        (all, 0) => format!("all {}", counted(all)),
+        (some, open) => {
+            let [are, not] = [some, open].map(|n| if n == 1 { "is" } else { "are" });
+            format!("the {} that {are} settled ({open} {not} not)", counted(some))
+        }
+    };
+    let within = cap.map_or_else(String::new, |(row, _)| format!(" within the limit of {}", row.sample));
+    let mm = most(greatest);
+    let Some((row, least)) = drainage(settled.iter().copied()) else {
+        return format!("A filter for {of}{within}: D15F up to {mm}; no minimum D15F is known");
+    };
+    let (at_most, from) = (row.d15f_min_at_most, least_of(least));
+    let and = if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
+    match no_band_between((least, at_most), greatest) {
+        Some(_) if least > greatest && at_most => format!(
+            "It is not known whether one filter serves {of}{within}: {} drains from D15F {from} or \
+             less, as its fines are not known{and} allows {mm} at most",
+            row.sample
+        ),
+        Some(_) if least > greatest => format!(
+            "No one filter serves {of}{within}: {} needs D15F {from} or more to drain{and} allows \
+             {mm} at most",
+            row.sample
+        ),
+        Some(why) => format!(
+            "No one filter is specified for {of}{within}, with D15F from {}: {}",
+            limits(least, greatest, unit),
+            no_band(&why, unit).trim_end_matches('.')
+        ),
+        None => {
+            let begins = least_of(least_of_band(least, greatest));
+            let at_most = if at_most { "not known, and at most " } else { "" };
+            let raised = match begins == from {
+                true => String::new(),
+                false => format!(
+                    " (the minimum that drains is {at_most}{from}; it is raised so that the band is \
+                     no wider than {WIDEST_BAND} to 1)"
+                ),
+            };
+            let both = limits(least_of_band(least, greatest), greatest, unit);
+            format!("A filter for {of}{within}: D15F from {both}{raised}")
+        }
+    }
+}
+
+/// Samples that govern, whose limits they have, and those that are open: sentences without their ends;
+/// `again` is what to do where a sample is dispersive, as
+/// [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
+pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
+    let mut said = vec![for_all(all, unit)];
+    for (at, row) in all.governing().into_iter().enumerate() {
+        let what = if at == 0 { "Governing sample" } else { "Then" };
+        said.push(format!("{what} {}: {}", row.sample, greatest(row, unit)));
+    }
+    if let Some((row, least)) = drainage(&all.rows) {
+        let at_most = if row.d15f_min_at_most { "at most " } else { "" };
+        let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
+        let limit = length(least, unit).role(NumberRole::Least).to_string();
+        said.push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
+    }
+    said.extend(still_to_set(all));
+    said.extend(cautions(all));
+    said.extend(dispersion(all, again, unit));
+    let (open, known): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.d15f_max_mm.is_none());
+    let unserved = known.iter().filter(|row| row.no_band.is_some());
+    said.extend(unserved.map(|row| format!("No band for {}: {}", row.sample, without_band(row, unit))));
+    said.extend(open.into_iter().map(|row| {
+        format!("May govern, as no maximum D15F is known: {}: {}", row.sample, without_band(row, unit))
+    }));
+    said
+}
+
+/// How many samples may be dispersive, and what practice allows the strictest of those for which it then
+/// allows less.
+fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<String> {
+    let open: Vec<_> = all.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
+    let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
+        beside_dispersive(*of, row.d15f_max_mm.unwrap_or(f64::INFINITY), unit).is_some()
+    };
+    let strictest = open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
+    let (row, of) = strictest?;
+    Some(format!(
+        "{} with 15 % fines or more may be dispersive, which is not stated. If {} is, {}. {} then not \
+         valid: {again}",
+        counted(open.len()),
+        row.sample,
+        clause(*of, unit),
+        match (open.len(), all.rows.len()) {
+            (_, 1) => "Its band is",
+            (1, _) => "Its band, and the filter for all, are",
+            _ => "Their bands, and the filter for all, are",
+        }
+    ))
+}
+
+/// What no band has here, of one sample or of all; `None` where no sample has a band.
+fn still_to_set(all: &DesignedSamples) -> Option<String> {
+    let has_band = all.rows.iter().any(|row| row.d15f_max_mm.is_some() && row.no_band.is_none());
+    has_band.then(|| {
+        "Not a complete specification: the maximum D90F is still to be set, for each sample and for a \
+         filter for several"
+            .into()
+    })
+}
+
+/// What is to be known of the samples themselves, with their names.
+fn cautions(all: &DesignedSamples) -> Vec<String> {
+    let named = |(is_it, what): &(fn(&Note) -> bool, &str)| {
+        let is_so = |row: &&DesignedSample| row.notes.iter().any(is_it);
+        let names: Vec<&str> = all.rows.iter().filter(is_so).map(|row| row.sample.as_str()).collect();
+        (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
+    };
+    CAUTIONS.iter().filter_map(named).collect()
+}
+
+/// The limit of a dispersive base, and the test that tells one that is not known.
+fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
+    let words = format!("D15F is to be {}", dispersive_limit(limit, unit));
+    if limit.at_most {
+        format!("{words}; {}", test(limit, "have the base tested with the filter"))
+    } else {
+        words
+    }
+}
+
+/// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
+/// unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
+    let drains = move |row: &DesignedSample| {
+        let at_most = if row.d15f_min_at_most { " at most" } else { "" };
+        row.d15f_min_mm
+            .map(|least| format!("{}{at_most}", length(least, unit).role(NumberRole::Least).in_cell()))
+    };
+    let band = move |row: &DesignedSample| match row.band_d15f_mm {
+        Some([least, greatest]) => limits(least, greatest, unit).in_cell(),
+        None => "none".into(),
+    };
+    Columns::default()
+        .name("sample", "Sample", |row: &DesignedSample| row.sample.clone())
+        .text("group", "Group", |row| row.group.clone())
+        .column("category", |row| row.category.map(u64::from))
+        .digits("fines_percent", 1, |row| row.fines_percent)
+        .digits("regraded_at_mm", 4, |row| row.regraded_at_mm)
+        .digits("d85b_mm", 4, |row| row.d85b_mm)
+        .page_number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| length(mm, unit).in_cell()))
+        .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
+        .page_number("Limit of practice, mm", move |row| {
+            row.d15f_max_mm.map(|mm| length(mm, unit).role(NumberRole::Greatest).in_cell())
+        })
+        .text("rule", "Whose limit", |row| row.rule.clone())
+        .digits("d15f_min_mm", 4, |row| row.d15f_min_mm)
+        .page_number("Drains from, mm", drains)
+        .column("d15f_min_at_most", |row| row.d15f_min_at_most)
+        .digits("band_d15f_min_mm", 4, |row| row.band_d15f_mm.map(|[least, _]| least))
+        .digits("band_d15f_max_mm", 4, |row| row.band_d15f_mm.map(|[_, greatest]| greatest))
+        .page_number("Band, D15F, mm", band)
+        .number("governs", "Governs", |row| row.governs)
+        .column("no_band", move |row| row.no_band.as_ref().map(|why| no_band(why, unit)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::specification::DESIGN_EACH_AGAIN;
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::SpecificationOptions;
+    use voidwalk_practice::design::Specification;
+    use voidwalk_practice::quantity::SizeUnit;
+    use voidwalk_sheets::SoilSample;
+
+    fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
+        let curve = Gradation::from_lines(points).unwrap();
+        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
+        let of = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
+        DesignedSample::of(&sample, &of)
+    }
+
+    #[test]
+    fn the_least_d15f_of_practice_governs() {
+        // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
+        let limit = sand.d15f_max_mm.unwrap();
+        assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
+        let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
+        let said = lines(&by_practice, DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        assert_eq!(
+            said[1],
+            format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule)
+        );
+        assert!(
+            said[0].starts_with("A filter for all 2 samples: D15F from ")
+                && said[0].ends_with("0.700\u{202f}mm")
+        );
+        assert_eq!(by_practice.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
+        let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&by_practice.rows)).unwrap();
+        assert!(
+            csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_max_mm,rule,")
+        );
+        assert_eq!(csv.lines().count(), 3);
+    }
+
+    /// The table of many samples warns as the specification of each.
+    #[test]
+    fn samples_that_are_not_stable_themselves_are_named() {
+        let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
+        let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
+        let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
+        let said = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
+        for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
+            assert!(said.contains(&format!("\n{words}: A, B\n")), "{words}: {said}");
+        }
+        assert!(said.contains("are then not valid: design again for dispersive soils"), "{said}");
+        let said =
+            lines(&DesignedSamples::new("s".into(), vec![sand]), DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
+        assert!(!said.contains("Kenney") && said.contains("the maximum D90F is still to be set"), "{said}");
+    }
+
+    #[test]
+    fn samples_that_no_one_filter_serves_are_said() {
+        let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
+        let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
+        let all = DesignedSamples::new("s".into(), vec![fine, coarse]);
+        let said = for_all(&all, SizeUnit::Mm);
+        assert!(said.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{said}");
+        let none = DesignedSamples::new("s".into(), Vec::new());
+        assert_eq!(for_all(&none, SizeUnit::Mm), "No maximum D15F is known for any sample");
+    }
+
+    /// Each of these gravels has a D60F beyond the greatest size; between their limits there is no band.
+    #[test]
+    fn a_sample_without_a_band_of_its_own_is_not_served() {
+        let t1 =
+            row("T1", &[(37.5, 100.0), (19.0, 80.0), (9.5, 60.0), (4.75, 40.0), (2.0, 10.0), (1.0, 0.0)]);
+        let t2 =
+            row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
+        assert!(t1.no_band.is_some() && t1.d15f_max_mm.is_some(), "{t1:?}");
+        let why = no_band(t1.no_band.as_ref().unwrap(), SizeUnit::Mm);
+        let said = lines(&DesignedSamples::new("s".into(), vec![t1, t2]), DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        assert!(said[0].starts_with("No filter is known that serves all 2 samples"), "{}", said[0]);
+        assert!(said.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))), "{said:?}");
+    }
+
+    #[test]
+    fn both_ends_are_of_the_samples_that_are_settled_and_a_bound_on_drainage_refuses_nothing() {
+        // The open sample drains from far more than the settled one allows.
+        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
+        assert!(gravel.d15f_min_mm.unwrap() > 1.0);
+        let said = lines(
+            &DesignedSamples::new("s".into(), vec![core.clone(), gravel]),
+            DESIGN_EACH_AGAIN,
+            SizeUnit::Mm,
+        );
+        assert_eq!(
+            said[0],
+            "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the \
+             minimum that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
+        );
+        assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
+        let one = DesignedSamples::new("s".into(), vec![core.clone()]);
+        let said = for_all(&one, SizeUnit::Mm);
+        assert!(
+            said.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
+            "{said}"
+        );
+        let open = DesignedSample {
+            path: "other".into(),
+            d15f_min_mm: Some(2.0),
+            d15f_min_at_most: true,
+            ..core.clone()
+        };
+        let said = for_all(&DesignedSamples::new("s".into(), vec![core, open]), SizeUnit::Mm);
+        assert!(
+            said.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,287 @@
+//! The words of what an answer leaves out: what the model does not contain, and what a scene does not need.
+
+use crate::outcome::left_out::{LayerKind, LeftOut};
+use crate::outcome::record::ModelLimit;
+use voidwalk_core::walk::{Engine, Finest, Shortcut};
+use voidwalk_practice::quantity::{given, significant};
+
+/// A limit of the model in brief, and the rest of what it means.
+fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
+    const HYDRAULICS: &str = "no flow, no gradient, no time; an increment is not an interval of time";
+    const GRADIENT: &str = "no gradient, no time; an increment is not an interval of time";
+    match limit {
+        ModelLimit::Hydraulics => ("hydraulics", HYDRAULICS),
+        ModelLimit::HydraulicsElsewhere => ("hydraulics, in the other cases", HYDRAULICS),
+        ModelLimit::Gradient => ("hydraulics but for the direction and the shares of slow flow", GRADIENT),
+        ModelLimit::GradientThere => (
+            "hydraulics but for the direction and the shares of slow flow, where water gives particles \
+                 their way",
+            GRADIENT,
+        ),
+        ModelLimit::Bridging => {
+            ("bridging", "a particle is stopped only by a constriction finer than itself")
+        }
+        ModelLimit::PartialClogging => {
+            ("partial clogging", "a constriction is open at its full size or blocked")
+        }
+        ModelLimit::Supply => ("a limit to what enters", "all base particles are offered to the filter"),
+        ModelLimit::Excessive => (
+            "the excessive-erosion class of Foster and Fell",
+            "the verdict knows no, some and continuing erosion",
+        ),
+        ModelLimit::Cohesion => (
+            "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the \
+                 filter",
+            "",
+        ),
+    }
+}
+
+/// A limit of the model.
+pub fn model_limit(limit: ModelLimit) -> String {
+    match parts(limit) {
+        (brief, "") => brief.to_owned(),
+        (brief, rest) => format!("{brief}: {rest}"),
+    }
+}
+
+/// What no rule covers, as no text was read that gives its numbers.
+pub const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
+
+/// The limits of the model that matter most to a designer, in a line; the page lists all.
+pub fn left_out_line(limits: &[ModelLimit]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    if limits.iter().any(|limit| [ModelLimit::Hydraulics, ModelLimit::HydraulicsElsewhere].contains(limit)) {
+        names.push("hydraulics");
+    }
+    names.push("gradient");
+    if limits.contains(&ModelLimit::Bridging) {
+        names.push("bridging");
+    }
+    names.extend(["cohesion", "dispersion", "suffusion", "segregation"]);
+    format!("The model is no proof; it leaves out {}.", names.join(", "))
+}
+
+/// What the model does not contain and what no rule covers, in two sentences.
+pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
+    let brief: Vec<&str> = limits.iter().map(|limit| parts(*limit).0).collect();
+    format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
+}
+
+/// The study of the number of base particles.
+const AMOUNTS: &str = "sensitivity to the number of base particles";
+
+/// A part of the program that a scene does not need, in a part of a sentence; sizes have this unit.
+pub fn left_out(part: &LeftOut, unit: &str) -> String {
+    let times = |factors: &[f64]| {
+        factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
+    };
+    let text = match part {
+        LeftOut::Walk(shortcut) => return shortcut_words(*shortcut, unit),
+        LeftOut::Lattice => "a lattice: the voids of the packing are the network",
+        LeftOut::BeforeNetwork => "packing, triangulation and constriction curve: the network is given",
+        LeftOut::GivenCurve => "a given constriction curve: it is measured on the packing",
+        LeftOut::PackingByLibrary => {
+            "packing and triangulation: the constriction curve is from the library of packings"
+        }
+        LeftOut::PackingByGuess => {
+            "packing and triangulation: the constriction curve is guessed from the gradation"
+        }
+        LeftOut::PackingByCurve => "packing and triangulation: the constriction curve is given",
+        LeftOut::PackingOfShape(folder, factor) => {
+            let factor = significant(*factor).decimals(4);
+            return format!(
+                "packing the filter: the packing in {folder} has its shape, and was taken {factor} \
+                     times as large"
+            );
+        }
+        LeftOut::SecondRun => "the second run: it was not asked for",
+        LeftOut::AmountsAboveCap(factors, cap) => {
+            let cap = given(*cap);
+            return format!("{AMOUNTS}, {}: more than base.cap, {cap}, allows", times(factors));
+        }
+        LeftOut::AmountsTheSame(factors) => {
+            return format!(
+                "{AMOUNTS}, {}: the same number of particles as the scene itself or another factor",
+                times(factors)
+            );
+        }
+        LeftOut::ThicknessOfFile => {
+            "filters of another thickness: a network from a file is as thick as it is"
+        }
+        LeftOut::ThicknessRefused(factor, why) => {
+            return format!("a filter {} times as thick: {why}", given(*factor));
+        }
+        LeftOut::ThicknessTheSame(factor, parts, kind) => {
+            let noun = match (kind, parts) {
+                (LayerKind::Copy, 1) => "copy of the packing",
+                (LayerKind::Copy, _) => "copies of the packing",
+                (LayerKind::Layer, 1) => "layer",
+                (LayerKind::Layer, _) => "layers",
+            };
+            return format!(
+                "a filter {} times as thick: to the nearest whole number it has the same {parts} {noun}",
+                given(*factor)
+            );
+        }
+    };
+    text.into()
+}
+
+/// The same of several.
+pub fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
+    parts.iter().map(|part| left_out(part, unit)).collect::<Vec<_>>().join("; ")
+}
+
+/// A shortcut of a walk, in a sentence; sizes have this unit.
+fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
+    let followed = |engine: Engine| match engine {
+        Engine::Expected => "only their expected number in each void is followed",
+        _ => "only their number in each void is followed, which is exact",
+    };
+    let finest_open = |finest: Finest| {
+        format!(
+            "the finest open constriction of this walk ({} {unit})",
+            significant(finest.size_mm).decimals(4)
+        )
+    };
+    match shortcut {
+        Shortcut::NothingOpen => {
+            "No constriction is open: every base particle stays in the void it starts in.".into()
+        }
+        Shortcut::NonePassive(finest) => {
+            let fine = if finest.arches { "too fine to arch in" } else { "as fine as" };
+            let open = finest_open(finest);
+            format!("No base particle is {fine} {open}, so none is kept as a count.")
+        }
+        Shortcut::Openings => {
+            "Blocked constrictions leave openings that may stop a particle of any size: none is \
+                               kept as a count."
+                .into()
+        }
+        Shortcut::AllPassive(finest, engine) => format!(
+            "Every base particle passes every open constriction (finest {} {unit}){}: nothing can be \
+                 blocked, and none is walked on its own; {}.",
+            significant(finest.size_mm).decimals(4),
+            if finest.arches { ", and is too fine to arch" } else { "" },
+            followed(engine)
+        ),
+        Shortcut::MostPassive(percent, finest, engine) => format!(
+            "All but {} % of the base particles by number are {} {} and can block nothing: {}, and \
+                 their sizes are drawn where they come to rest.",
+            digits(percent),
+            if finest.arches { "too fine to arch in" } else { "no coarser than" },
+            finest_open(finest),
+            followed(engine)
+        ),
+        Shortcut::OneSize => "The base has one size: no column of diameters is kept.".into(),
+        Shortcut::FewPassive(passive, start_nodes) => format!(
+            "None is kept as a count: {passive} passive base particles an increment for {start_nodes} \
+                 start nodes are so few that walking each by itself is faster, and the distribution is the \
+                 same."
+        ),
+    }
+}
+
+/// A number of percent with four digits that mean something: `19.65`, `0.002500`, `3.000e-7`.
+fn digits(percent: f64) -> String {
+    match percent {
+        few if few < 1e-3 && few.is_finite() => format!("{few:.3e}"),
+        many => significant(many).decimals((3.0 - libm::log10(many).floor()).max(0.0) as u8).to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::outcome::{Modelled, leaves_out};
+
+    const NUMBERS: [f64; 8] = [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+    #[track_caller]
+    fn reads_well(words: &str) {
+        assert!(!words.contains("NaN") && !words.contains("inf ") && !words.contains("inf)"), "{words}");
+        assert!(!words.is_empty() && !words.contains("  ") && words.len() < 300, "{words}");
+    }
+
+    fn all(number: f64, n: u64, text: &str) -> Vec<LeftOut> {
+        vec![
+            LeftOut::Lattice,
+            LeftOut::BeforeNetwork,
+            LeftOut::GivenCurve,
+            LeftOut::PackingByLibrary,
+            LeftOut::PackingByGuess,
+            LeftOut::PackingByCurve,
+            LeftOut::PackingOfShape(text.into(), number),
+            LeftOut::SecondRun,
+            LeftOut::AmountsAboveCap(vec![number, 2.0], number),
+            LeftOut::AmountsTheSame(vec![number]),
+            LeftOut::ThicknessOfFile,
+            LeftOut::ThicknessRefused(number, text.into()),
+            LeftOut::ThicknessTheSame(number, n, LayerKind::Layer),
+            LeftOut::ThicknessTheSame(number, n, LayerKind::Copy),
+        ]
+    }
+
+    #[test]
+    fn everything_left_out_reads_well_with_any_numbers() {
+        for number in NUMBERS {
+            for n in [0, 1, u64::MAX] {
+                for item in all(number, n, "a reason") {
+                    let words = left_out(&item, "mm");
+                    reads_well(&words);
+                    assert!(words.contains(": ") && !words.ends_with('.'), "{words}");
+                }
+                let of_run = |engine| {
+                    [false, true].into_iter().flat_map(move |arches| {
+                        let finest = Finest { size_mm: number, arches };
+                        [
+                            Shortcut::NothingOpen,
+                            Shortcut::NonePassive(finest),
+                            Shortcut::Openings,
+                            Shortcut::AllPassive(finest, engine),
+                            Shortcut::MostPassive(number, finest, engine),
+                            Shortcut::OneSize,
+                            Shortcut::FewPassive(n, n),
+                        ]
+                    })
+                };
+                for item in Engine::ALL.into_iter().flat_map(of_run) {
+                    reads_well(&shortcut_words(item, "mm"));
+                    assert!(shortcut_words(item, "mm").ends_with('.'), "{item:?}");
+                    assert!(!shortcut_words(item, "D0F").contains(" mm"), "{item:?}");
+                }
+            }
+        }
+        assert_eq!(digits(19.654), "19.65");
+        assert_eq!((digits(0.0025), digits(3e-7)), ("0.002500".into(), "3.000e-7".into()));
+    }
+
+    #[test]
+    fn limits_of_the_model_are_written_as_words_and_read_back() {
+        for limit in ModelLimit::ALL {
+            reads_well(&model_limit(limit));
+            let text = serde_json::to_string(&limit).unwrap();
+            assert_eq!(serde_json::from_str::<ModelLimit>(&text).unwrap(), limit);
+        }
+        assert!(serde_json::from_str::<ModelLimit>("\"Hydraulics: no gradient, no flow rate.\"").is_err());
+        let line = left_out_line(&leaves_out(Modelled::default()));
+        for name in
+            ["hydraulics", "gradient", "bridging", "cohesion", "dispersion", "suffusion", "segregation"]
+        {
+            assert!(line.contains(name) && line.split(' ').count() <= 20, "{name}: {line}");
+        }
+        let modelled = Modelled { flow: true, arches: true, openings: false };
+        let line = left_out_line(&leaves_out(modelled));
+        assert!(line.contains("gradient") && !line.contains("hydraulics") && !line.contains("bridging"));
+        let brief = left_out_in_brief(&leaves_out(Modelled::default()));
+        assert!(
+            brief.starts_with("The model leaves out: hydraulics; bridging; partial clogging; "),
+            "{brief}"
+        );
+        assert!(brief.ends_with(
+            "; cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter. \
+             Not checked: segregation by D90F and D10F, excessive erosion."
+        ));
+    }
+}

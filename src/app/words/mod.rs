@@ -1,0 +1,39 @@
+//! English: the sentences in which faces say what records hold.
+//!
+//! - [`first_lines()`] are the lines of practice and model that every face begins with.
+//! - [`sentence()`] fills a note's sentence with its numbers, [`setting()`] says which setting changes it.
+//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: what an answer
+//!   leaves out.
+
+mod answer;
+mod base_size;
+pub mod batch;
+#[cfg(test)]
+mod batch_tests;
+pub mod boundary;
+mod case_columns;
+mod class;
+pub mod designed;
+mod dispersion;
+pub mod ledger;
+pub mod left_out;
+mod next;
+mod note;
+mod practice;
+pub mod products;
+pub mod rule;
+pub mod rule_note;
+mod so_far;
+pub mod specification;
+#[cfg(test)]
+#[path = "../../practice/test_soils.rs"]
+mod test_soils;
+
+pub use answer::{FOREMOST, FirstLine, first_lines, foremost, model};
+pub use base_size::{base_size, grading};
+pub use class::{capital, meaning, undecided_by};
+pub use dispersion::{beside_dispersive, dispersive_limit, test};
+pub use next::next;
+pub use note::{row_note, sentence, setting};
+pub use practice::{judged_alone, practice_line, tested_in_brief};
+pub use so_far::so_far;

@@ -1,0 +1,330 @@
+//! The line of practice.
+
+use super::dispersion::beyond_dispersive;
+use super::rule::value_and_limit;
+use super::rule_note::{missing, rule_note};
+use crate::outcome::record::Outcome;
+use voidwalk_practice::Decision;
+use voidwalk_practice::decision::Standing;
+use voidwalk_practice::quantity::{SizeUnit, Unit, beside_limit, significant};
+use voidwalk_practice::rule_result::credit;
+use voidwalk_practice::rules::{DESIGN, TESTS_NO_EROSION, authority, authority_in_brief};
+use voidwalk_practice::washout::Washout;
+use voidwalk_practice::{AppliedRule, Headline, Note, RuleNote, RuleRole, RuleUnit, TestedClass};
+
+/// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
+pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
+    let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
+    (decision.standing == Standing::Met && !is_envelope).then_some(
+        "Judged for these two gradations alone. The coarsest filter and the finest base that the works allow \
+         must keep the limit, too; that was not checked here.",
+    )
+}
+
+/// The line of practice: the headline, D15F beside the limit of design, the class of tests, and every other
+/// rule that is not kept; with the limit that the filter breaks if the base is dispersive.
+pub fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
+    let (Some(headline), Some(design)) = (decision.headline, decision.applied(DESIGN)) else {
+        return "the limit of design was not applied".into();
+    };
+    let mut clauses = vec![of_design(design, decision.standing, unit)];
+    if design.met.is_none() {
+        clauses.extend(of_other_retention(decision, unit));
+    }
+    clauses.extend(of_tests(decision, unit));
+    clauses.extend(decision.washout.as_ref().map(|washout| without_finer(washout, unit)));
+    clauses.extend(besides(decision, headline).into_iter().map(str::to_owned));
+    clauses.extend(decision.beyond_dispersive.as_ref().map(|beyond| beyond_dispersive(beyond, unit)));
+    format!("{}: {}", headline.words(), clauses.join("; "))
+}
+
+/// D15F beside the limit of design.
+fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
+    let [value, limit] = value_and_limit(rule, unit);
+    let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
+    let d15f = match standing {
+        // D15F itself is what the sieves leave open.
+        Standing::Open(sieves @ (RuleNote::D15FBetween(..) | RuleNote::FilterBetween(..))) => {
+            rule_note(sieves, unit)
+        }
+        Standing::Open(sieves) => format!("{known}; {}", rule_note(sieves, unit)),
+        _ => known,
+    };
+    let limit = match limit {
+        Some(limit) if rule.limit_at_most => format!("limit not known, at most {limit} ({})", credit(rule)),
+        Some(limit) => format!("limit {limit} ({})", credit(rule)),
+        None => "limit not known".to_owned(),
+    };
+    let needs = match (rule.met, rule.needs.first()) {
+        (None, Some(need)) => missing(*need).map(|missing| format!(" (needs {missing})")),
+        _ => None,
+    };
+    format!("{d15f}, {limit}{}", needs.unwrap_or_default())
+}
+
+/// Rules of retention that are not kept besides the limit of design and the boundary of no erosion.
+fn of_other_retention(decision: &Decision, unit: SizeUnit) -> impl Iterator<Item = String> {
+    let others = decision.broken(RuleRole::Retention);
+    let others = others.filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id));
+    others.map(move |rule| {
+        let [value, limit] = value_and_limit(rule, unit).map(Option::unwrap_or_default);
+        format!("{} {value}, limit {limit} ({})", rule.quantity, authority(rule))
+    })
+}
+
+/// The class of such pairs in tests, with the boundary beyond which the filter lies.
+fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
+    // Within the one limit of a dispersive base tests have no other.
+    if decision.without_margin().is_some_and(|rule| rule.met == Some(true)) {
+        return None;
+    }
+    let class = match decision.tests {
+        // What is met as placed says nothing of what is left.
+        TestedClass::None if decision.washout.is_some() => return None,
+        TestedClass::None => "no-erosion criterion met",
+        TestedClass::Unknown if !decision.is_beyond_tests => return None,
+        class => tested_in_brief(class, decision.is_beyond_tests),
+    };
+    let boundary = decision.boundary().and_then(|rule| {
+        let at_most = if rule.limit_at_most { "at most " } else { "" };
+        let [_, limit] = value_and_limit(rule, unit);
+        let limit = limit.map(|limit| format!("{at_most}{limit}"))?;
+        Some(match decision.tests {
+            TestedClass::Continuing if decision.is_beyond_unclear => {
+                format!(" (beyond {limit}, a boundary that tests leave unclear)")
+            }
+            TestedClass::Continuing => format!(" (beyond {limit})"),
+            _ => format!(" (no erosion up to {limit})"),
+        })
+    });
+    Some(format!("Foster and Fell: {class}{}", boundary.unwrap_or_default()))
+}
+
+/// A class by the boundaries that Foster and Fell saw in tests. Beyond that of no erosion (`is_beyond`) a
+/// base erodes, also where tests identified no boundary of the classes beyond.
+pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
+    match class {
+        TestedClass::None => "no erosion",
+        TestedClass::Some => "at least some erosion, excessive not excluded",
+        TestedClass::Excessive => "excessive erosion",
+        TestedClass::Continuing => "continuing erosion",
+        TestedClass::Unknown if is_beyond => "at least some erosion, worse not excluded",
+        TestedClass::Unknown => "class not known",
+    }
+}
+
+/// D15F of a filter without the finer part that it may lose.
+fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
+    let more = if washout.is_capped() { " or more" } else { "" };
+    let d15f = match washout.unit {
+        RuleUnit::Mm => {
+            let numbers = [Some(washout.left.d15f), Some(washout.least)];
+            beside_limit(numbers, false, Unit::Size(unit))[0].clone().unwrap_or_default()
+        }
+        unit => format!("{} {}", significant(washout.left.d15f).decimals(3), unit.name()),
+    };
+    format!(
+        "D15F {d15f} without its finest {} %{more} ({}){}",
+        significant(washout.left.percent).decimals(1),
+        authority_in_brief(&washout.by),
+        if washout.continues { ", beyond the continuing-erosion boundary" } else { "" }
+    )
+}
+
+/// Other rules that are not kept and that the headline does not name.
+fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
+    let breaks = |role| decision.breaks(role);
+    let loses = [Headline::MayLoseFiner, Headline::TooCoarseWithoutFiner].contains(&headline);
+    let drains = breaks(RuleRole::Drainage);
+    let all = [
+        (breaks(RuleRole::Stability) && !loses, "may lose its finer part"),
+        (drains && headline != Headline::MayNotDrain, "may not drain"),
+        (breaks(RuleRole::Placing) && headline != Headline::MaySegregate, "may segregate"),
+        (
+            !drains && decision.is_drainage_unknown && headline != Headline::DrainageNotKnown,
+            "drainage not known",
+        ),
+    ];
+    all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::test_soils::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
+    use crate::words::{dispersive_limit, sentence, specification};
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::design::Specification;
+    use voidwalk_practice::{PairOptions, PairRules, SpecificationOptions};
+    use voidwalk_practice::{PracticeClass, RuleQuantity};
+
+    fn rules(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
+        let one = |points| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
+        let options = PairOptions { dispersive, ..PairOptions::default() };
+        PairRules::of_envelopes(&one(base), &one(filter), options).rules
+    }
+
+    const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
+    const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+    const GAP: [(f64, f64); 4] = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+
+    #[test]
+    fn every_standing_has_its_headline() {
+        let halved = GAP.map(|(size, percent)| (0.5 * size, percent));
+        let coarse = STEPPED.map(|(size, percent)| (2.2 * size, percent));
+        for (filter, base, expected) in [
+            (&[(1.0, 0.0), (3.0, 100.0)][..], &SAND[..], Headline::Meets),
+            (&SAND, &SAND, Headline::MayNotDrain),
+            (&[(2.5, 0.0), (5.0, 100.0)], &SAND, Headline::BeyondDesign),
+            (&[(8.0, 0.0), (16.0, 100.0)], &SAND, Headline::DoesNotMeet),
+            (&[(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)], &TILL, Headline::DoesNotMeet),
+            (&GAP, &SAND, Headline::TooCoarseWithoutFiner),
+            (&GRAVEL_0_32, &REGRADED_TILL, Headline::TooCoarseWithoutFiner),
+            // Beyond the limit of design as placed, and beyond that of tests without the finer part.
+            (&coarse, &SAND_OF_1_MM, Headline::TooCoarseWithoutFiner),
+            (&halved, &SAND, Headline::MayLoseFiner),
+            (&[(1.0, 0.0), (3.0, 100.0)], &[(0.3, 25.0), (1.0, 100.0)], Headline::TestMissing),
+        ] {
+            let rules = rules(filter, base, false);
+            let decision = Decision::new(&rules, None, None);
+            assert_eq!(decision.headline, Some(expected));
+            assert_eq!(decision.record(None).unwrap().class, expected.class());
+            let line = practice_line(&decision, SizeUnit::Mm);
+            assert!(line.starts_with(expected.words()) && line.split(' ').count() < 66, "{line}");
+        }
+        assert_eq!(Decision::new(&[], None, None).headline, None);
+    }
+
+    #[test]
+    fn every_headline_is_written_by_its_words() {
+        for headline in Headline::ALL {
+            assert_eq!(serde_json::to_value(headline).unwrap(), headline.words());
+        }
+    }
+
+    /// 45 % fines: 0.7 mm, and 0.5 mm if they are dispersive.
+    #[test]
+    fn a_filter_that_a_dispersive_base_would_break_meets_practice_on_that_condition() {
+        let base = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+        let filter = |d15f: f64| [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
+        for (d15f, breaks) in [(0.61, true), (0.45, false)] {
+            let one = |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_lines(points).unwrap())];
+            let pair = PairRules::of_envelopes(&one(&base), &one(&filter(d15f)), PairOptions::default());
+            let limit = pair.if_dispersive.unwrap();
+            assert_eq!((limit.d15f_max_mm, limit.is_broken_by(d15f)), (0.5, breaks));
+            assert_eq!(pair.headline == Some(Headline::MeetsUnlessDispersive), breaks);
+            let line = practice_line(&pair.decision(), SizeUnit::Mm);
+            assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
+            assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
+        }
+        let rules = rules(&filter(0.61), &base, true);
+        assert_eq!(Decision::new(&rules, None, None).headline, Some(Headline::DoesNotMeet));
+    }
+
+    #[test]
+    fn a_limit_of_which_only_the_most_is_known_is_recorded_as_that() {
+        let silty = [(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)];
+        // (40 - 22)/25 (4 x 0.3 - 0.7) + 0.7 = 1.06.
+        let rules = rules(&[(3.0, 0.0), (6.0, 100.0)], &silty, true);
+        let practice = Decision::new(&rules, None, None).record(None).unwrap();
+        assert_eq!((practice.class, practice.limit_at_most), (PracticeClass::DoesNotMeet, true));
+        assert!((practice.limit_mm.unwrap() - 1.06).abs() < 1e-9);
+        assert_eq!(Decision::new(&[], None, None).record(None), None);
+    }
+
+    #[test]
+    fn a_d15f_between_distant_sieves_is_recorded_with_both() {
+        let filter = Gradation::from_points(&[(0.3, 10.0), (38.0, 100.0)], None).unwrap();
+        let pair = PairRules::of(&Gradation::from_lines(&SAND).unwrap(), &filter);
+        assert_eq!(pair.headline, Some(Headline::SievesMissing));
+        assert_eq!(pair.practice.as_ref().unwrap().d15f_mm, Some([0.3, 38.0]));
+        let line = practice_line(&pair.decision(), SizeUnit::Mm);
+        assert!(line.contains("D15F lies between 0.3 and 38\u{202f}mm"), "{line}");
+    }
+
+    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    #[test]
+    fn where_tests_are_stricter_than_design_both_limits_are_said() {
+        for (base, d15f, limits) in [
+            (&CLAY, 0.178, ["0.200\u{202f}mm", "0.166\u{202f}mm"]),
+            (&SILTY, 0.85, ["1.28\u{202f}mm", "0.700\u{202f}mm"]),
+        ] {
+            let rules = rules(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)], base, false);
+            let line = practice_line(&Decision::new(&rules, None, Some(d15f)), SizeUnit::Mm);
+            assert!(limits.iter().all(|limit| line.contains(limit)), "{line}");
+        }
+    }
+
+    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
+    const CLAY: [(f64, f64); 6] =
+        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
+    const SILTY: [(f64, f64); 6] =
+        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
+
+    /// The inches behind the last mm of a text, in mm; without inches there are none.
+    fn back_in_mm(behind: &str) -> Option<f64> {
+        let bracket = behind.strip_prefix(" (")?.split_once("\u{202f}in)")?.0;
+        bracket.rsplit(' ').next()?.parse::<f64>().ok().map(|inches| 25.4 * inches)
+    }
+
+    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
+    #[test]
+    fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
+        const UNIT: SizeUnit = SizeUnit::MmAndInches;
+        let soil = |points: &[(f64, f64)], by: f64| {
+            let points: Vec<(f64, f64)> =
+                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
+            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
+        };
+        let bases: [&[(f64, f64)]; 4] = [
+            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+            &[(0.01, 0.0), (0.075, 22.0), (0.3, 85.0), (0.6, 100.0)],
+            &SILTY,
+            &CLAY,
+        ];
+        let (mut checked, mut missed) = (0, Vec::new());
+        for step in 0..60 {
+            let by = libm::pow(1.01, f64::from(step));
+            for base in bases {
+                let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
+                let of_band = [
+                    specification::band(&of, UNIT),
+                    specification::raised(&of, UNIT),
+                    specification::beside_limits(&of, UNIT),
+                    of.no_band.as_ref().map(|why| specification::no_band(why, UNIT)),
+                    specification::if_dispersive(&of, "again", UNIT),
+                ];
+                for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
+                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
+                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
+                    let decision = pair.decision();
+                    let mut said = vec![practice_line(&decision, UNIT)];
+                    said.extend(decision.notes().map(|note| sentence(&note, UNIT)));
+                    said.extend(pair.if_dispersive.map(|limit| dispersive_limit(limit, UNIT)));
+                    said.extend(of_band.iter().flatten().cloned());
+                    for rule in pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F) {
+                        let [value, limit] = value_and_limit(rule, SizeUnit::Mm);
+                        let Some(limit) = limit.filter(|limit| value.as_ref() != Some(limit)) else {
+                            continue;
+                        };
+                        let mm: f64 = limit.trim_end_matches("\u{202f}mm").parse().unwrap();
+                        for text in &said {
+                            for (at, found) in text.match_indices(&format!(" {limit}")) {
+                                checked += 1;
+                                let back = back_in_mm(&text[at + found.len()..]);
+                                let is_within = back.is_some_and(|back| match rule.at_least {
+                                    true => back >= mm * (1.0 - 1e-9),
+                                    false => back <= mm * (1.0 + 1e-9),
+                                });
+                                if !is_within {
+                                    missed.push(format!("{}: {text}", rule.id));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let first = &missed[..missed.len().min(6)];
+        assert!(checked > 1000 && missed.is_empty(), "{checked} {} {first:#?}", missed.len());
+    }
+}

@@ -1,0 +1,122 @@
+//! Which standard products fit, in the same words on every face.
+
+use crate::outcome::table::{Columns, TableCell};
+use voidwalk_core::gradation::FINES_MM;
+use voidwalk_practice::design::products::{LEAST_CU, NotKept, is_to_be_checked};
+use voidwalk_practice::design::specification::{ProductMargin, Specification};
+use voidwalk_practice::quantity::{SizeUnit, length, significant};
+use voidwalk_practice::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
+
+/// Said of a product both whose sides keep every requirement.
+pub const FITS: &str = "fits";
+
+/// Said of a product of which D15B would tell whether it drains.
+const MAY_DRAIN: &str = "may drain: D15B must be tested";
+
+/// Said where no product fits.
+const NONE_FITS: &str = "None of the standard products fits";
+
+/// What the sides of a product do not keep beside D15F.
+pub fn not_kept(all: &[NotKept]) -> String {
+    let one = |found: &NotKept| match found {
+        NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
+        NotKept::CuOfCoarseSide { cu } => cu_of("coarse", *cu),
+        NotKept::Width { ratio } => {
+            format!("its sides are {} to 1 apart, and at most {WIDEST_BAND} is allowed", significant(*ratio))
+        }
+        NotKept::Fines { percent } => format!("up to {percent} % may be finer than {FINES_MM} mm"),
+        NotKept::GreatestSize => format!("grains may be coarser than {GREATEST_SIZE_MM} mm"),
+    };
+    all.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
+fn cu_of(side: &str, cu: f64) -> String {
+    format!("Cu of its {side} side is {}, and {LEAST_CU} to {MOST_CU} is asked for", significant(cu))
+}
+
+/// Said of a product that does not fit, with what its sides do not keep beside D15F.
+fn does_not_fit(found: &[NotKept]) -> String {
+    if found.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(found)) }
+}
+
+/// That the limits of some products are to be checked; `None` where none are.
+pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
+    let checked = products.iter().filter(|of| is_to_be_checked(&of.source));
+    let named: Vec<&str> = checked.map(|of| of.product.as_str()).collect();
+    (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
+}
+
+/// The columns of `specification_products.csv` and of a workbook, and under their headings what a page shows,
+/// sizes in this unit.
+pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
+    let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
+    Columns::default()
+        .name("product", "Product", |of: &ProductMargin| of.product.clone())
+        .column("d15_fine_mm", |of| of.d15_fine_mm)
+        .headed("D15 of the fine side (mm)")
+        .page_number("D15, fine to coarse side (mm)", move |of| {
+            length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
+        })
+        .column("d15_coarse_mm", |of| of.d15_coarse_mm)
+        .headed("D15 of the coarse side (mm)")
+        .column("drains_by", |of| of.drains_by)
+        .page_number("Drains: finest D15 / minimum D15F", move |of| margin(of.drains_by))
+        .column("holds_by", |of| of.holds_by)
+        .page_number("Retains: maximum D15F / coarsest D15", move |of| margin(of.holds_by))
+        .column("not_kept", |of| not_kept(&of.not_kept))
+        .page_text("What else its sides do not keep", |of| {
+            Some(not_kept(&of.not_kept)).filter(|words| !words.is_empty())
+        })
+        .column("source", |of| of.source.clone())
+        .headed("Source of its limits")
+}
+
+/// The result of a standard product beside a specification.
+pub fn product(specification: &Specification, product: &ProductMargin) -> String {
+    match product.fits() {
+        Some(true) => FITS.into(),
+        Some(false) => does_not_fit(&product.not_kept),
+        None if specification.d15f_min_at_most && product.drains_by.is_none() => MAY_DRAIN.into(),
+        None => "no result".into(),
+    }
+}
+
+/// The standard products that fit, or the one that comes closest: sentences without the last end.
+pub fn products(specification: &Specification) -> String {
+    let fitting = specification.products.iter().filter(|of| of.fits() == Some(true));
+    let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();
+    if !fitting.is_empty() {
+        return format!("Standard products that fit: {}", fitting.join(", "));
+    }
+    let other =
+        if specification.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
+    match specification.nearest_product() {
+        Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
+        None if specification.d15f_min_at_most => {
+            "Whether a standard product fits is not known: D15B must be tested".into()
+        }
+        None => format!("No {other} product is known to fit: a limit of D15F is not known"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::SpecificationOptions;
+
+    /// A core of category 2, for which 0.100 to 0.700 mm are allowed. C33 sand has a D15 of 0.178 to 0.424 mm
+    /// and a Cu of 4.0 and 4.2, and leaves the band at 1.18 mm.
+    #[test]
+    fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
+        let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
+        let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
+        let fits: Vec<_> = core.products.iter().filter(|of| of.fits() == Some(true)).collect();
+        assert_eq!(fits.iter().map(|of| &*of.product).collect::<Vec<_>>(), ["ASTM C33 fine aggregate"]);
+        assert_eq!(product(&core, fits[0]), FITS);
+        // No. 8 stone may be delivered with a Cu of 1.6.
+        let stone = core.products.iter().find(|of| of.product.contains("No. 8 ")).unwrap();
+        let [NotKept::CuOfCoarseSide { cu }, ..] = stone.not_kept[..] else { panic!("{stone:?}") };
+        assert!((cu - 1.59).abs() < 0.005, "{cu}");
+    }
+}

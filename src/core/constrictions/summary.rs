@@ -1,0 +1,131 @@
+//! What is written about a packing's constrictions.
+
+use super::curve::CurveError;
+use super::measure::{Constrictions, Facets};
+use crate::gradation::CurvePoint;
+use crate::packing::vtp_points;
+use crate::store::format;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+
+/// Percent smaller at which [`Summary`] gives diameters.
+pub const SUMMARY_PERCENT: [f64; 13] =
+    [0.0, 1.0, 1.5, 5.0, 10.0, 15.0, 25.0, 50.0, 60.0, 75.0, 90.0, 99.0, 100.0];
+
+/// The figures of a packing's constrictions, as in `constrictions.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct Summary {
+    /// Grains, hidden ones left out.
+    pub grains: usize,
+    /// Voids.
+    pub voids: usize,
+    /// Grains per void, N_p / N_voids of Eq. (2).
+    pub grains_per_void: f64,
+    /// Tetrahedra.
+    pub tetrahedra: usize,
+    /// Constrictions.
+    pub constrictions: usize,
+    /// Volume of voids over volume of grains.
+    pub void_ratio: f64,
+    /// D_c60 / D_c10.
+    pub cu_csd: f64,
+    /// Smallest grain (mm).
+    pub d0_mm: f64,
+    /// Diameter (mm) that a percentage by number is no larger than, by that percentage.
+    pub dc_mm: serde_json::Map<String, serde_json::Value>,
+    /// Mean number of constrictions of a void.
+    pub mean_connectivity: f64,
+    /// Voids by number of their constrictions, from 0.
+    pub connectivity: Vec<usize>,
+    /// Overlap from which two tetrahedra share a void.
+    pub merge_overlap: f64,
+    /// Which facets between voids were counted.
+    pub counted_facets: Facets,
+    /// Constrictions whose disc a fourth grain shortened.
+    pub cut_constrictions: usize,
+    /// Facets between voids that the grains close.
+    pub closed_facets: usize,
+    /// Grains that lie inside others, counted from 0.
+    pub hidden_grains: Vec<u32>,
+    /// Pairs of grains with the same centre.
+    pub duplicate_grains: Vec<[u32; 2]>,
+    /// What a reader must know of these grains.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+    /// Permeability along z over the square of the grains' Sauter mean d32; none without a periodic cell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub k_over_d32_squared: Option<f64>,
+    /// The same by Kozeny and Carman, (1 - c)^3 / (180 c^2) with c the solid fraction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kozeny_carman_over_d32_squared: Option<f64>,
+}
+
+impl Constrictions {
+    /// All figures together.
+    ///
+    /// # Errors
+    /// As [`Constrictions::curve`].
+    pub fn summary(&self) -> Result<Summary, CurveError> {
+        let curve = self.curve()?;
+        let dc = |percent: f64| curve.dc(percent).map(|d| (percent.to_string(), d.into()));
+        Ok(Summary {
+            grains: self.grains(),
+            voids: self.voids(),
+            grains_per_void: self.grains_per_void(),
+            tetrahedra: self.tetrahedra,
+            constrictions: self.constrictions(),
+            void_ratio: self.void_ratio,
+            cu_csd: curve.cu(),
+            d0_mm: self.d0_mm,
+            dc_mm: SUMMARY_PERCENT.into_iter().filter_map(dc).collect(),
+            mean_connectivity: self.mean_connectivity(),
+            connectivity: self.connectivity(),
+            merge_overlap: self.merge_overlap,
+            counted_facets: self.counted,
+            cut_constrictions: self.cut,
+            closed_facets: self.closed,
+            hidden_grains: self.hidden.clone(),
+            duplicate_grains: self.duplicates.clone(),
+            warnings: self.doubts(),
+            k_over_d32_squared: None,
+            kozeny_carman_over_d32_squared: None,
+        })
+    }
+
+    /// The files that say all of it, by name: curve, the constrictions for ParaView, and this summary.
+    ///
+    /// # Errors
+    /// As [`Constrictions::curve`].
+    pub fn files(&self, summary: &Summary) -> Result<[(&'static str, String); 3], CurveError> {
+        let json = format::CONSTRICTIONS.json(summary).expect("numbers and names");
+        Ok([
+            ("constrictions.csv", self.curve_csv()?),
+            ("constrictions.vtp", self.to_vtp()),
+            ("constrictions.json", json),
+        ])
+    }
+
+    /// The curve as CSV, `percent_smaller,diameter_mm`.
+    ///
+    /// # Errors
+    /// As [`Constrictions::curve`].
+    pub fn curve_csv(&self) -> Result<String, CurveError> {
+        let mut text = String::from("percent_smaller,diameter_mm\n");
+        for CurvePoint { size: diameter, percent } in self.curve()?.points() {
+            // A String takes whatever is written to it.
+            let _ = writeln!(text, "{percent},{diameter}");
+        }
+        Ok(text)
+    }
+
+    /// The constrictions for ParaView: points (mm) with their diameter and the voids they join.
+    pub fn to_vtp(&self) -> String {
+        let column = |voids: &[u32]| voids.iter().map(|&v| f64::from(v)).collect::<Vec<_>>();
+        let (upstream, downstream) = (column(&self.upstream), column(&self.downstream));
+        vtp_points(
+            &self.centre_mm,
+            &[("diameter_mm", &self.diameter_mm), ("upstream", &upstream), ("downstream", &downstream)],
+        )
+    }
+}

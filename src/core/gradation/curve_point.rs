@@ -1,0 +1,30 @@
+//! A point of a curve, with names: a gradation and a constriction curve list size and percent in other
+//! orders.
+
+use serde::Serialize;
+
+/// By how much, relatively, numbers of one curve may differ between two ways of writing it.
+pub const TIE: f64 = 1e-9;
+
+/// A point of a gradation or of a constriction curve; in JSON a row of size and percent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(into = "[f64; 2]")]
+pub struct CurvePoint {
+    /// Diameter of a particle or constriction, in the unit of the curve: mm for a gradation.
+    pub size: f64,
+    /// Percent finer by mass, or smaller by number.
+    pub percent: f64,
+}
+
+impl CurvePoint {
+    /// A row of a record: size, percent.
+    pub fn row(self) -> [f64; 2] {
+        [self.size, self.percent]
+    }
+}
+
+impl From<CurvePoint> for [f64; 2] {
+    fn from(point: CurvePoint) -> Self {
+        point.row()
+    }
+}

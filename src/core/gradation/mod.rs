@@ -1,0 +1,61 @@
+//! Gradations: how the mass of a soil is spread over particle sizes, and how many particles that is.
+//!
+//! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size)
+//!   between its points. "Linear" in the paper is one such straight line:
+//!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
+//! - [`Soil`] is a table as it stands in a file: CSV, workbook or AGS4, as laboratories write them.
+//! - [`SizeSampler`] draws diameters from it by number.
+//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines,
+//!   with [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] whether sizes
+//!   are missing; [`Gradation::regraded`] is a base as filter practice regrades it.
+//! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
+//!
+//! # By mass and by number
+//! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
+//! per mm of diameter is proportional to `D^-4`, and the number finer than `D` is linear in `D^-3`.
+//!
+//! # The pan fraction
+//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it ends there, as
+//! one more straight segment. Without it the pan fraction is taken as passive and counted by mass only:
+//! number statistics cover the sized part, and [`Gradation::pan_fraction`] says what they leave out.
+//!
+//! # Units
+//! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
+//! on every length changes no bit of any ratio.
+
+mod between;
+mod burenkova;
+mod comma;
+mod curve_point;
+mod error;
+mod group;
+mod numbers;
+mod regrade;
+mod root;
+mod sampler;
+mod segments;
+mod shape;
+mod sieve;
+mod stability;
+mod supply;
+mod surface;
+mod table;
+
+pub use between::{End, Step, USUAL_STEP, WIDE_STEP};
+pub use burenkova::UniformityFactors;
+pub use comma::{Comma, comma};
+pub use curve_point::{CurvePoint, TIE};
+pub use error::{GradationError, NumberError, Position, TableError, letters, shortened};
+pub use group::{FINES_MM, GRAVEL_MM};
+pub use regrade::{BROAD_CU, FEW_FINES, RegradeCause, RegradeReason, Regraded};
+pub(crate) use sampler::SizeGuide;
+pub use sampler::{SizeRange, SizeSampler};
+pub use shape::{GAP_PERCENT, Gap};
+pub use sieve::{FIELDS, Gradation, from_rows};
+pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
+pub use supply::{BaseSupply, base_particles};
+pub(crate) use table::{Direction, Table, check_size, rising};
+pub use table::{
+    FILE_LIMIT_BYTES, Row, SIZE_MAX_MM, SIZE_MIN_MM, allowed_percent, allowed_size, bytes_of, number,
+    percent_is_allowed, size_is_allowed,
+};

@@ -1,0 +1,214 @@
+//! Regrading: the part of a base soil that filter practice looks at.
+
+use serde::{Deserialize, Serialize};
+
+use super::Gradation;
+use super::curve_point::TIE;
+use super::group::{FINES_MM, GRAVEL_MM};
+use super::shape::{FLAT_PERCENT, GAP_PERCENT, Gap};
+
+/// Percent of fines below which a base has few.
+pub const FEW_FINES: f64 = 15.0;
+
+/// Cu from which a soil counts as broadly graded: that of well-graded sands by ASTM D2487.
+pub const BROAD_CU: f64 = 6.0;
+
+/// A base soil regraded as filter practice does, or left as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regraded {
+    /// The soil after regrading; as it was where it is not regraded.
+    pub gradation: Gradation,
+    /// The size on which it was regraded (mm); `None` where it was not.
+    pub at_mm: Option<f64>,
+    /// Why it was regraded, or not.
+    pub why: RegradeReason,
+    /// The size below which practice looks at it, where no sieve tells the sizes there: `gradation` is then
+    /// the whole soil, coarser than what practice looks at.
+    pub hidden_below_mm: Option<f64>,
+}
+
+/// Why practice regrades a base, or leaves it as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct RegradeReason {
+    /// What practice asks of the soil.
+    pub cause: RegradeCause,
+    /// Whether it was to be regraded and is left as it is, as none of its known sizes passes the sieve.
+    pub nothing_passes: bool,
+}
+
+/// What of a soil has it regraded, or not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+#[serde(tag = "id", content = "from_mm", rename_all = "snake_case")]
+pub enum RegradeCause {
+    /// It has a gap that begins at this size (mm).
+    Gap(f64),
+    /// It has a gap that begins at this size (mm), and what is finer would be regraded for its gravel.
+    GapAmongGravel(f64),
+    /// It has gravel and many fines.
+    GravelAndFines,
+    /// It has gravel and is broadly graded.
+    BroadGravel,
+    /// It has gravel, and Cu is not known.
+    GravelOfUnknownCu,
+    /// It has gravel, few fines, and is not broadly graded.
+    NarrowGravel,
+    /// It has no gravel.
+    NoGravel,
+    /// Its sizes have no unit.
+    NoUnit,
+}
+
+impl Gradation {
+    /// This soil as filter practice regrades a base; sizes in mm.
+    ///
+    /// Regrading is that of the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
+    /// Gradation), after Sherard and Dunnigan (1989): a gap-graded soil at its gap; a soil with grains
+    /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is not
+    /// broadly graded. Where what is finer than a gap has such grains, and fines or a gradation of which it
+    /// asks the same, it is regraded on No. 4 too: the manual stops at the gap, whose limit is coarser. Every
+    /// percent is divided by that passing.
+    ///
+    /// ```
+    /// use voidwalk_core::gradation::Gradation;
+    /// let till = Gradation::from_points(&[(0.075, 35.0), (4.75, 92.0), (19.0, 100.0)], None)?;
+    /// let regraded = till.regraded();
+    /// assert_eq!((regraded.at_mm, regraded.gradation.largest_mm()), (Some(4.75), 4.75));
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
+    pub fn regraded(&self) -> Regraded {
+        self.regraded_as(self)
+    }
+
+    /// The same where another curve tells on which size.
+    pub fn regraded_as(&self, other: &Self) -> Regraded {
+        self.regraded_on(other.regrading(other.gap(FINES_MM)))
+    }
+
+    /// This soil as practice regrades it where its curve is flat enough to be a gap, and is not read as one
+    /// by [`Gradation::regraded_as`] of this other curve, or the other way round; `None` where that is steep,
+    /// or level.
+    pub fn regraded_otherwise(&self, other: &Self) -> Option<Regraded> {
+        let flat = other.flattest(FINES_MM)?;
+        let is_open = (100.0 * TIE..FLAT_PERCENT - 100.0 * TIE).contains(&flat.within);
+        let is_gap = flat.within < GAP_PERCENT;
+        is_open.then(|| self.regraded_on(other.regrading(Some(flat).filter(|_| !is_gap))))
+    }
+
+    fn regraded_on(&self, (at, cause): (Option<f64>, RegradeCause)) -> Regraded {
+        let why = RegradeReason { cause, nothing_passes: false };
+        match at.map(|at| self.passing(at)) {
+            None => Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm: None },
+            Some(Some(gradation)) => Regraded { gradation, at_mm: at, why, hidden_below_mm: None },
+            Some(None) => {
+                let why = RegradeReason { nothing_passes: true, ..why };
+                let hidden_below_mm = at.filter(|at| self.percent_finer_by_mass(*at) > 0.0);
+                Regraded { gradation: self.clone(), at_mm: None, why, hidden_below_mm }
+            }
+        }
+    }
+
+    /// The size on which practice regrades this base, and why.
+    fn regrading(&self, gap: Option<Gap>) -> (Option<f64>, RegradeCause) {
+        let Some(Gap { from_mm, .. }) = gap else { return self.regrading_for_gravel() };
+        let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
+        let no_4 = finer.and_then(|finer| finer.regrading_for_gravel().0);
+        match no_4.filter(|no_4| self.passing(*no_4).is_some()) {
+            Some(no_4) => (Some(no_4), RegradeCause::GapAmongGravel(from_mm)),
+            None => (Some(from_mm), RegradeCause::Gap(from_mm)),
+        }
+    }
+
+    /// The same of a soil without a gap.
+    fn regrading_for_gravel(&self) -> (Option<f64>, RegradeCause) {
+        if self.largest_mm() <= GRAVEL_MM {
+            return (None, RegradeCause::NoGravel);
+        }
+        let broad = self.is_broad();
+        // Where the finest sieve is coarser, this is the most that the fines can be.
+        let many_fines = self.percent_finer_by_mass(FINES_MM) >= FEW_FINES;
+        if !many_fines && broad == Some(false) {
+            return (None, RegradeCause::NarrowGravel);
+        }
+        let cause = match broad {
+            _ if many_fines => RegradeCause::GravelAndFines,
+            Some(true) => RegradeCause::BroadGravel,
+            _ => RegradeCause::GravelOfUnknownCu,
+        };
+        (Some(GRAVEL_MM), cause)
+    }
+
+    /// Whether a soil is broadly graded: Cu of at least 6, as of well-graded sands by ASTM D2487, or 4, as of
+    /// gravels; `None` where D10 is not known. The manual asks for Cc of 1 to 3 besides and leaves the last
+    /// word to the engineer; a soil of that Cu whose Cc lies outside has more of one size and is no
+    /// narrower.
+    pub fn is_broad(&self) -> Option<bool> {
+        let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
+        let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
+        let least_cu = if gravel > coarse / 2.0 { 4.0 } else { 6.0 };
+        Some(self.cu()? >= least_cu)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn regraded(points: &[(f64, f64)]) -> Regraded {
+        Gradation::from_points(points, None).unwrap().regraded()
+    }
+
+    /// The till of the first trial: 92 % finer than 4.75 mm.
+    #[test]
+    fn a_till_is_regraded_on_no_4_by_hand() {
+        let till = regraded(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+        assert_eq!(till.at_mm, Some(4.75));
+        assert!((till.gradation.percent_finer_by_mass(0.075) - 35.0 / 0.92).abs() < 1e-9);
+        // 85 % of 92 % is 78.2 % of the whole: between 0.425 mm (60 %) and 2 mm (82 %).
+        let d85 = 0.425 * (2.0f64 / 0.425).powf(18.2 / 22.0);
+        assert!((till.gradation.d(85.0).unwrap() - d85).abs() < 1e-9);
+    }
+
+    #[test]
+    fn each_question_of_the_manual_has_its_answer() {
+        // Nothing coarser than No. 4.
+        assert_eq!(regraded(&[(0.1, 0.0), (0.5, 60.0), (4.75, 100.0)]).at_mm, None);
+        // Coarser, less than 15 % fines, Cu 3.2: left.
+        let gravel = regraded(&[(2.0, 0.0), (9.5, 60.0), (19.0, 100.0)]);
+        assert!(gravel.at_mm.is_none() && gravel.why.cause == RegradeCause::NarrowGravel);
+        // Coarser and broadly graded: Cu 15.0, Cc 1.01.
+        let broad = regraded(&[(0.1, 0.0), (0.5, 20.0), (2.0, 45.0), (4.75, 70.0), (19.0, 100.0)]);
+        assert!(broad.at_mm.is_some() && broad.why.cause == RegradeCause::BroadGravel, "{:?}", broad.why);
+        // The same sand with more gravel: Cu 20.9, but Cc 0.70.
+        let skewed = regraded(&[(0.1, 0.0), (0.42, 20.0), (2.0, 45.0), (4.75, 62.0), (19.0, 100.0)]);
+        assert!(skewed.at_mm.is_some() && skewed.why.cause == RegradeCause::BroadGravel, "{:?}", skewed.why);
+        // Coarser, and D10 in a tail: on the safe side.
+        let tail = regraded(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
+        assert!(tail.at_mm.is_some() && tail.why.cause == RegradeCause::GravelOfUnknownCu);
+        // A gap: the part finer than it.
+        let gap = regraded(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
+        assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
+    }
+
+    /// A gap from 12.5 to 50 mm: 65 % is finer, of which a third is gravel. With fines its limit is that of
+    /// what passes No. 4; a narrow gravel below a gap is left whole.
+    #[test]
+    fn a_gap_among_gravel_regrades_on_no_4_too() {
+        let till =
+            regraded(&[(0.075, 20.0), (0.5, 35.0), (4.75, 43.0), (12.5, 65.0), (50.0, 66.0), (75.0, 100.0)]);
+        assert_eq!((till.at_mm, till.why.cause), (Some(4.75), RegradeCause::GapAmongGravel(12.5)));
+        assert!((till.gradation.percent_finer_by_mass(0.075) - 100.0 * 20.0 / 43.0).abs() < 1e-9);
+        let gravel = regraded(&[(4.0, 0.0), (12.5, 65.0), (50.0, 66.0), (75.0, 100.0)]);
+        assert_eq!((gravel.at_mm, gravel.why.cause), (Some(12.5), RegradeCause::Gap(12.5)));
+        // Broad, but nothing passes No. 4.
+        let coarse = regraded(&[(5.0, 0.0), (10.0, 5.0), (40.0, 70.0), (160.0, 71.0), (200.0, 100.0)]);
+        assert_eq!(coarse.at_mm, Some(40.0));
+    }
+
+    #[test]
+    fn gravel_alone_has_nothing_to_regrade() {
+        let soil = regraded(&[(5.0, 0.0), (10.0, 10.0), (25.0, 30.0), (60.0, 60.0), (80.0, 100.0)]);
+        assert!(soil.at_mm.is_none() && soil.why.nothing_passes, "{:?}", soil.why);
+    }
+}

@@ -1,0 +1,453 @@
+//! Drawing diameters by number.
+
+use super::root::{inverse_cube_root, inverse_cube_roots};
+use super::{Gradation, GradationError, NumberError};
+use crate::stream::unit;
+use std::ops::Range;
+
+/// All words, as a count: 2^64.
+const ALL_WORDS: u128 = 1 << 64;
+
+/// Buckets of a guide are no more than two to this power.
+const BUCKET_BITS: u32 = 8;
+
+/// Words whose diameters are drawn together.
+const AT_ONCE: usize = 64;
+
+/// Keeps 40 bits of the mantissa.
+const COARSE: u64 = !0 << 12;
+
+/// A segment of the gradation, in reference units.
+///
+/// `v` is the share, by number, of the particles that are coarser; within a segment `D^-3` is
+/// linear in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Segment {
+    /// Smallest diameter.
+    a: f64,
+    /// Largest diameter.
+    b: f64,
+    /// `v` at `a`.
+    v_a: f64,
+    /// `v` at `b`.
+    v_b: f64,
+    /// `b^-3`.
+    y_b: f64,
+    /// Slope of `D^-3` against `v`.
+    slope: f64,
+}
+
+impl Segment {
+    /// The diameter at `v`, for `v_b <= v <= v_a`.
+    ///
+    /// Never rises with `v`: every operation is monotone but the root, whose error (2^-51) is smaller
+    /// than the step that 40 bits of mantissa leave (2^-41.6). Those 40 bits are 2^16 times finer
+    /// than the f32 it ends in.
+    #[inline(always)]
+    fn diameter(&self, v: f64) -> f32 {
+        root_within(self.y_at(v), [self.a, self.b])
+    }
+
+    /// `v` at the diameter `d`, not rounded to f32.
+    fn v_at(&self, d: f64) -> f64 {
+        if d >= self.b {
+            self.v_b
+        } else if d < self.a || self.slope == 0.0 {
+            self.v_a
+        } else {
+            (self.v_b + (1.0 / (d * d * d) - self.y_b) / self.slope).clamp(self.v_b, self.v_a)
+        }
+    }
+
+    /// `D^-3` at `v`.
+    #[inline(always)]
+    fn y_at(&self, v: f64) -> f64 {
+        self.y_b + (v - self.v_b) * self.slope
+    }
+
+    /// The integral of `D^3` over `low <= v <= high`: `ln(y_high / y_low) / slope`.
+    fn cubes(&self, low: f64, high: f64) -> f64 {
+        let (y, width) = (self.y_at(low), high - low);
+        let t = width * self.slope / y;
+        if t > 0.0 { width / y * (libm::log1p(t) / t) } else { width / y }
+    }
+}
+
+/// `y^(-1/3)` from 40 bits of the mantissa of `y`, at least `a` and at most `b`.
+#[inline(always)]
+fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
+    within(inverse_cube_root(coarse(y)), bounds)
+}
+
+/// [`root_within`] of each number, from `least` to `most`.
+#[inline(always)]
+fn roots_within(
+    mut y: [f64; AT_ONCE],
+    least: &[f64; AT_ONCE],
+    most: &[f64; AT_ONCE],
+    out: &mut [f32; AT_ONCE],
+) {
+    y.iter_mut().for_each(|y| *y = coarse(*y));
+    for (((out, d), &a), &b) in out.iter_mut().zip(inverse_cube_roots(&y)).zip(least).zip(most) {
+        *out = within(d, [a, b]);
+    }
+}
+
+/// With 40 bits of the mantissa.
+#[inline(always)]
+fn coarse(y: f64) -> f64 {
+    f64::from_bits(y.to_bits() & COARSE)
+}
+
+/// At least `a` and at most `b`.
+#[inline(always)]
+fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
+    let d = if d > a { d } else { a };
+    (if d < b { d } else { b }) as f32
+}
+
+/// Draws diameters of a [`Gradation`] by number: the inverse of its distribution.
+///
+/// Diameters are in units of a reference length, as f32. A word of 64 random bits gives one
+/// diameter, which never falls as the word rises; so the particles no coarser than a limit are
+/// those whose word is below a threshold ([`SizeSampler::word_limit`]), exactly. A tail of unknown
+/// size is never drawn.
+///
+/// ```
+/// use voidwalk_core::gradation::{Gradation, SizeSampler};
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.1, 3.0)?, 1.0)?;
+/// assert_eq!(sampler.diameter(0), 0.1);
+/// let limit = 0.155;
+/// let threshold = sampler.word_limit(limit);
+/// assert!(sampler.diameter((threshold - 1) as u64) <= limit);
+/// assert!(sampler.diameter(threshold as u64) > limit);
+/// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizeSampler {
+    /// Sizes rise from one to the next; `v` falls from 1 to 0.
+    segments: Vec<Segment>,
+    /// Where the segments of all words are looked for.
+    guide: SizeGuide,
+}
+
+/// Where to look for the segments of the words from one on: words that draw coarse particles are few among
+/// all, and so lie close together.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SizeGuide {
+    /// The first word.
+    first: u64,
+    /// A word's bucket is how far it is from the first, less so many bits.
+    shift: u32,
+    /// Segment of the smallest word of each bucket.
+    segment: Vec<u32>,
+}
+
+impl SizeGuide {
+    /// A segment that is no coarser than that of a word, and close to it.
+    #[inline(always)]
+    fn start(&self, word: u64) -> usize {
+        debug_assert!(word >= self.first, "a word below the first of the guide");
+        self.segment[((word - self.first) >> self.shift) as usize] as usize
+    }
+}
+
+impl SizeSampler {
+    /// A sampler of `gradation` with diameters in units of `reference_mm`.
+    ///
+    /// # Errors
+    /// A reference length that is not a positive finite number, or that takes a size out of what a
+    /// gradation may hold.
+    pub fn new(gradation: &Gradation, reference_mm: f64) -> Result<SizeSampler, GradationError> {
+        NumberError::unless_positive("reference_mm", reference_mm)?;
+        let size: Vec<f64> = gradation.size_mm.iter().map(|d| d / reference_mm).collect();
+        if !size.iter().all(|d| (1e-24..=1e24).contains(d)) {
+            let allowed = "one that leaves sizes between 1e-24 and 1e24 times itself";
+            return Err(NumberError::new("reference_mm", reference_mm, allowed).into());
+        }
+        let mut segments = Vec::with_capacity(size.len());
+        if let [d] = size[..] {
+            segments.push(Segment { a: d, b: d, v_a: 1.0, v_b: 0.0, y_b: 1.0 / (d * d * d), slope: 0.0 });
+        }
+        // Shares are summed from the coarse end, where they are smallest.
+        let mut coarser = vec![0.0; size.len()];
+        for i in (0..size.len() - 1).rev() {
+            coarser[i] = coarser[i + 1] + (gradation.number[i + 1] - gradation.number[i]);
+        }
+        let all = coarser[0];
+        for i in 0..size.len() - 1 {
+            let (a, b, l) = (size[i], size[i + 1], gradation.log_ratio[i]);
+            let (v_a, v_b) = (coarser[i] / all, coarser[i + 1] / all);
+            if v_a > v_b {
+                let slope = -libm::expm1(-3.0 * l) / (a * a * a) / (v_a - v_b);
+                segments.push(Segment { a, b, v_a, v_b, y_b: 1.0 / (b * b * b), slope });
+            }
+        }
+        let mut sampler =
+            SizeSampler { segments, guide: SizeGuide { first: 0, shift: 0, segment: Vec::new() } };
+        sampler.guide = sampler.guide_from(0);
+        Ok(sampler)
+    }
+
+    /// Where to look for the segments of the words from this one on.
+    pub(crate) fn guide_from(&self, first: u64) -> SizeGuide {
+        let last = u64::MAX - first;
+        let shift = (u64::BITS - last.leading_zeros()).saturating_sub(BUCKET_BITS);
+        let mut at = 0;
+        let of_bucket = |bucket: u64| {
+            at = self.segment(at, coarser_share(first + (bucket << shift)));
+            at as u32
+        };
+        SizeGuide { first, shift, segment: (0..=last >> shift).map(of_bucket).collect() }
+    }
+
+    /// The segment of `v`, at or after segment `start`. The last one's `v_b` is 0, which no `v` is below.
+    #[inline(always)]
+    fn segment(&self, start: usize, v: f64) -> usize {
+        let mut i = start;
+        while v < self.segments[i].v_b {
+            i += 1;
+        }
+        i
+    }
+
+    /// The diameter, in reference units, that `word` draws.
+    #[inline]
+    pub fn diameter(&self, word: u64) -> f32 {
+        let v = coarser_share(word);
+        self.segments[self.segment(self.guide.start(word), v)].diameter(v)
+    }
+
+    /// [`SizeSampler::diameter`] of every word, in vector code as wide as the caller is compiled for.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    #[inline(always)]
+    pub fn fill(&self, words: &[u64], out: &mut [f32]) {
+        self.fill_guided(&self.guide, words, out);
+    }
+
+    /// The same with a guide of these words; the caller sees to it that none is below the guide's first.
+    ///
+    /// # Panics
+    /// As [`SizeSampler::fill`]; with debug assertions if a word is below the first of the guide.
+    #[inline(always)]
+    pub(crate) fn fill_guided(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
+        assert_eq!(words.len(), out.len(), "one diameter per word");
+        let (words, last_words) = words.as_chunks();
+        let (out, last_out) = out.as_chunks_mut();
+        for (words, out) in words.iter().zip(out) {
+            self.fill_some(guide, words, out);
+        }
+        if let Some(&any) = last_words.first() {
+            let (mut padded, mut drawn) = ([any; AT_ONCE], [0.0; AT_ONCE]);
+            padded[..last_words.len()].copy_from_slice(last_words);
+            self.fill_some(guide, &padded, &mut drawn);
+            last_out.copy_from_slice(&drawn[..last_words.len()]);
+        }
+    }
+
+    /// The same of so many words that are drawn together. What hangs on the segment is looked up one by one.
+    #[inline(always)]
+    fn fill_some(&self, guide: &SizeGuide, words: &[u64; AT_ONCE], out: &mut [f32; AT_ONCE]) {
+        let mut y = [0.0; AT_ONCE];
+        if let [segment] = self.segments[..] {
+            for (y, &word) in y.iter_mut().zip(words) {
+                *y = segment.y_at(coarser_share(word));
+            }
+            return roots_within(y, &[segment.a; AT_ONCE], &[segment.b; AT_ONCE], out);
+        }
+        let (mut least, mut most) = ([0.0; AT_ONCE], [0.0; AT_ONCE]);
+        for (at, &word) in words.iter().enumerate() {
+            let v = coarser_share(word);
+            let segment = &self.segments[self.segment(guide.start(word), v)];
+            (y[at], least[at], most[at]) = (segment.y_at(v), segment.a, segment.b);
+        }
+        roots_within(y, &least, &most, out);
+    }
+
+    /// The number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` exactly
+    /// where `word` is below it. 2^64 when all are.
+    pub fn word_limit(&self, limit: f32) -> u128 {
+        let (mut low, mut high) = (0, ALL_WORDS);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if self.diameter(middle as u64) <= limit {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Smallest diameter that is drawn, in reference units.
+    pub fn smallest(&self) -> f32 {
+        self.diameter(0)
+    }
+
+    /// Largest diameter that is drawn, in reference units.
+    pub fn largest(&self) -> f32 {
+        self.diameter(u64::MAX)
+    }
+
+    /// The particles whose word lies in `words`, as a distribution of its own.
+    ///
+    /// # Panics
+    /// If the range ends before it starts or beyond 2^64.
+    pub fn part(&self, words: Range<u128>) -> SizeRange<'_> {
+        assert!(words.start <= words.end && words.end <= ALL_WORDS, "a range of words: {words:?}");
+        let share = |words: u128| (words as f64) * (1.0 / ALL_WORDS as f64);
+        let (v_fine, v_coarse) = (share(ALL_WORDS - words.start), share(ALL_WORDS - words.end));
+        SizeRange { sampler: self, words, v_fine, v_coarse }
+    }
+
+    /// All particles.
+    pub fn whole(&self) -> SizeRange<'_> {
+        self.part(0..ALL_WORDS)
+    }
+}
+
+/// Share by number that is coarser than what `word` draws: exactly `1 - unit(word)`, without the
+/// cancellation.
+#[inline(always)]
+fn coarser_share(word: u64) -> f64 {
+    unit(!word)
+}
+
+/// The particles of a [`SizeSampler`] whose word lies in a range: closed forms, in reference units.
+///
+/// The limits are those of the words; between them sizes count as continuous, before the rounding
+/// to f32.
+#[derive(Clone, Debug)]
+pub struct SizeRange<'a> {
+    sampler: &'a SizeSampler,
+    words: Range<u128>,
+    /// Share of all particles coarser than the finest of this part.
+    v_fine: f64,
+    /// Share of all particles coarser than the coarsest of this part.
+    v_coarse: f64,
+}
+
+impl SizeRange<'_> {
+    /// Share of all particles that are in this part, by number.
+    pub fn number_fraction(&self) -> f64 {
+        ((self.words.end - self.words.start) as f64) * (1.0 / ALL_WORDS as f64)
+    }
+
+    /// Mean of the cubed diameter; `None` where the part is empty.
+    pub fn mean_cube(&self) -> Option<f64> {
+        let width = self.number_fraction();
+        (width > 0.0).then(|| self.cubes(0.0) / width)
+    }
+
+    /// Share of this part's particles, 0 to 1, no coarser than `d`; `None` where the part is empty.
+    pub fn finer_by_number(&self, d: f64) -> Option<f64> {
+        let width = self.number_fraction();
+        (width > 0.0).then(|| ((self.v_fine - self.v_at(d)) / width).clamp(0.0, 1.0))
+    }
+
+    /// Share of this part's mass, 0 to 1, no coarser than `d`; `None` where the part is empty.
+    pub fn finer_by_mass(&self, d: f64) -> Option<f64> {
+        let all = self.cubes(0.0);
+        (all > 0.0).then(|| (self.cubes(self.v_at(d)) / all).clamp(0.0, 1.0))
+    }
+
+    /// The diameter that `share` (0 to 1) of this part's particles are no coarser than; `None` where the
+    /// part is empty or the share is out of range.
+    pub fn d_by_number(&self, share: f64) -> Option<f64> {
+        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
+            return None;
+        }
+        let v = (self.v_fine - share * (self.v_fine - self.v_coarse)).max(self.v_coarse);
+        let segment = self.sampler.segments[self.sampler.segment(0, v)];
+        Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
+    }
+
+    /// The diameter that `share` (0 to 1) of this part's mass is no coarser than; `None` where the part
+    /// is empty or the share is out of range.
+    pub fn d_by_mass(&self, share: f64) -> Option<f64> {
+        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
+            return None;
+        }
+        let mut left = share * self.cubes(0.0);
+        let mut found = None;
+        for segment in &self.sampler.segments {
+            let (low, high) = (segment.v_b.max(self.v_coarse), segment.v_a.min(self.v_fine));
+            if low > high {
+                continue;
+            }
+            let mass = segment.cubes(low, high);
+            let y = segment.y_at(high) * libm::exp(-left.clamp(0.0, mass) * segment.slope);
+            found = Some((1.0 / libm::cbrt(y)).clamp(segment.a, segment.b));
+            if left <= mass {
+                break;
+            }
+            left -= mass;
+        }
+        found
+    }
+
+    /// One draw of the largest diameter among `count` particles of this part; `None` where there are
+    /// none.
+    ///
+    /// The largest of `n` uniform draws is `u^(1/n)` of one.
+    pub fn largest_of(&self, count: u64, word: u64) -> Option<f32> {
+        if self.words.is_empty() || count == 0 {
+            return None;
+        }
+        let gap = -libm::expm1(libm::log(unit(word)) / count as f64);
+        let width = self.words.end - self.words.start;
+        let below = ((gap * width as f64) as u128).min(width - 1);
+        Some(self.sampler.diameter((self.words.end - 1 - below) as u64))
+    }
+
+    /// `v` at `d`, within this part.
+    fn v_at(&self, d: f64) -> f64 {
+        let segments = &self.sampler.segments;
+        let i = segments.partition_point(|s| s.b <= d);
+        let v = segments.get(i).map_or(0.0, |s| s.v_at(d));
+        v.clamp(self.v_coarse, self.v_fine)
+    }
+
+    /// The integral of `D^3` over this part from its finest particle up to share `v`.
+    fn cubes(&self, v: f64) -> f64 {
+        let coarse = v.max(self.v_coarse);
+        let one = |s: &Segment| {
+            let (low, high) = (s.v_b.max(coarse), s.v_a.min(self.v_fine));
+            if low < high { s.cubes(low, high) } else { 0.0 }
+        };
+        self.sampler.segments.iter().map(one).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Key, Purpose};
+    use rand::Rng;
+
+    /// Segments of very unequal numbers of particles, of which those of the coarse ones lie close together.
+    #[test]
+    fn a_guide_of_coarse_words_finds_the_same_diameters() {
+        let points =
+            [(0.01, 0.0), (0.02, 30.0), (0.1, 55.0), (0.11, 56.0), (1.0, 80.0), (3.0, 99.0), (9.0, 100.0)];
+        let sampler = SizeSampler::new(&Gradation::from_points(&points, None).unwrap(), 1.0).unwrap();
+        let key = Key { seed: 3, purpose: Purpose::Insertion, run: 1, increment: 1, chunk: 0 };
+        let mut generator = key.generator();
+        let limits = [0.015, 0.1, 0.105, 0.9, 3.0, 8.9].map(|d| sampler.word_limit(d) as u64);
+        for first in limits.into_iter().chain([0, 1, 1 << 63, u64::MAX - 255, u64::MAX - 1, u64::MAX]) {
+            let guide = sampler.guide_from(first);
+            let width = u128::from(u64::MAX - first) + 1;
+            let drawn = (0..1000).map(|_| first + ((u128::from(generator.next_u64()) * width) >> 64) as u64);
+            let words: Vec<u64> = drawn.chain([first, u64::MAX]).collect();
+            let mut found = vec![0.0; words.len()];
+            sampler.fill_guided(&guide, &words, &mut found);
+            assert!(words.iter().zip(&found).all(|(&word, &d)| sampler.diameter(word) == d), "{first}");
+            assert!(guide.segment.len() <= 1 << BUCKET_BITS, "{first}");
+            assert!(
+                words.iter().all(|&word| { guide.start(word) <= sampler.segment(0, coarser_share(word)) })
+            );
+        }
+    }
+}

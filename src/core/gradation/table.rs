@@ -1,0 +1,358 @@
+//! The reader of every table of two columns, size and percent: sieve curves and constriction curves.
+//!
+//! Understood: comma, semicolon or tab between the columns; decimal commas wherever the comma does
+//! not separate columns (or the number is quoted); a byte order mark; CRLF; blank lines; `#`
+//! comments; one header row; quotes; empty fields at the end of a row, as spreadsheets write them.
+//! A row is the header when it is the first and none of its fields is a number.
+
+use super::comma::{Comma, comma};
+use super::error::{NumberError, Position, TableError, shortened};
+use crate::store::read_regular;
+use std::path::Path;
+
+/// Smallest size that an input may hold (mm).
+pub const SIZE_MIN_MM: f64 = 1e-12;
+
+/// Largest size that an input may hold (mm).
+pub const SIZE_MAX_MM: f64 = 1e12;
+
+/// Largest file that is read, in bytes.
+pub const FILE_LIMIT_BYTES: u64 = 16 << 20;
+
+/// One row of a table: where it stands and its two numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// Line of the file, counted from 1.
+    pub line: usize,
+    /// Size, in the table's unit.
+    pub size: f64,
+    /// Percent finer or smaller.
+    pub percent: f64,
+}
+
+impl Row {
+    /// `rows` that come from a list, not from a file, with the values checked.
+    pub(crate) fn checked(
+        file: &str,
+        mut rows: Vec<Row>,
+        [size_field, percent_field]: [&'static str; 2],
+    ) -> Result<Vec<Row>, TableError> {
+        for row in &mut rows {
+            let refused = |field, value: f64, allowed| TableError::Value {
+                at: Position { file: file.into(), line: row.line, field, column: None },
+                value: value.to_string(),
+                allowed,
+            };
+            if !size_is_allowed(row.size) {
+                return Err(refused(size_field, row.size, allowed_size()));
+            }
+            if !percent_is_allowed(row.percent) {
+                return Err(refused(percent_field, row.percent, allowed_percent()));
+            }
+            // Minus zero is zero.
+            row.percent += 0.0;
+        }
+        Ok(rows)
+    }
+}
+
+/// A table as text: its header and its rows of two fields.
+#[derive(Debug)]
+pub(crate) struct Table {
+    /// File as the user named it.
+    pub(crate) file: String,
+    /// Line and two fields of the header.
+    pub(crate) header: Option<(usize, [String; 2])>,
+    rows: Vec<(usize, [String; 2])>,
+}
+
+impl Table {
+    /// The table in the file at `path`.
+    pub(crate) fn open(path: &Path) -> Result<Table, TableError> {
+        Table::parse(&path.display().to_string(), &bytes_of(path)?)
+    }
+
+    /// The table in `bytes`, called `file` in messages.
+    pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Table, TableError> {
+        let file = file.to_string();
+        if bytes.len() as u64 > FILE_LIMIT_BYTES {
+            return Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES });
+        }
+        let text = match std::str::from_utf8(bytes) {
+            Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text),
+            Err(error) => {
+                let good = error.valid_up_to();
+                let line = 1 + bytes[..good].iter().filter(|&&b| b == b'\n').count();
+                return Err(TableError::Encoding { file, line, byte: bytes[good] });
+            }
+        };
+        let lines = || {
+            text.lines()
+                .enumerate()
+                .map(|(i, line)| (i + 1, line))
+                .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with('#'))
+        };
+        let delimiter = delimiter(lines().map(|(_, line)| line));
+        let mut table = Table { file, header: None, rows: Vec::new() };
+        let mut first = true;
+        for (line, content) in lines() {
+            let fields = split(content, delimiter);
+            if fields.is_empty() {
+                continue;
+            }
+            let heading = std::mem::take(&mut first) && fields.iter().all(|f| number(f).is_none());
+            let found = fields.len();
+            let Ok(fields) = <[String; 2]>::try_from(fields) else {
+                return Err(table.not_two_fields(line, found, content, delimiter));
+            };
+            if heading && fields.iter().all(|f| !f.is_empty()) {
+                table.header = Some((line, fields));
+            } else {
+                table.rows.push((line, fields));
+            }
+        }
+        if table.rows.is_empty() {
+            return Err(TableError::NoRows { header: table.header.is_some(), file: table.file });
+        }
+        table.check_decimal_signs(delimiter)?;
+        Ok(table)
+    }
+
+    fn not_two_fields(&self, line: usize, found: usize, content: &str, delimiter: char) -> TableError {
+        let allowed = if found > 2 && delimiter == ',' {
+            "two columns (with decimal commas, a semicolon or a tab between them)"
+        } else {
+            "two columns, with a comma, a semicolon or a tab between them"
+        };
+        TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
+    }
+
+    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake; one that
+    /// separates its columns by commas may have them in `"1,180"`.
+    fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
+        let is = |wanted: Comma| {
+            let of_row = move |(line, fields): &(usize, [String; 2])| {
+                let found = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
+                found.map(|f| (*line, f.clone()))
+            };
+            self.rows.iter().find_map(of_row)
+        };
+        if delimiter == ','
+            && is(Comma::Decimal).is_none()
+            && let Some((line, value)) = is(Comma::Either)
+        {
+            return Err(TableError::Value {
+                at: Position { file: self.file.clone(), line, field: "number", column: None },
+                allowed: format!(
+                    "{} or {}: here the comma may be a decimal sign or separate thousands",
+                    value.replace(',', "."),
+                    value.replace(',', "")
+                ),
+                value: shortened(&value),
+            });
+        }
+        let with = |sign: char| {
+            self.rows.iter().find_map(|(line, fields)| {
+                fields.iter().find(|f| f.contains(sign) && number(f).is_some()).map(|f| (*line, f))
+            })
+        };
+        match (with('.'), with(',')) {
+            (Some((dot_line, _)), Some((line, value))) => Err(TableError::Value {
+                at: Position { file: self.file.clone(), line, field: "number", column: None },
+                value: shortened(value),
+                allowed: format!(
+                    "one decimal sign in the whole file (line {dot_line} has a decimal point), no \
+                     thousands separators"
+                ),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Line of the first row of numbers.
+    pub(crate) fn first_line(&self) -> usize {
+        self.rows.first().map_or(1, |(line, _)| *line)
+    }
+
+    /// The rows as numbers, with the size in column `size_column` and the percent in the other.
+    pub(crate) fn rows(
+        &self,
+        size_column: usize,
+        size_field: &'static str,
+        percent_field: &'static str,
+    ) -> Result<Vec<Row>, TableError> {
+        let refused = |line, field, value: &str, allowed: String| TableError::Value {
+            at: Position { file: self.file.clone(), line, field, column: None },
+            value: shortened(value),
+            allowed,
+        };
+        let mut rows = Vec::new();
+        for (line, fields) in &self.rows {
+            let text = &fields[size_column];
+            let size = number(text)
+                .filter(|&v| size_is_allowed(v))
+                .ok_or_else(|| refused(*line, size_field, text, allowed_size()))?;
+            let text = &fields[1 - size_column];
+            let percent = number(text)
+                .filter(|&v| percent_is_allowed(v))
+                .ok_or_else(|| refused(*line, percent_field, text, allowed_percent()))?;
+            rows.push(Row { line: *line, size, percent: percent + 0.0 });
+        }
+        Ok(rows)
+    }
+}
+
+/// The bytes of a file, of which no more than a table can have are read.
+pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
+    let file = path.display().to_string();
+    let read = |source| TableError::Read { file: file.clone(), source };
+    if std::fs::metadata(path).map_err(read)?.is_dir() {
+        return Err(TableError::Folder { file });
+    }
+    match read_regular(path, FILE_LIMIT_BYTES).map_err(read)? {
+        Some(bytes) => Ok(bytes),
+        None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+            Err(read(std::io::Error::other("is no regular file")))
+        }
+        None => Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES }),
+    }
+}
+
+/// Refuses a `value` that no size may be.
+pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberError> {
+    match size_is_allowed(value) {
+        true => Ok(()),
+        false => Err(NumberError::new(name, value, allowed_size())),
+    }
+}
+
+/// Refuses a `value` that no percentage may be.
+pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), NumberError> {
+    match percent_is_allowed(value) {
+        true => Ok(()),
+        false => Err(NumberError::new(name, value, allowed_percent())),
+    }
+}
+
+/// A size may be this.
+pub fn size_is_allowed(size: f64) -> bool {
+    (SIZE_MIN_MM..=SIZE_MAX_MM).contains(&size)
+}
+
+/// A percentage may be this.
+pub fn percent_is_allowed(percent: f64) -> bool {
+    (0.0..=100.0).contains(&percent)
+}
+
+/// What a size may be.
+pub fn allowed_size() -> String {
+    format!("a number from {SIZE_MIN_MM:e} to {SIZE_MAX_MM:e}")
+}
+
+/// What a percentage may be.
+pub fn allowed_percent() -> String {
+    "a number from 0 to 100".into()
+}
+
+/// How a table's size column may go from one row to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Direction {
+    /// No size twice.
+    Strict,
+    /// The same size again is a vertical step of the curve.
+    Steps,
+}
+
+/// `rows` with rising sizes, after checking that sizes go one way, that percent never falls as size
+/// rises, and that the coarsest is 100 %.
+pub(crate) fn rising(
+    file: &str,
+    mut rows: Vec<Row>,
+    fields: [&'static str; 2],
+    direction: Direction,
+) -> Result<Vec<Row>, TableError> {
+    let refused = |line, field, value: f64, allowed: String| TableError::Value {
+        at: Position { file: file.to_string(), line, field, column: None },
+        value: value.to_string(),
+        allowed,
+    };
+    let [size_field, percent_field] = fields;
+    let descending = match &rows[..] {
+        [first, .., last] if first.size != last.size => first.size > last.size,
+        [first, .., last] => first.percent > last.percent,
+        _ => false,
+    };
+    for w in rows.windows(2) {
+        let (last, next) = (w[0], w[1]);
+        if last.size == next.size && direction == Direction::Strict {
+            let allowed = format!("every size once (it is also in line {})", last.line);
+            return Err(refused(next.line, size_field, next.size, allowed));
+        }
+        if (descending && last.size < next.size) || (!descending && last.size > next.size) {
+            let (side, order) = if descending { ("less", "descending") } else { ("more", "ascending") };
+            let allowed = format!("{side} than the {} of line {} (sizes all {order})", last.size, last.line);
+            return Err(refused(next.line, size_field, next.size, allowed));
+        }
+        if (descending && last.percent < next.percent) || (!descending && last.percent > next.percent) {
+            let bound = if descending { "at most" } else { "at least" };
+            let allowed = format!(
+                "{bound} the {} of line {} (percent cannot fall as size rises)",
+                last.percent, last.line
+            );
+            return Err(refused(next.line, percent_field, next.percent, allowed));
+        }
+    }
+    if descending {
+        rows.reverse();
+    }
+    match rows.last() {
+        Some(top) if top.percent != 100.0 => {
+            Err(refused(top.line, percent_field, top.percent, "100 at the coarsest size".into()))
+        }
+        Some(_) => Ok(rows),
+        None => Err(TableError::NoRows { file: file.to_string(), header: false }),
+    }
+}
+
+/// What separates the columns: the first of semicolon, tab and comma in the first line that has any.
+fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> char {
+    lines.filter_map(|line| [';', '\t', ','].into_iter().find(|&c| line.contains(c))).next().unwrap_or(',')
+}
+
+/// The fields of one line, trimmed and without their quotes; empty ones at its end left out.
+fn split(line: &str, delimiter: char) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for c in line.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            c if c == delimiter && !quoted => fields.push(String::new()),
+            c => {
+                if let Some(field) = fields.last_mut() {
+                    field.push(c);
+                }
+            }
+        }
+    }
+    for field in &mut fields {
+        *field = field.trim().to_string();
+    }
+    while fields.last().is_some_and(String::is_empty) {
+        fields.pop();
+    }
+    fields
+}
+
+/// A field as a number: what Rust reads (so also `nan`, `inf` and `1e400`, for the caller to refuse),
+/// with a decimal comma in place of the point.
+pub fn number(field: &str) -> Option<f64> {
+    // An exponent has its sign, as spreadsheets write it: another letter e is a slip.
+    if field.split_once(['e', 'E']).is_some_and(|(_, power)| !power.starts_with(['+', '-'])) {
+        return None;
+    }
+    match (field.matches(',').count(), field.contains('.')) {
+        (0, _) => field.parse().ok(),
+        (1, false) => field.replace(',', ".").parse().ok(),
+        _ => None,
+    }
+}

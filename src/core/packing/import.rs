@@ -1,0 +1,336 @@
+//! Packings from files, of this program and of others.
+//!
+//! # Formats
+//! - CSV with a column each for the coordinates of the centres and the diameter or radius, by their names
+//!   ([`csv`](super::csv)): this program's own, spreadsheets, and what ParaView saves of points (MFIX and
+//!   other programs write points for it);
+//! - text dumps of LAMMPS and LIGGGHTS ([`dump`](super::dump));
+//! - what Yade's `export.text` writes, and MercuryDPM's `.data` ([`rows`](super::rows));
+//! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
+//!   ([`vtk`](super::vtk)).
+//!
+//! Each of them may be packed by gzip. What a file is, is seen by its first line, not by its name. What a
+//! file does not say, its unit of length or whether its boundaries are periodic, is never guessed:
+//! [`ReadOptions`] says it, or the file is refused.
+
+use crate::schema::Leaf;
+use std::io::Read;
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use super::csv::csv;
+use super::dump::dump;
+use super::fields::{ImportError, PACKING_FILE_LIMIT_BYTES, refused};
+use super::found::{FileCell, FileGrains};
+use super::grains::{Cell, Packing};
+use super::rows::{is_mercury, mercury, yade};
+use super::unit::LengthUnit;
+use super::vtk::{legacy, xml};
+use crate::store::read_regular;
+
+/// What is known of a packing file that the file does not say itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// The unit of its lengths.
+    pub unit: Option<LengthUnit>,
+    /// Its cell.
+    pub cell: Option<CellOption>,
+}
+
+/// The cell of a packing whose file does not say it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum CellOption {
+    /// Free boundaries.
+    None,
+    /// Periodic between the bounds that the file gives.
+    Bounds,
+    /// Periodic from the origin to these lengths along x, y, z, in the file's unit.
+    Lengths([f64; 3]),
+}
+
+impl Leaf for CellOption {}
+
+impl FromStr for CellOption {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "none" => return Ok(Self::None),
+            "bounds" => return Ok(Self::Bounds),
+            _ => {}
+        }
+        let lengths: Option<Vec<f64>> = text.split(',').map(|length| length.trim().parse().ok()).collect();
+        match lengths.as_deref() {
+            Some(&[x, y, z]) if [x, y, z].iter().all(|l| l.is_finite() && *l > 0.0) => {
+                Ok(Self::Lengths([x, y, z]))
+            }
+            _ => Err("write none for free boundaries, Lx,Ly,Lz for a periodic cell with a corner at the \
+                      origin (in the file's unit), or bounds for one between the bounds in the file"
+                .into()),
+        }
+    }
+}
+
+impl TryFrom<String> for CellOption {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<CellOption> for String {
+    fn from(cell: CellOption) -> Self {
+        match cell {
+            CellOption::None => "none".into(),
+            CellOption::Bounds => "bounds".into(),
+            CellOption::Lengths([x, y, z]) => format!("{x}, {y}, {z}"),
+        }
+    }
+}
+
+impl Packing {
+    /// Reads a packing from a file that says its unit and its cell.
+    ///
+    /// # Errors
+    /// As [`Packing::read_as`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Packing, ImportError> {
+        Ok(Self::read_as(path, &ReadOptions::default())?.0)
+    }
+
+    /// Reads a packing, with what a user must know of how it was understood: which frame, which unit.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is a folder, too large or no text; one of no known format, or that leaves
+    /// its unit or cell open where `options` do too; anything that is not as its format says, with the line,
+    /// the field, the value and what is allowed there.
+    pub fn read_as(
+        path: impl AsRef<Path>,
+        options: &ReadOptions,
+    ) -> Result<(Packing, Vec<String>), ImportError> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let failed = |source| ImportError::Read { file: file.clone(), source };
+        if std::fs::metadata(path).map_err(failed)?.is_dir() {
+            return Err(ImportError::Folder { file });
+        }
+        match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
+            Some(bytes) => Self::parse_as(&file, &bytes, options),
+            None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+                Err(failed(std::io::Error::other("is no regular file")))
+            }
+            None => Err(ImportError::TooLarge { file, limit: PACKING_FILE_LIMIT_BYTES }),
+        }
+    }
+
+    /// [`Packing::read`] on the content of a file, called `name` in messages.
+    ///
+    /// ```
+    /// use voidwalk_core::packing::{Cell, Packing};
+    /// let text = "# cell_mm = 2, 2, 2\nx_mm,y_mm,z_mm,diameter_mm\n0.5,0.5,0.5,1\n";
+    /// let packing = Packing::parse("example", text.as_bytes())?;
+    /// assert_eq!((packing.cell, packing.diameter), (Cell::Periodic([2.0; 3]), vec![1.0]));
+    /// # Ok::<(), voidwalk_core::packing::ImportError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Packing::read_as`].
+    pub fn parse(name: &str, content: &[u8]) -> Result<Packing, ImportError> {
+        Ok(Self::parse_as(name, content, &ReadOptions::default())?.0)
+    }
+
+    /// [`Packing::read_as`] on the content of a file, called `name` in messages.
+    ///
+    /// ```
+    /// use voidwalk_core::packing::{CellOption, LengthUnit, Packing, ReadOptions};
+    /// let yade = "#format x_y_z_r\n0.002\t0.001\t0\t0.0005\n";
+    /// let options = ReadOptions { unit: Some(LengthUnit::M), cell: Some(CellOption::None) };
+    /// let (packing, _) = Packing::parse_as("spheres.txt", yade.as_bytes(), &options)?;
+    /// assert_eq!((packing.x, packing.diameter), (vec![2.0], vec![1.0]));
+    /// assert!(Packing::parse("spheres.txt", yade.as_bytes()).is_err());
+    /// # Ok::<(), voidwalk_core::packing::ImportError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Packing::read_as`].
+    pub fn parse_as(
+        name: &str,
+        content: &[u8],
+        options: &ReadOptions,
+    ) -> Result<(Packing, Vec<String>), ImportError> {
+        if content.starts_with(GZIP) {
+            return Self::parse_as(name, &unpacked(name, content)?, options);
+        }
+        if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
+            return Err(ImportError::Unknown { file: name.into(), looks_like: (*what).into() });
+        }
+        // Of these the numbers may be no text.
+        if content.starts_with(b"# vtk DataFile") {
+            return complete(name, legacy(name, content)?, options);
+        }
+        if is_vtk_in_xml(content) {
+            return complete(name, xml(name, content)?, options);
+        }
+        let text = std::str::from_utf8(content).map_err(|error| {
+            let good = error.valid_up_to();
+            let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
+            ImportError::Encoding { file: name.into(), line, byte: content[good] }
+        })?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let start = text.trim_start();
+        let found = if start.starts_with("ITEM:") {
+            dump(name, text, options.unit)?
+        } else if start.starts_with("#format") {
+            yade(name, text)?
+        } else if is_mercury(text) {
+            mercury(name, text)?
+        } else {
+            csv(name, text)?
+        };
+        complete(name, found, options)
+    }
+}
+
+/// How a file that is packed by gzip begins.
+const GZIP: &[u8] = b"\x1f\x8b";
+
+/// What a file holds that is packed by gzip, once: what it holds is packed no more.
+fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
+    let (mut bytes, limit) = (Vec::new(), PACKING_FILE_LIMIT_BYTES);
+    let read = flate2::read::MultiGzDecoder::new(content).take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(|error| {
+        let source = std::io::Error::other(format!("its gzip is broken: {error}"));
+        ImportError::Read { file: name.into(), source }
+    })?;
+    if bytes.len() as u64 > limit {
+        return Err(ImportError::TooLarge { file: name.into(), limit });
+    }
+    if bytes.starts_with(GZIP) {
+        let looks_like = "packed twice (gzip): unpack it first".into();
+        return Err(ImportError::Unknown { file: name.into(), looks_like });
+    }
+    Ok(bytes)
+}
+
+/// Whether a file of VTK in XML begins here, perhaps behind a byte order mark and a declaration.
+fn is_vtk_in_xml(content: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&content[..content.len().min(1000)]);
+    let start = start.trim_start_matches('\u{feff}').trim_start();
+    start.starts_with("<VTKFile") || start.starts_with("<?xml") && start.contains("<VTKFile")
+}
+
+/// How files that are no text begin, and what they are.
+const NOT_TEXT: [(&[u8], &str); 2] = [
+    (b"PK\x03\x04", "a zip or a workbook (save a workbook's sheet as CSV)"),
+    (b"\x28\xb5\x2f\xfd", "a compressed file (zstd): unpack it first"),
+];
+
+/// The packing (mm), with what the file says and what `options` add; where both speak, the file does.
+fn complete(
+    file: &str,
+    found: FileGrains,
+    options: &ReadOptions,
+) -> Result<(Packing, Vec<String>), ImportError> {
+    let FileGrains { columns: [mut x, mut y, mut z, diameter], unit, cell, line, mut notes } = found;
+    let unit = match (unit, options.unit) {
+        (Some(said), Some(given)) if said != given => {
+            let allowed = format!("{}: the file says the unit of its lengths itself", said.name());
+            return Err(refused(file, line, "unit", given.name(), allowed));
+        }
+        (Some(said), _) => said,
+        (None, Some(given)) => given,
+        (None, None) => return Err(ImportError::NoUnit { file: file.into() }),
+    };
+    let cell = match (cell, options.cell) {
+        (FileCell::Known(cell), None) => cell,
+        (FileCell::Known(_), Some(_)) => {
+            let allowed = "nothing: the file says its boundaries itself";
+            return Err(refused(file, line, "cell", "as it was given", allowed));
+        }
+        (_, Some(CellOption::None)) => Cell::Free,
+        (FileCell::Mixed, _) => return Err(ImportError::Mixed { file: file.into() }),
+        (_, Some(CellOption::Lengths(lengths))) => Cell::Periodic(lengths),
+        (FileCell::Bounds(bounds), Some(CellOption::Bounds)) => {
+            for (column, [low, _]) in [&mut x, &mut y, &mut z].into_iter().zip(bounds) {
+                column.iter_mut().for_each(|at| *at -= low);
+            }
+            Cell::Periodic(bounds.map(|[low, high]| high - low))
+        }
+        (FileCell::Unsaid, Some(CellOption::Bounds)) => {
+            let allowed = "none, or Lx,Ly,Lz: the file gives no bounds";
+            return Err(refused(file, line, "cell", "bounds", allowed));
+        }
+        (FileCell::Bounds(_), None) => {
+            return Err(ImportError::NoCell {
+                file: file.into(),
+                bounds: ", or bounds for one between those in the file",
+            });
+        }
+        (FileCell::Unsaid, None) => return Err(ImportError::NoCell { file: file.into(), bounds: "" }),
+    };
+    let mut packing = Packing { cell, x, y, z, diameter };
+    fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
+    if unit != LengthUnit::Mm {
+        into_mm(&mut packing, unit, (file, line))?;
+        notes.push(format!("lengths are in {}, and are turned into mm", unit.words()));
+    }
+    Ok((packing, notes))
+}
+
+/// Refuses grains that do not fit their cell: a wrong one would give constrictions that are too fine, so a
+/// filter that seems to hold more. Programs may keep grains outside a cell that they wrote themselves, but of
+/// one given by hand nothing else tells whether it is the grains' own.
+fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
+    let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
+    let misfit = |problem| Err(ImportError::Misfit { file: file.into(), problem });
+    for ((axis, column), length) in
+        ["x", "y", "z"].into_iter().zip([&packing.x, &packing.y, &packing.z]).zip(lengths)
+    {
+        let low = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if by_hand && high - low > length * (1.0 + ROUNDING) {
+            return misfit(format!(
+                "the centres spread over {} along {axis}, and the cell is {length} long there. A cell is \
+                 given in the file's unit; grains that have crossed it must be brought back into it",
+                high - low
+            ));
+        }
+    }
+    let solid: f64 = packing.diameter.iter().map(|d| std::f64::consts::FRAC_PI_6 * d * d * d).sum();
+    let whole: f64 = lengths.iter().product();
+    if solid >= whole {
+        return misfit(format!(
+            "the grains have {:.3} times the volume of the cell, {} x {} x {}, and leave no voids. A cell is \
+             given in the file's unit; or are radii read as diameters?",
+            solid / whole,
+            lengths[0],
+            lengths[1],
+            lengths[2]
+        ));
+    }
+    Ok(())
+}
+
+/// Part of a cell's length that rounding in a file may take off or add.
+const ROUNDING: f64 = 1e-6;
+
+fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize)) -> Result<(), ImportError> {
+    let Packing { cell, x, y, z, diameter } = packing;
+    let lengths = match cell {
+        Cell::Periodic(lengths) => lengths.as_mut_slice(),
+        Cell::Free => &mut [],
+    };
+    let all = [x, y, z, diameter].into_iter().flatten().chain(lengths);
+    for length in all {
+        let given = *length;
+        *length *= unit.mm();
+        if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
+            let allowed = format!("lengths in {} that are numbers in mm", unit.words());
+            return Err(refused(file, line, "units", &given.to_string(), allowed));
+        }
+    }
+    Ok(())
+}

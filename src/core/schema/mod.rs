@@ -1,0 +1,243 @@
+//! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of
+//! it.
+//!
+//! A stage declares what it can be told with `section!`; from that one declaration follow the struct with
+//! its fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]),
+//! the commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values that a program gave, and
+//! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.
+//! Which settings exclude each other is declared by [`Group`]s.
+
+mod allowed;
+pub mod hints;
+pub mod length;
+mod nearest;
+mod settings;
+mod value;
+
+use serde::Serialize;
+
+pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, words};
+pub use settings::setting_name;
+pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
+pub use value::Value;
+
+/// What a user is told of a setting, and which values it takes.
+#[derive(Clone, Debug)]
+pub struct KeyInfo {
+    /// Its section, empty for the settings at the top.
+    pub section: &'static str,
+    /// Its name inside the section.
+    pub name: &'static str,
+    /// What it means, in words.
+    pub doc: String,
+    /// The type of its value in TOML: `float`, `array of integers`.
+    pub toml_type: &'static str,
+    /// The value that it has where a scene does not set it, in TOML.
+    pub default: Option<String>,
+    /// What is allowed, in the words of the errors.
+    pub allowed: String,
+    /// Values that it often has, where those are words.
+    pub offered: Vec<String>,
+    /// A value of it, in TOML.
+    pub shown: String,
+    /// Whether the built-in scene has that value; else it is an example.
+    pub is_set: bool,
+    /// Tells whether it may have a value.
+    pub admits: fn(&Value) -> bool,
+}
+
+impl KeyInfo {
+    /// Its full name: `base.cu`.
+    pub fn full_name(&self) -> String {
+        full_name(self.section, self.name)
+    }
+}
+
+/// The full name of a setting.
+pub fn full_name(section: &str, name: &str) -> String {
+    if section.is_empty() { name.to_owned() } else { format!("{section}.{name}") }
+}
+
+/// A value that a program gave and that is out of range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutOfRange {
+    /// Name of the setting inside its section.
+    pub name: &'static str,
+    /// The value, in TOML.
+    pub value: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+/// The type of a setting: a value that is always there, or one that may be missing.
+pub trait Setting: Sized {
+    /// The type of its value.
+    type Value: Leaf;
+
+    /// The setting with this value.
+    fn given(value: Self::Value) -> Self;
+
+    /// Its value, where it has one.
+    fn value(&self) -> Option<&Self::Value>;
+
+    /// Whether it has none, so that nothing is written of it.
+    fn is_missing(&self) -> bool {
+        self.value().is_none()
+    }
+}
+
+impl<T: Leaf> Setting for T {
+    type Value = T;
+
+    fn given(value: T) -> Self {
+        value
+    }
+
+    fn value(&self) -> Option<&T> {
+        Some(self)
+    }
+}
+
+impl<T: Leaf> Setting for Option<T> {
+    type Value = T;
+
+    fn given(value: T) -> Self {
+        Some(value)
+    }
+
+    fn value(&self) -> Option<&T> {
+        self.as_ref()
+    }
+}
+
+/// A value in TOML.
+pub fn in_toml(value: &impl Serialize) -> String {
+    let mut text = String::new();
+    match value.serialize(toml::ser::ValueSerializer::new(&mut text)) {
+        Ok(_) => text,
+        Err(error) => unreachable!("a setting is a number, a word or a list of them: {error}"),
+    }
+}
+
+/// Declares a section of settings: a struct of them, with what reads, checks, describes and writes it.
+///
+/// ```text
+/// section! {
+///     /// What the section is about.
+///     pub struct Base in "base" {
+///         /// What the setting means: for the docs and for `voidwalk init`.
+///         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
+///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in
+///         /// a comment, with a value where the default has none; then what is allowed.
+///         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
+///     }
+///     // Fields that only a program sets, not a scene.
+///     beside { pub probe: bool = false; }
+/// }
+/// ```
+#[macro_export]
+#[doc(hidden)]
+macro_rules! section {
+    (
+        $(#[doc = $about:literal])*
+        $visible:vis struct $Section:ident in $section:literal {
+            $(
+                $(#[doc = $doc:literal])*
+                pub $name:ident: $Type:ty = $default:expr, $state:ident $($example:literal)?, $allowed:expr;
+            )*
+        }
+        $(beside { $(
+            $(#[doc = $beside_doc:literal])*
+            pub $beside:ident: $Beside:ty = $beside_default:expr;
+        )* })?
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize)]
+        $visible struct $Section {
+            $(
+                $(#[doc = $doc])*
+                #[serde(skip_serializing_if = "::voidwalk_core::schema::Setting::is_missing")]
+                pub $name: $Type,
+            )*
+            $($(
+                $(#[doc = $beside_doc])*
+                #[serde(skip)]
+                pub $beside: $Beside,
+            )*)?
+        }
+
+        impl Default for $Section {
+            fn default() -> Self {
+                Self { $($name: $default,)* $($($beside: $beside_default,)*)? }
+            }
+        }
+
+        impl $Section {
+            /// What a user is told of the section.
+            pub const ABOUT: &'static [&'static str] = &[$($about),*];
+
+            /// What a user is told of each setting, in the order in which they are written.
+            pub fn keys() -> Vec<$crate::schema::KeyInfo> {
+                vec![$({
+                    type Checked = $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value>;
+                    let allowed: Checked = $allowed;
+                    let default: $Type = $default;
+                    let default = $crate::schema::Setting::value(&default).map($crate::schema::in_toml);
+                    let written = default.clone();
+                    $( let written = written.or(Some($example.to_owned())); )?
+                    $crate::schema::KeyInfo {
+                        section: $section,
+                        name: stringify!($name),
+                        doc: [$($doc),*].concat().trim().to_owned(),
+                        toml_type: allowed.toml_type(),
+                        default,
+                        offered: allowed.offered().to_vec(),
+                        allowed: allowed.words,
+                        shown: written.unwrap_or_default(),
+                        is_set: stringify!($state) == "set",
+                        admits: |value| {
+                            let allowed: Checked = $allowed;
+                            allowed.read(value).is_some()
+                        },
+                    }
+                }),*]
+            }
+
+            /// The settings that are given, and the defaults of the others.
+            ///
+            /// # Errors
+            /// A value that is not allowed.
+            pub fn read(
+                settings: &$crate::schema::GivenSettings,
+            ) -> Result<Self, $crate::schema::SceneError> {
+                Ok(Self {
+                    $($name: {
+                        let name = $crate::schema::full_name($section, stringify!($name));
+                        let given = settings.get(&name, &$allowed)?;
+                        given.map_or_else(|| $default, $crate::schema::Setting::given)
+                    },)*
+                    $($($beside: $beside_default,)*)?
+                })
+            }
+
+            /// The first setting whose value is not allowed.
+            pub fn out_of_range(&self) -> Option<$crate::schema::OutOfRange> {
+                $(
+                    let allowed: $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value> =
+                        $allowed;
+                    let value = $crate::schema::Setting::value(&self.$name);
+                    if let Some(value) = value.filter(|value| !allowed.admits(value)) {
+                        return Some($crate::schema::OutOfRange {
+                            name: stringify!($name),
+                            value: $crate::schema::in_toml(value),
+                            allowed: allowed.words,
+                        });
+                    }
+                )*
+                None
+            }
+        }
+    };
+}
+
+pub use crate::section;

@@ -1,0 +1,216 @@
+//! The JSON files of the program: each begins with the name and number of its form and the program's version.
+//!
+//! ```json
+//! { "format": "voidwalk-outcome/1", "voidwalk": "0.1.0", ... }
+//! ```
+//! The number rises when a program that read the file before would now misread it: a field is gone, or means
+//! something else. A new field raises nothing. A file without such a beginning, or with another number, is
+//! refused.
+
+use std::fmt;
+
+use serde::ser::Error;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::text::is_hidden;
+
+/// The form of a file of JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    /// Its name, without the program's.
+    name: &'static str,
+    /// Its number.
+    number: u32,
+    /// The file; what prints it, where it is no file.
+    pub file: &'static str,
+}
+
+macro_rules! formats {
+    ($($(#[$what:meta])* $constant:ident = $name:literal / $number:literal, $file:literal;)*) => {
+        $($(#[$what])* pub const $constant: Format = Format { name: $name, number: $number, file: $file };)*
+
+        /// Every form.
+        pub const FORMATS: &[Format] = &[$($constant),*];
+    };
+}
+
+formats! {
+    /// What came of a scene.
+    OUTCOME = "outcome" / 1, "outcome.json";
+    /// What made a run folder.
+    MANIFEST = "manifest" / 1, "manifest.json";
+    /// Boundaries of the model.
+    BOUNDARY = "boundary" / 1, "boundary.json";
+    /// Specifications for many samples.
+    DESIGNS = "designs" / 1, "designs.json";
+    /// The specification of a filter.
+    SPECIFICATION = "specification" / 1, "specification.json";
+    /// Many samples against filters.
+    BATCH = "batch" / 1, "batch.json";
+    /// A campaign, with its `ledger.jsonl` and `cases.csv`.
+    CAMPAIGN = "campaign" / 1, "campaign.json";
+    /// One case of a campaign.
+    CASE = "case" / 1, "case.json";
+    /// A filter that was packed.
+    PACKING = "packing" / 1, "packing.json";
+    /// Constrictions that were measured.
+    CONSTRICTIONS = "constrictions" / 1, "constrictions.json";
+    /// The percolation threshold.
+    PERCOLATION = "percolation" / 1, "percolation.json";
+    /// The folder of a page on this machine.
+    SERVE = "serve" / 1, "serve.json";
+    /// What a run would do.
+    CHECK = "check" / 1, "voidwalk check --json";
+    /// What the cases of a plan would take.
+    PLAN_CHECK = "plan-check" / 1, "voidwalk check PLAN --json";
+    /// The rules of practice for two soils.
+    RULES = "rules" / 1, "voidwalk rules --json";
+    /// The soils of a file.
+    SOILS = "soils" / 1, "voidwalk soil --json";
+    /// Every setting of a scene.
+    SETTINGS = "settings" / 1, "voidwalk init --json";
+}
+
+/// How every file begins.
+#[derive(Serialize)]
+struct Headed<'a, T> {
+    format: String,
+    voidwalk: &'static str,
+    #[serde(flatten)]
+    content: &'a T,
+}
+
+/// The beginning of a file that is read.
+#[derive(Deserialize)]
+struct Beginning {
+    #[serde(default)]
+    format: Value,
+    #[serde(default)]
+    voidwalk: Value,
+}
+
+impl Format {
+    /// Its name, without the program's and without its number.
+    pub fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// A record in this form, as indented JSON with a newline at its end.
+    ///
+    /// # Errors
+    /// A record that is no map, or that JSON cannot hold.
+    pub fn json(self, content: &impl Serialize) -> Result<String, serde_json::Error> {
+        let headed = Headed { format: self.to_string(), voidwalk: env!("CARGO_PKG_VERSION"), content };
+        Ok(visible_json(serde_json::to_string_pretty(&headed)?) + "\n")
+    }
+}
+
+/// JSON text of the same content whose hidden characters are escapes: no terminal acts on them.
+pub fn visible_json(text: String) -> String {
+    let acts = |c: char| c != '\n' && is_hidden(c);
+    if !text.contains(acts) {
+        return text;
+    }
+    let escape = |c: char| c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect();
+    text.chars().map(|c| if acts(c) { escape(c) } else { c.to_string() }).collect()
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "voidwalk-{}/{}", self.name, self.number)
+    }
+}
+
+/// A record from the text of its file.
+///
+/// # Errors
+/// Text without the name of a form, in a form that this version does not read, or that is no such record.
+pub fn from_json<T: serde::de::DeserializeOwned>(text: &[u8]) -> Result<T, serde_json::Error> {
+    let read = serde_json::from_slice(text);
+    // Read second: where the file is no JSON, its own error names the line.
+    match serde_json::from_slice(text).ok().and_then(|beginning: Beginning| refused(&beginning)) {
+        Some(problem) => Err(serde_json::Error::custom(problem)),
+        None => read,
+    }
+}
+
+/// Why a beginning is refused; `None` where it is that of a form known here.
+fn refused(beginning: &Beginning) -> Option<String> {
+    let this = concat!("this is voidwalk ", env!("CARGO_PKG_VERSION"));
+    let Some(form) = beginning.format.as_str() else {
+        return Some(format!("this file does not begin with the name and number of its form; {this}"));
+    };
+    if FORMATS.iter().any(|format| format.to_string() == form) {
+        return None;
+    }
+    let by = beginning.voidwalk.as_str().unwrap_or("of no known version");
+    let name = form.strip_prefix("voidwalk-").and_then(|form| form.rsplit_once('/')).map(|(name, _)| name);
+    let known = FORMATS.iter().find(|format| name == Some(format.name));
+    let reads = known.map_or(String::new(), |known| format!(", which reads {known}"));
+    Some(format!("this file is in the form {form} of voidwalk {by}; {this}{reads}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[derive(Debug, PartialEq, Serialize, Deserialize)]
+    struct Record {
+        seconds: f64,
+        seed: u64,
+    }
+
+    #[test]
+    fn every_record_begins_with_its_form_and_the_version() {
+        let record = Record { seconds: 0.1 + 0.2, seed: u64::MAX };
+        let text = OUTCOME.json(&record).unwrap();
+        let version = env!("CARGO_PKG_VERSION");
+        let begins = format!("{{\n  \"format\": \"voidwalk-outcome/1\",\n  \"voidwalk\": \"{version}\",\n");
+        assert!(text.starts_with(&begins) && text.ends_with("}\n"), "{text}");
+        assert_eq!(from_json::<Record>(text.as_bytes()).unwrap(), record);
+    }
+
+    #[test]
+    fn hidden_characters_of_a_record_are_escapes_and_read_back() {
+        let name = "a\u{9b}\u{202e}\u{200b}\u{e0041}\n\"ü";
+        let text = OUTCOME.json(&serde_json::json!({ "name": name })).unwrap();
+        assert!(!text.contains(|c| c != '\n' && is_hidden(c)), "{text}");
+        assert_eq!(from_json::<Value>(text.as_bytes()).unwrap()["name"], name);
+    }
+
+    #[test]
+    fn a_record_of_another_form_or_of_none_is_refused() {
+        let read = |begins: &str| {
+            let text = format!(r#"{{{begins}"voidwalk":"9.1.0","seconds":1,"seed":2}}"#);
+            from_json::<Record>(text.as_bytes()).map_err(|error| error.to_string())
+        };
+        assert!(read(r#""format":"voidwalk-outcome/1","#).is_ok());
+        for form in ["voidwalk-outcome/2", "voidwalk-outcome/0"] {
+            let error = read(&format!(r#""format":"{form}","#)).unwrap_err();
+            assert!(error.contains(&format!("{form} of voidwalk 9.1.0")), "{error}");
+            assert!(error.contains("reads voidwalk-outcome/1"), "{error}");
+        }
+        for none in ["", r#""format":1,"#, r#""format":"voidwalk-new/7","#, r#""format":"","#] {
+            assert!(read(none).is_err(), "{none}");
+        }
+    }
+
+    #[test]
+    fn the_guide_lists_every_form() {
+        let guide = include_str!("../../docs/stability.md");
+        for format in FORMATS {
+            let row = guide.lines().find(|line| line.starts_with(&format!("| `{format}` |")));
+            assert!(row.is_some_and(|row| row.contains(&format!("`{}`", format.file))), "{format}");
+        }
+    }
+
+    #[test]
+    fn no_two_files_share_a_form() {
+        let names: BTreeSet<&str> = FORMATS.iter().map(|format| format.name).collect();
+        let files: BTreeSet<&str> = FORMATS.iter().map(|format| format.file).collect();
+        assert_eq!([names.len(), files.len()], [FORMATS.len(); 2]);
+    }
+}

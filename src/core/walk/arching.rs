@@ -1,0 +1,409 @@
+//! Arches: a particle that fits through a constriction may jam in it together with others that arrive.
+//!
+//! # What is decided
+//! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
+//! probability that a [`Law`] gives, by a draw of its own. Those that jam in one constriction in one
+//! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
+//! ([`in_arch`]); those beyond pass (module `arches`). Particles so fine that the law gives no arch pass, and
+//! are none of an arch.
+//!
+//! The constriction closes from the next increment on, as one that a coarser particle blocked, however many
+//! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
+//! fewer than an arch has.
+//!
+//! Whether a particle jams depends on itself and the constriction alone, and who stays on the order of
+//! insertion alone. So the cutting of the particles into chunks plays no part, but in which draw a particle
+//! takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run, increment,
+//! `c`), completed to 64 bits where sixteen do not decide.
+//!
+//! # Concentration
+//! A law may depend on the solids fraction of the suspension that enters the filter: the volume of particles
+//! by the volume of suspension. Particles that go with the water keep it in every void and at every depth, so
+//! that it is one number for the whole walk, which the scene states.
+//!
+//! # Passive particles
+//! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
+//! [`Arching::widest`].
+
+use crate::schema::Leaf;
+use libm::{exp, lgamma, log, pow};
+use serde::{Deserialize, Serialize};
+
+/// Solids fraction of grains that lie densely: no suspension has a larger one.
+pub const DENSEST: f64 = 0.64;
+
+/// A published law of clogging.
+///
+/// The laws are data: what the walk reads is a table of each over `R` ([`Arching`]).
+#[derive(Debug)]
+pub struct Law {
+    /// Its name in a scene.
+    pub name: &'static str,
+    /// Where it was published.
+    pub source: &'static str,
+    /// What of that source could be read, and what was taken besides.
+    pub basis: &'static str,
+    /// `R` from which nothing arches.
+    pub widest: f64,
+    /// Whether the probability depends on the concentration; the others hold for dense flow.
+    pub of_concentration: bool,
+    probability: fn(f64, f64) -> f64,
+}
+
+/// The name of a law, as a scene says it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LawName {
+    /// No arches.
+    #[serde(rename = "none")]
+    None,
+    /// Dense discharge of dry spheres.
+    #[serde(rename = "zuriguel-2005")]
+    Zuriguel2005,
+    /// A suspension: enough particles at the neck at once.
+    #[serde(rename = "marin-2018")]
+    Marin2018,
+    /// Every particle up to a third of the constriction.
+    #[serde(rename = "critical-3")]
+    Critical3,
+}
+
+impl Leaf for LawName {}
+
+impl LawName {
+    /// All names, in the order in which a user is told of them.
+    pub const ALL: [Self; 4] = [Self::None, Self::Zuriguel2005, Self::Marin2018, Self::Critical3];
+
+    /// The name itself.
+    pub fn name(self) -> &'static str {
+        self.law().map_or("none", |law| law.name)
+    }
+
+    /// Its law; `None` where particles do not arch.
+    pub fn law(self) -> Option<&'static Law> {
+        (self as usize).checked_sub(1).map(|place| &LAWS[place])
+    }
+}
+
+/// All laws, in the order in which a user is told of them.
+pub static LAWS: [Law; 3] = [
+    Law {
+        name: "zuriguel-2005",
+        source: "Zuriguel, Garcimartin, Maza, Pugnaloni and Pastor 2005, Physical Review E 71, 051303",
+        basis: "Dense discharge of dry spheres through a circular hole: on average A / (4.94 - R)^6.9 \
+                grains pass before a jam, A = 9900. The constants were read in a later review, not in the \
+                article; \
+                that a jam comes after so many grains, each with the same probability, is taken from its \
+                abstract. It is the law of the dense limit: nothing dilutes it. It held bases that eroded in \
+                tests.",
+        widest: 4.94,
+        of_concentration: false,
+        probability: zuriguel,
+    },
+    Law {
+        name: "marin-2018",
+        source: "Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102 (arXiv 1711.06119)",
+        basis: "Suspensions arch for R < 3, where enough particles are at the neck at once. Read in the \
+                abstract; that an arch needs R^2 + 1 particles was read in a later review. That their number \
+                at the neck is Poisson, with the concentration times the volume of a neck as long as it is \
+                wide for its mean, is an assumption of this program. That number is whole, so that the \
+                probability is saw-toothed over R; from a concentration of about 0.2 on it rises with R, \
+                where that of dry grains falls.",
+        widest: 3.0,
+        of_concentration: true,
+        probability: at_the_neck,
+    },
+    Law {
+        name: "critical-3",
+        source: "after Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102",
+        basis: "Every particle below R = 3 jams. One that jams alone is retained as by sieving with \
+                particles three times as large, by which a walk is checked; of those that jam in one \
+                constriction at once no more stay than an arch has. It held bases that eroded in tests.",
+        widest: 3.0,
+        of_concentration: false,
+        probability: |_, _| 1.0,
+    },
+];
+
+impl Law {
+    /// The law of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        LAWS.iter().find(|law| law.name == name)
+    }
+
+    /// Probability that a particle jams in a constriction `ratio` times its size, from 1 on, at this
+    /// concentration (volume of particles by volume of suspension); 0 from the widest on.
+    ///
+    /// ```
+    /// use voidwalk_core::walk::Law;
+    ///
+    /// let law = Law::named("zuriguel-2005").unwrap();
+    /// // 9900 / 2.94^6.9 = 5.80 grains pass on average.
+    /// assert!((law.probability(2.0, 0.6) - 1.0 / 6.80).abs() < 1e-3);
+    /// assert_eq!(law.probability(4.94, 0.6), 0.0);
+    /// ```
+    pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
+        if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
+    }
+
+    /// The size up to which particles can neither block nor arch where this is the finest open constriction.
+    pub fn passive_limit(&self, finest: f32) -> f32 {
+        // A little finer, so that rounding gives no particle an arch that the limit calls passive.
+        (f64::from(finest) / self.widest * (1.0 - 1e-6)) as f32
+    }
+}
+
+/// One in as many as pass before a jam, and the one that jams.
+fn zuriguel(ratio: f64, _: f64) -> f64 {
+    1.0 / (1.0 + 9900.0 / pow(4.94 - ratio, 6.9))
+}
+
+/// The probability of the others of an arch being in a neck as long as it is wide, beside this particle.
+///
+/// As 1 less a sum it is 0 where it is less than the last bit of 1.
+fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
+    // pi / 4 D^2 D by pi / 6 d^3.
+    let mean = 1.5 * ratio * ratio * ratio * concentration;
+    let others = in_arch(ratio) - 1;
+    if mean <= 0.0 {
+        return 0.0;
+    }
+    let of = |k: u32| exp(f64::from(k) * log(mean) - mean - lgamma(f64::from(k) + 1.0));
+    (1.0 - (0..others).map(of).sum::<f64>()).max(0.0)
+}
+
+/// Particles of an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
+pub fn in_arch(ratio: f64) -> u32 {
+    (ratio * ratio + 1.0).round().max(2.0) as u32
+}
+
+/// Steps of the table of a law.
+const STEPS: usize = 1 << 14;
+
+/// Bits of a draw that decide.
+const BITS: u32 = 48;
+
+/// The least probability that draws of so many bits can have.
+const RAREST: f64 = 1.0 / (1u64 << BITS) as f64;
+
+/// The power of two of 1, as a class.
+pub(super) const CLASS_OF_ONE: usize = 254;
+
+/// A little wider, so that rounding jams no particle beyond its reach.
+fn wider(ratio: f64) -> f32 {
+    (ratio * (1.0 + 1e-6)) as f32
+}
+
+/// A law as a walk reads it, at one concentration.
+#[derive(Clone, Debug)]
+pub struct Arching {
+    law: &'static Law,
+    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
+    table: Vec<f64>,
+    /// `R` from which the table has nothing.
+    stops_to: f64,
+    reach: Reach,
+}
+
+/// By the sixteen bits of a draw, in classes of half a power of two ([`Arching::class_of`]): up to how many
+/// times a particle's size a constriction may be in which it jams by that draw; at least 1.
+pub(super) type Reach = [f32; 32];
+
+impl Arching {
+    /// A law at this concentration (volume of particles by volume of suspension). Jams that come less often
+    /// than once in `2^48` draws are none.
+    pub fn new(law: &'static Law, concentration: f64) -> Self {
+        let step = (law.widest - 1.0) / STEPS as f64;
+        let at = |k: usize| {
+            // At the widest itself the law says nothing: its table ends with what it comes to there.
+            let ratio = 1.0 + step * k as f64;
+            let probability = (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration);
+            if probability < RAREST { 0.0 } else { probability }
+        };
+        let table: Vec<f64> = (0..=STEPS).map(at).collect();
+        // Between two steps the table is above 0 where it is at either of them.
+        let end_of = |jams: &dyn Fn(&f64) -> bool| {
+            1.0 + step * table.iter().rposition(jams).map_or(0, |k| (k + 1).min(STEPS)) as f64
+        };
+        let reach = std::array::from_fn(|class| {
+            // The least draw of the class: half a power of two above a power of two.
+            let least =
+                if class == 0 { 0.0 } else { (1 << (class / 2)) as f64 * (1.0 + 0.5 * (class % 2) as f64) };
+            wider(end_of(&|probability| probability * 65_536.0 > least.floor()))
+        });
+        Self { law, stops_to: end_of(&|&probability| probability > 0.0), table, reach }
+    }
+
+    /// `R` from which nothing arches at this concentration: [`Arching::widest`], or less where jams of wider
+    /// constrictions are too rare for any draw.
+    pub fn stops_to(&self) -> f64 {
+        self.stops_to
+    }
+
+    /// `R` from which nothing arches.
+    pub fn widest(&self) -> f64 {
+        self.law.widest
+    }
+
+    /// [`Law::passive_limit`] of its law.
+    pub fn passive_limit(&self, finest: f32) -> f32 {
+        self.law.passive_limit(finest)
+    }
+
+    /// Whether a particle of this size may arch in this constriction, which it fits.
+    #[inline]
+    fn may(&self, width: f32, diameter: f32) -> bool {
+        f64::from(width) < self.law.widest * f64::from(diameter)
+    }
+
+    /// [`Reach`] of this law.
+    pub(super) fn reach(&self) -> &Reach {
+        &self.reach
+    }
+
+    /// The class of a draw: twice its power of two, and one more from half way to the next on.
+    #[inline(always)]
+    pub(super) fn class_of(draw: u16) -> usize {
+        ((f32::from(draw).to_bits() >> 22) as usize).saturating_sub(CLASS_OF_ONE)
+    }
+
+    /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
+    /// by this word; `None` where it passes.
+    #[inline]
+    pub(super) fn jams(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
+        if !self.may(width, diameter) {
+            return None;
+        }
+        let draw = (word >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
+        let ratio = f64::from(width) / f64::from(diameter);
+        (draw < self.by_table(ratio)).then(|| in_arch(ratio))
+    }
+
+    /// The probability by the table: the law's at its steps, and between them by a straight line.
+    pub(super) fn by_table(&self, ratio: f64) -> f64 {
+        let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
+        let step = (place as usize).min(STEPS - 1);
+        let [low, high] = [self.table[step], self.table[step + 1]];
+        low + (place - step as f64) * (high - low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_laws() {
+        for name in LawName::ALL {
+            assert_eq!(serde_json::to_value(name).unwrap(), name.name());
+            assert_eq!(Law::named(name.name()).map(|law| law.name), name.law().map(|law| law.name));
+        }
+        assert_eq!(LawName::ALL.len(), LAWS.len() + 1);
+    }
+
+    #[test]
+    fn a_table_is_its_law() {
+        for law in &LAWS {
+            for concentration in [0.01, 0.2, 0.6] {
+                let arching = Arching::new(law, concentration);
+                for k in 0..1000 {
+                    let ratio = 1.0 + (law.widest - 1.0) * (f64::from(k) + 0.37) / 1000.0;
+                    let (table, whole) = (arching.by_table(ratio), law.probability(ratio, concentration));
+                    // The number of an arch is whole, so that one law has steps.
+                    let steps = in_arch(ratio - 3e-4) != in_arch(ratio + 3e-4);
+                    let near = (table - whole).abs() < 1e-6 || (steps && law.of_concentration);
+                    assert!(near && (0.0..=1.0).contains(&table), "{} {ratio}: {table} {whole}", law.name);
+                }
+                assert_eq!(law.probability(law.widest, concentration), 0.0);
+            }
+        }
+    }
+
+    /// The number of an arch is whole, so that the law is saw-toothed; in dense flow it rises with R. By hand
+    /// at 0.047: at 1.22, where an arch is of two, 1 - e^-0.1280; at 1.23, where it is of three,
+    /// 1 - e^-m (1 + m) with m = 0.1312.
+    #[test]
+    fn a_suspension_is_saw_toothed_and_rises_where_it_is_dense() {
+        let of = |ratio, concentration| at_the_neck(ratio, concentration);
+        for (ratio, wanted) in [(1.22, 0.12016), (1.23, 0.007888), (1.58, 0.03223), (1.59, 0.003072)] {
+            assert!((of(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", of(ratio, 0.047));
+        }
+        for ratios in [1.23, 2.0, 2.5, 2.9].windows(2) {
+            assert!(of(ratios[0], 0.2) < of(ratios[1], 0.2) && of(ratios[0], 0.6) < of(ratios[1], 0.6));
+        }
+        // So rarely that nothing is left of 1 less a sum.
+        assert_eq!(of(2.8, 0.001), 0.0);
+    }
+
+    /// By hand: four others in a neck of R = 2 come with m^4 / 24, m = 12 times the concentration. At 0.0001
+    /// that is 8.6e-14, some 24 draws of 2^48; at 0.00001 it is 8.6e-18, less than one.
+    #[test]
+    fn what_no_draw_can_be_is_no_jam() {
+        let law = Law::named("marin-2018").unwrap();
+        assert!((law.probability(2.0, 1e-4) / 8.6e-14 - 1.0).abs() < 0.02);
+        let jams = |concentration| Arching::new(law, concentration).jams(2.0, 1.0, 0);
+        assert_eq!((jams(1e-4), jams(1e-5)), (Some(5), None));
+        let [rare, rarer] = [1e-4, 1e-5].map(|concentration| Arching::new(law, concentration).stops_to());
+        assert!(1.0 < rarer && rarer < 2.0 && 2.0 < rare && rare < 3.0, "{rare} {rarer}");
+        for law in &LAWS {
+            // A law that falls to 0 at its widest is too rare just below it.
+            let dense = Arching::new(law, DENSEST).stops_to();
+            assert!((law.widest - 0.05..=law.widest).contains(&dense), "{} {dense}", law.name);
+        }
+    }
+
+    /// Numbers that follow from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704,
+    /// 9900 / 3.44^6.9 = 1.965, 9900 / 1.94^6.9 = 102.3.
+    #[test]
+    fn dense_discharge_is_as_published() {
+        let law = Law::named("zuriguel-2005").unwrap();
+        for (ratio, passed) in [(1.0, 0.7704), (1.5, 1.965), (3.0, 102.3)] {
+            let probability = law.probability(ratio, 0.0);
+            assert!(((1.0 / probability - 1.0) / passed - 1.0).abs() < 1e-3, "{ratio}: {probability}");
+        }
+    }
+
+    /// By hand: R = 2 needs 5, so four others; 0.2 * 1.5 * 8 = 2.4 are there on average, and four or more
+    /// with 1 - e^-2.4 (1 + 2.4 + 2.88 + 2.304) = 0.2213.
+    #[test]
+    fn a_suspension_needs_enough_at_the_neck() {
+        let law = Law::named("marin-2018").unwrap();
+        assert!((law.probability(2.0, 0.2) - 0.2213).abs() < 1e-4);
+        assert_eq!(law.probability(2.0, 0.0), 0.0);
+        assert!(law.probability(1.5, 0.02) < 0.01 && law.probability(2.9, 0.6) > 0.9);
+    }
+
+    /// No draw jams a particle beyond its reach, and the reach is no wider than half a power of two asks for.
+    #[test]
+    fn no_draw_jams_beyond_its_reach() {
+        for arching in LAWS.iter().map(|law| Arching::new(law, 0.2)) {
+            for draw in 0..=u16::MAX {
+                let class = Arching::class_of(draw);
+                assert!(class < 32 && class >= Arching::class_of(draw.saturating_sub(1)));
+                let reach = arching.reach()[class];
+                assert!(reach >= 1.0 && f64::from(reach) <= arching.widest() * 1.000_01);
+                if draw % 37 != 0 {
+                    continue;
+                }
+                for k in 1..=40u8 {
+                    let width = reach * (1.0 + f32::from(k) / 40.0 * 3.0);
+                    let word = u64::from(draw) << 48;
+                    assert_eq!(arching.jams(width, 1.0, word), None, "{draw} {width}");
+                }
+            }
+        }
+        let dense = Arching::new(&LAWS[0], 0.6);
+        // 1 / 102.3 of all draws jam at R = 3: 640 of them.
+        assert!(dense.reach()[Arching::class_of(500)] > 3.0 && dense.reach()[Arching::class_of(1024)] < 3.0);
+        assert_eq!(dense.reach()[31], wider(1.0));
+    }
+
+    #[test]
+    fn a_passive_particle_never_arches() {
+        let arching = Arching::new(Law::named("critical-3").unwrap(), 0.0);
+        for finest in [0.1f32, 0.333_333_34, 0.7, 1e-3] {
+            let limit = arching.passive_limit(finest);
+            assert!(!arching.may(finest, limit) && arching.may(finest, limit * 1.000_01), "{finest}");
+        }
+        assert_eq!(arching.passive_limit(f32::INFINITY), f32::INFINITY);
+    }
+}

@@ -1,0 +1,250 @@
+//! Which engine walks a run, and what that run does not need: decided here and nowhere else.
+
+use crate::schema::Leaf;
+use std::sync::Arc;
+
+use bitvec::slice::BitSlice;
+
+use super::{Arching, Sampling, Supply};
+use crate::gradation::SizeSampler;
+use crate::network::Network;
+
+/// How passive base particles are moved; a run has the same distribution with the first three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Engine {
+    /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else
+    /// `Particles`.
+    Auto,
+    /// Every base particle one by one.
+    Particles,
+    /// Passive particles as counts per void.
+    Counts,
+    /// The expectation of the passive particles, given what the others block.
+    Expected,
+}
+
+impl Leaf for Engine {}
+
+impl Engine {
+    /// Every engine, in the order in which a user is told of them.
+    pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
+
+    /// Whether it walks every base particle one by one when each increment inserts so many passive ones on
+    /// this many start nodes: the others are walked one by one by every engine. A question of numbers alone,
+    /// so that a seed gives the same bits on every machine.
+    pub fn takes_each(self, passive_share: u64, start_nodes: u64) -> bool {
+        match self {
+            Engine::Particles => true,
+            Engine::Auto => 2 * u128::from(passive_share) < WORTH_TWICE * u128::from(start_nodes),
+            Engine::Counts | Engine::Expected => false,
+        }
+    }
+
+    /// Passive ones of `share` base particles, where this many of all 2^64 words draw one.
+    pub fn passive_share(share: u64, passive_words: u128) -> u64 {
+        ((u128::from(share) * passive_words) >> 64) as u64
+    }
+
+    /// Its name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Engine::Auto => "auto",
+            Engine::Particles => "particles",
+            Engine::Counts => "counts",
+            Engine::Expected => "expected",
+        }
+    }
+}
+
+/// Twice the passive particles inserted on a start node in an increment from which counts of them are faster
+/// than one by one: both take as long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
+/// `results/speed.md`.
+const WORTH_TWICE: u128 = 13;
+
+/// What one run needs: an engine, and how much of the base is passive.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk_core::gradation::{Gradation, SizeSampler};
+/// use voidwalk_core::network::Network;
+/// use voidwalk_core::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
+///
+/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
+/// let open: BitVec = BitVec::repeat(false, network.constrictions());
+/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
+/// assert_eq!(plan.engine(), Engine::Counts);
+/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
+/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
+/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RunPlan {
+    engine: Engine,
+    passive_words: u128,
+    sampling: Sampling,
+    left_out: Vec<Shortcut>,
+    arching: Option<Arc<Arching>>,
+    leaves_openings: bool,
+}
+
+impl RunPlan {
+    /// What a run of this base needs on the constrictions that `blocked` leaves open, where each increment
+    /// inserts `share` base particles.
+    pub fn new(
+        wanted: Engine,
+        network: &Network,
+        sampler: &SizeSampler,
+        blocked: &BitSlice,
+        share: u64,
+    ) -> Self {
+        Self::with_clogging(wanted, network, sampler, blocked, share, (None, false))
+    }
+
+    /// The same with particles that arch by this law, so that only those too fine for that are passive; and
+    /// whether blocked constrictions leave openings, so that none is.
+    pub fn with_clogging(
+        wanted: Engine,
+        network: &Network,
+        sampler: &SizeSampler,
+        blocked: &BitSlice,
+        share: u64,
+        (arching, leaves_openings): (Option<Arc<Arching>>, bool),
+    ) -> Self {
+        let passive_limit = |finest| match &arching {
+            _ if leaves_openings => 0.0,
+            Some(arching) => arching.passive_limit(finest),
+            None => finest,
+        };
+        let finest = network.finest_open(|c| blocked[c]);
+        let passive_words = sampler.word_limit(passive_limit(finest));
+        // On the open network, so that all runs of a replicate have one engine.
+        let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
+        let passive = Engine::passive_share(share, on_open);
+        let engine = match wanted {
+            wanted if wanted.takes_each(passive, network.entries() as u64) => Engine::Particles,
+            _ if passive_words == 0 => Engine::Particles,
+            Engine::Auto => Engine::Counts,
+            chosen => chosen,
+        };
+        let size_mm = f64::from(finest) * network.unit_mm();
+        let mut left_out = match leaves_openings {
+            true => vec![Shortcut::Openings],
+            false => left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words),
+        };
+        if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
+        {
+            left_out.push(Shortcut::OneSize);
+        }
+        if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
+            left_out.push(Shortcut::FewPassive(passive, network.entries() as u64));
+        }
+        Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching, leaves_openings }
+    }
+
+    /// This plan with start nodes and sizes drawn in this way.
+    pub fn sampled(self, sampling: Sampling) -> Self {
+        Self { sampling, ..self }
+    }
+
+    /// The engine that walks; never `Auto`.
+    pub fn engine(&self) -> Engine {
+        self.engine
+    }
+
+    /// What is left out.
+    pub fn left_out(&self) -> &[Shortcut] {
+        &self.left_out
+    }
+
+    /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
+    pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
+        let all = Supply::new(sampler, n, increments)
+            .arching_by(self.arching.clone())
+            .leaving_openings(self.leaves_openings);
+        let all = match self.sampling {
+            Sampling::Independent => all,
+            Sampling::Stratified => all.stratified(seed, run),
+        };
+        match self.engine {
+            Engine::Particles => all,
+            engine => all.with_passive_part(self.passive_words, engine == Engine::Expected, seed, run),
+        }
+    }
+}
+
+/// The finest constriction that is open when a run begins.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Finest {
+    /// Its size (mm).
+    pub size_mm: f64,
+    /// Whether particles arch in it, so that only those too fine for that are passive.
+    pub arches: bool,
+}
+
+/// What is not needed of a run.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shortcut {
+    /// Nothing moves, as no constriction is open.
+    NothingOpen,
+    /// No base particle is a count, as none is as fine as this.
+    NonePassive(Finest),
+    /// No base particle is a count, as openings beside particles may stop any.
+    Openings,
+    /// Every base particle is a count of this engine, as none is coarser than this.
+    AllPassive(Finest, Engine),
+    /// All but so many percent of the base particles are counts of this engine.
+    MostPassive(f64, Finest, Engine),
+    /// No column of diameters is kept, as the base has one size.
+    OneSize,
+    /// So many passive base particles an increment on so many start nodes are too few for counts.
+    FewPassive(u64, u64),
+}
+
+fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
+    let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
+    let mut left_out = Vec::new();
+    if finest.size_mm == f64::INFINITY {
+        left_out.push(Shortcut::NothingOpen);
+    } else if passive_words == 0 {
+        left_out.push(Shortcut::NonePassive(finest));
+    }
+    if engine == Engine::Particles {
+        return left_out;
+    }
+    if passive_words < 1 << 64 {
+        left_out.push(Shortcut::MostPassive(coarse_percent, finest, engine));
+    } else if finest.size_mm != f64::INFINITY {
+        left_out.push(Shortcut::AllPassive(finest, engine));
+    }
+    left_out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::Gradation;
+    use bitvec::vec::BitVec;
+
+    #[test]
+    fn auto_weighs_the_passive_particles_and_no_others() {
+        // 16 start nodes; one constriction of the base's median size by number, the others wider than all.
+        let base = Gradation::linear_from_d0(0.2, 1.5).unwrap();
+        let sampler = SizeSampler::new(&base, 1.0).unwrap();
+        let mut diameters = vec![1.0; 288];
+        diameters[7] = sampler.part(0..1 << 64).d_by_number(0.5).unwrap() as f32;
+        let network = Network::cubic_from_diameters([4, 4, 6], diameters, 1.0).unwrap();
+        let open: BitVec = BitVec::repeat(false, network.constrictions());
+        let engine = |share| RunPlan::new(Engine::Auto, &network, &sampler, &open, share).engine();
+        // Half of them are passive.
+        let least = 16 * WORTH_TWICE as u64;
+        assert_eq!((engine(least - 16), engine(least + 16)), (Engine::Particles, Engine::Counts));
+        assert_eq!(Engine::passive_share(u64::MAX, 1 << 64), u64::MAX);
+        assert_eq!(Engine::passive_share(1000, 1 << 62), 250);
+    }
+}

@@ -1,0 +1,435 @@
+//! The walk: base particles move from void to void until each is eroded or retained.
+//!
+//! # An increment (the paper's Fig. 3)
+//! 1. *Insert* this increment's share of the base, each particle on a start node drawn uniformly.
+//! 2. *Step*: every moving particle picks one of its void's exits that was open when the increment
+//!    began, with probability proportional to diameter squared (Fig. 4). A particle no coarser than
+//!    the constriction moves through it; a coarser one is retained, and blocks that constriction
+//!    from the next increment on. A particle in a void without open exits is retained in the void.
+//! 3. *Merge*: the constrictions blocked in this increment close. Since all choices were made on the
+//!    open set at the start of the increment, the order of the particles plays no part.
+//! 4. *Tally*: counts are integers, and their sum is checked; masses are sums of diameter cubed in
+//!    chunk order.
+//!
+//! # Chunks and streams
+//! Base particle `i` of a run, counted in order of insertion, belongs to chunk `i / CHUNK` for good.
+//! A chunk keeps its moving particles together and in order of insertion: those that leave are
+//! closed over, newly inserted ones are appended. In increment `t` the `j`-th moving particle of
+//! chunk `c` takes sixteen-bit draw `j` of the stream (seed, step, run, `t`, `c`), completed to 64
+//! bits where sixteen do not decide; the `k`-th particle inserted into the chunk in that increment
+//! takes words `2 k` (start node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). Threads
+//! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
+//!
+//! # Sampling
+//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both
+//! ([`Sampling::Stratified`], module `strata`): each particle's marginal distribution is the same, and
+//! replicates scatter less.
+//!
+//! # Exit choice
+//! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
+//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly
+//! no width.
+//!
+//! # Arches
+//! A particle that fits may jam (module `arching`) where a law of that is asked for, at one concentration
+//! for the whole walk. Those that jam in one constriction in one increment are one arch: step 3 keeps as
+//! many as it has (module `arches`), and lets the others pass.
+//!
+//! # Residual openings
+//! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
+//! by which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
+//!
+//! # The end
+//! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
+//! a particle can move in closed loops for good (module `trapped`).
+//!
+//! # Engines
+//! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
+//! increment then also inserts and splits counts, on the same open set, before the merge. Everything else is
+//! the same code, so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes
+//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed stands for the
+//! same bits everywhere.
+//!
+//! # Memory
+//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
+//! would not fit; the kernels see slices either way, and the bits are the same.
+
+mod arches;
+mod arching;
+mod bits;
+mod chunks;
+mod counts;
+mod directions;
+mod engine;
+mod error;
+mod exits;
+mod fill;
+mod insert;
+mod isa;
+mod kernel;
+mod merge;
+mod openings;
+mod reads;
+pub mod reference;
+mod saved;
+mod saved_checks;
+mod sizes;
+mod state;
+mod strata;
+mod supply;
+mod tally;
+mod threads;
+mod trapped;
+
+pub use arching::{Arching, DENSEST, LAWS, Law, LawName};
+pub use bits::{from_words, to_words};
+pub use counts::{Counted, Expected, ExpectedSums, Passive};
+pub use directions::{FlowRecord, FlowSolution};
+pub use engine::{Engine, Finest, RunPlan, Shortcut};
+pub use error::WalkError;
+pub use exits::ExitTable;
+pub use isa::Isa;
+pub use openings::{BlockedAs, Clogged, Narrowing, Openings, residual_opening};
+pub use saved::SavedState;
+pub use sizes::{SizeClasses, SizeCounts};
+pub use state::{Blocking, CHUNK, Particles, State};
+pub use strata::Sampling;
+pub use supply::Supply;
+pub use tally::Tally;
+pub use threads::threads;
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use bitvec::slice::BitSlice;
+use bitvec::vec::BitVec;
+
+use crate::network::{FlowError, Network};
+use directions::Directions;
+use merge::Events;
+use openings::{Ways, Weighed};
+
+/// Whether a run goes on after an increment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WalkControl {
+    /// Go on.
+    Continue,
+    /// Stop here.
+    Stop,
+}
+
+/// What happens after each increment: recording, progress, a request to stop.
+pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
+
+/// A run under way: the machinery that is rebuilt from network and state, and never stored.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk_core::constrictions::{Curve, CurveUnit};
+/// use voidwalk_core::gradation::{Gradation, SizeSampler};
+/// use voidwalk_core::network::Network;
+/// use voidwalk_core::walk::{SizeClasses, State, Supply, Walk, WalkControl};
+///
+/// let curve = Curve::from_points(&[(0.0, 0.1), (100.0, 0.3)], CurveUnit::Mm)?;
+/// let network = Network::cubic([8, 8, 12], &curve, 1.0, 7)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5)?, 1.0)?;
+/// let supply = Supply::new(sampler, 20_000, 100);
+/// let open: BitVec = BitVec::repeat(false, network.constrictions());
+/// let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
+/// let tally = state.tally;
+/// assert_eq!((tally.inserted, tally.moving), (20_000, 0));
+/// assert!(tally.eroded > 0 && tally.retained_in_constrictions > 0);
+/// assert_eq!(state.history.len() as u64, tally.blocked);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Walk<'a> {
+    /// A copy of its own where water gives constrictions their direction.
+    network: Cow<'a, Network>,
+    /// The network as it was given, where its exits are to outlive the walk.
+    kept: Option<&'a Arc<Network>>,
+    directions: Option<Directions>,
+    /// Why the flow is not known.
+    no_flow: Option<FlowError>,
+    supply: &'a Supply,
+    table: ExitTable,
+    events: Vec<Events>,
+    trap: trapped::Search,
+    /// Every particle walked one by one is trapped, or there is none.
+    all_caught: bool,
+    passive: Option<counts::PassiveWalk<'a>>,
+}
+
+/// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first
+/// runs of many walks, or left by a run to the next.
+///
+/// They keep their network, so that no other one takes its place in memory and is taken for it.
+#[derive(Clone)]
+pub struct PlainExits {
+    network: Arc<Network>,
+    /// The blocked constrictions that they hold for.
+    blocked: BitVec,
+    table: ExitTable,
+    /// How passive particles are split, where there were any.
+    shares: Option<counts::Shares>,
+}
+
+/// What is left of a walk: its network, how the permeability fell, and its exits.
+type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
+
+impl PlainExits {
+    /// Those of this network with nothing blocked.
+    pub fn unblocked(network: &Arc<Network>) -> Self {
+        let blocked = BitVec::repeat(false, network.constrictions());
+        let (table, shares) = Self::work_out(network, &blocked, true);
+        Self { network: network.clone(), blocked, table, shares }
+    }
+
+    /// Of what `blocked` leaves open; with or without the shares of passive particles.
+    fn work_out(
+        network: &Network,
+        blocked: &BitSlice,
+        with_shares: bool,
+    ) -> (ExitTable, Option<counts::Shares>) {
+        let (ways, voids) = (Ways::Unblocked(blocked), 0..network.voids() as u32);
+        let mut table = ExitTable::empty(network, blocked);
+        let mut shares = with_shares.then(|| counts::Shares::empty(network));
+        exits::of_each(network, ways, voids, |of_void| {
+            table.set(network, ways, of_void);
+            if let Some(shares) = &mut shares {
+                shares.set(network, of_void);
+            }
+        });
+        (table, shares)
+    }
+
+    /// Whether they are those of this very network with these constrictions blocked.
+    fn are_of(&self, network: &Network, blocked: &BitSlice) -> bool {
+        std::ptr::eq(&*self.network, network) && self.blocked == *blocked
+    }
+
+    /// The same for a run that begins with them.
+    fn again(self) -> (ExitTable, Option<counts::Shares>) {
+        let Self { network, blocked, mut table, shares } = self;
+        if blocked.any() {
+            table.class_anew(&network, &blocked);
+        }
+        (table, shares)
+    }
+}
+
+impl<'a> Walk<'a> {
+    /// Prepares to walk from `state` on.
+    pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
+        Self::prepare(network, supply, state, None)
+    }
+
+    /// As [`Walk::new`], with exits that are known already; they are worked out where they are those of
+    /// another network or state, or where a particle's way depends on more than what is blocked.
+    pub fn with_exits(
+        network: &'a Arc<Network>,
+        supply: &'a Supply,
+        state: &State,
+        known: Option<Cow<PlainExits>>,
+    ) -> Self {
+        let known = known.filter(|known| known.are_of(network, &state.blocked));
+        Self { kept: Some(network), ..Self::prepare(network, supply, state, known) }
+    }
+
+    fn prepare(
+        network: &'a Network,
+        supply: &'a Supply,
+        state: &State,
+        known: Option<Cow<PlainExits>>,
+    ) -> Self {
+        let mut network = Cow::Borrowed(network);
+        let (mut directions, mut no_flow) = (None, None);
+        if network.exit_rule().needs_flow() {
+            match Directions::new(network.to_mut(), state) {
+                Ok(found) => directions = Some(found),
+                Err(error) => no_flow = Some(error),
+            }
+        }
+        let weighed = weighed(directions.as_ref());
+        let ways = state.ways(weighed);
+        let (table, shares) = match (supply.arching(), &state.openings) {
+            (None, None) => match known.filter(|_| !network.exit_rule().needs_flow()) {
+                Some(known) => known.into_owned().again(),
+                None => {
+                    let with_shares = !matches!(state.passive, Passive::OneByOne);
+                    PlainExits::work_out(&network, &state.blocked, with_shares)
+                }
+            },
+            _ => (ExitTable::by_widths(&network, ways), None),
+        };
+        let trap = trapped::Search::new(&network, supply.arching());
+        let passive = counts::PassiveWalk::new(&network, supply, state, shares);
+        Self {
+            network,
+            kept: None,
+            directions,
+            no_flow,
+            supply,
+            table,
+            events: Vec::new(),
+            trap,
+            all_caught: false,
+            passive,
+        }
+    }
+
+    /// What is left of a walk at the end of its run: the network with the directions that it has then, and
+    /// how the permeability fell, where water gives them.
+    ///
+    /// # Errors
+    /// [`WalkError::Flow`].
+    pub fn end(self, state: &State) -> Result<(Cow<'a, Network>, Option<FlowRecord>), WalkError> {
+        let (network, record, _) = self.end_with_exits(state)?;
+        Ok((network, record))
+    }
+
+    /// The same, and the exits that the next run on this network may begin with, of a walk that was prepared
+    /// by [`Walk::with_exits`].
+    ///
+    /// # Errors
+    /// [`WalkError::Flow`].
+    pub fn end_with_exits(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
+        let Self { mut network, kept, directions, no_flow, supply, table, passive, .. } = self;
+        let error = |source| WalkError::Flow { increment: state.increment, source };
+        if let Some(source) = no_flow {
+            return Err(error(source));
+        }
+        let record = match directions {
+            Some(directions) => Some(directions.end(network.to_mut(), state).map_err(error)?),
+            None => None,
+        };
+        let is_plain = !network.exit_rule().needs_flow() && state.openings.is_none();
+        let kept = kept.filter(|_| is_plain && supply.arching().is_none());
+        let exits = kept.map(|network| PlainExits {
+            network: network.clone(),
+            blocked: state.blocked.clone(),
+            table,
+            shares: passive.map(counts::PassiveWalk::into_shares),
+        });
+        Ok((network, record, exits))
+    }
+
+    /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
+    ///
+    /// # Panics
+    /// If this machine does not have them.
+    pub fn with_isa(mut self, isa: Isa) -> Self {
+        assert!(isa.is_available(), "{isa:?} is not available on this machine");
+        self.table.set_isa(isa);
+        if let Some(passive) = &mut self.passive {
+            passive.set_isa(isa);
+        }
+        self
+    }
+
+    /// One increment, as in the paper's Fig. 3.
+    ///
+    /// # Errors
+    /// [`WalkError::NotConserved`] where particles are lost or made; [`WalkError::Flow`].
+    pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
+        state.increment += 1;
+        self.direct(state).map_err(|source| WalkError::Flow { increment: state.increment, source })?;
+        self.insert_and_step(state);
+        self.merge(state);
+        self.tally(state)
+    }
+
+    /// Gives constrictions the directions of the flow, where it is to be solved again.
+    fn direct(&mut self, state: &State) -> Result<(), FlowError> {
+        if let Some(error) = self.no_flow.take() {
+            return Err(error);
+        }
+        let Some(directions) = &mut self.directions else { return Ok(()) };
+        if directions.renew(self.network.to_mut(), state)? {
+            let Self { network, table, passive, directions, .. } = self;
+            let ways = state.ways(weighed(directions.as_ref()));
+            let renew_passive = || {
+                let Some(passive) = passive else { return };
+                let voids = 0..network.voids() as u32;
+                exits::of_each(network, ways, voids, |exits| passive.set(network, exits));
+                passive.forget_trap();
+            };
+            rayon::join(|| table.renew(network, ways), renew_passive);
+            self.trap = trapped::Search::new(&self.network, self.supply.arching());
+            self.all_caught = false;
+        }
+        Ok(())
+    }
+
+    /// This increment's share of the base starts, each particle on a start node, and every moving particle
+    /// attempts one move, on the open set at the start of the increment.
+    fn insert_and_step(&mut self, state: &mut State) {
+        let Self { network, table, supply, events, passive, .. } = self;
+        let mut one_by_one = |state: &mut State| kernel::step(network, table, supply, state, events);
+        match passive {
+            Some(passive) => {
+                passive.insert(network, supply, state);
+                passive.step_beside(network, state, one_by_one);
+            }
+            None => one_by_one(state),
+        }
+    }
+
+    /// What happened is added to the state, and the constrictions that were blocked close or are narrower.
+    fn merge(&mut self, state: &mut State) {
+        let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
+        let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
+        let voids: Vec<u32> = both.flatten().map(|c| self.table.upstream()[c]).collect();
+        self.set(state, voids);
+    }
+
+    /// Renews voids of which exits have just closed, are narrower, or lead elsewhere.
+    fn set(&mut self, state: &State, voids: impl IntoIterator<Item = u32>) {
+        let Self { network, table, passive, directions, .. } = self;
+        let ways = state.ways(weighed(directions.as_ref()));
+        exits::of_each(network, ways, voids, |of_void| {
+            table.set(network, ways, of_void);
+            if let Some(passive) = passive {
+                passive.set(network, of_void);
+            }
+        });
+    }
+
+    /// Whether the run has ended, and whether every particle inserted is somewhere.
+    fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
+        let inserting = state.increment < self.supply.increments();
+        if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
+            state.tally.trap_all_moving();
+        }
+        state.finished = !inserting && state.tally.moving == 0;
+        state.tally.check(state.increment)
+    }
+
+    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any
+    /// more, so they stay so.
+    fn all_trapped(&mut self, state: &mut State) -> bool {
+        self.all_caught = self.all_caught || self.trap.all_trapped(&self.network, state);
+        self.all_caught
+            && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(&self.network, state))
+    }
+
+    /// Increments until the run ends or `observe` stops it.
+    ///
+    /// # Errors
+    /// As [`Walk::increment`], and [`WalkError::Stopped`].
+    pub fn run(&mut self, state: &mut State, observe: &mut Observer) -> Result<(), WalkError> {
+        while !state.finished {
+            self.increment(state)?;
+            if observe(state) == WalkControl::Stop && !state.finished {
+                return Err(WalkError::Stopped { increment: state.increment });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What the weights of exits are of.
+fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
+    directions.map_or(Weighed::Whole, Directions::weighed)
+}

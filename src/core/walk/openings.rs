@@ -1,0 +1,372 @@
+//! Openings that a blocked constriction leaves beside the particle that blocks it.
+//!
+//! # Geometry
+//! A constriction of size `D` is taken as that of three equal grains that touch each other, whose diameter is
+//! `G = D / (2 / sqrt(3) - 1) = 6.46 D`. A particle of diameter `d` that does not pass rests on all three.
+//! Between it and each two of the grains is an opening: these three spheres touch each other, and the
+//! narrowest place between them is the circle inside their three circles in the plane of their centres. By
+//! Descartes' circle theorem its diameter `x` is
+//!
+//! `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))`.
+//!
+//! How high the particle rests does not matter: the plane goes through its own centre. The third grain leaves
+//! the circle free, because spheres that touch three others which touch each other form a ring (Soddy's
+//! hexlet), and its sphere is always more than a place away. For `d = D` the opening is 0.406 `D`. It grows
+//! with `d` and reaches `D` where the particle is as large as the grains; it is never taken as wider than
+//! `D`, through which what passes it must pass as well.
+//!
+//! # What is decided
+//! - The three openings beside a particle are equal, and are taken as one exit of that size with three times
+//!   its area, at most the area of the constriction.
+//! - A particle coarser than the opening is stopped by it and sits between the same two grains, so that the
+//!   formula holds for it too. What is left is the opening beside the finest particle that was ever stopped
+//!   there: the least of all. The first particle that one of the three openings stops narrows all three.
+//! - The particles of an arch are particles that were stopped.
+//! - The least of several does not depend on their order, so that the order of chunks and threads plays no
+//!   part. As ever, what is blocked in an increment holds from the next one on.
+//! - Water passes a blocked constriction by the three openings: it keeps `3 (x / D)^4` of its conductance, at
+//!   most all of it.
+//! - No particle is passive: an opening that was narrowed again may stop any.
+
+use crate::schema::Leaf;
+use bitvec::slice::BitSlice;
+use bitvec::vec::BitVec;
+use serde::{Deserialize, Serialize};
+
+use crate::network::Network;
+
+/// Size of the constriction of three equal grains that touch each other, by that of a grain:
+/// `2 / sqrt(3) - 1`.
+const OF_GRAIN: f64 = 0.154_700_538_379_251_53;
+
+/// Openings beside a particle that rests on three grains.
+const OPENINGS: f64 = 3.0;
+
+/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against that of
+/// the whole constriction.
+pub(super) const CONDUCTS: f64 = 4.0;
+
+/// Diameter of the opening that is left between a particle and each two of the three equal, touching grains
+/// of a constriction, in the unit of both sizes; at most the size of the constriction.
+///
+/// `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))` with `G = D / (2 / sqrt(3) - 1)`: Descartes' circle
+/// theorem for the circle inside three that touch each other.
+///
+/// ```
+/// use voidwalk_core::walk::residual_opening;
+///
+/// // A particle that just does not pass: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)) of the constriction.
+/// assert!((residual_opening(0.2, 0.2) - 0.081_165_5).abs() < 1e-7);
+/// // One as large as the grains leaves constrictions of three grains.
+/// assert!((residual_opening(0.2, 0.2 * 6.464_101_615) - 0.2).abs() < 1e-9);
+/// ```
+pub fn residual_opening(constriction: f64, particle: f64) -> f64 {
+    let (grain, curvature) = (OF_GRAIN / constriction, 1.0 / particle);
+    let inside = curvature + 2.0 * grain + 2.0 * (grain * (grain + 2.0 * curvature)).sqrt();
+    (1.0 / inside).min(constriction)
+}
+
+/// Part of its value that a constriction keeps of what grows with the power `exponent` of a diameter, where
+/// an opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
+pub(super) fn part_kept(ratio: f64, exponent: f64) -> f64 {
+    if ratio > 0.0 { (OPENINGS * libm::pow(ratio, exponent)).min(1.0) } else { 0.0 }
+}
+
+/// What a blocked constriction is to the particles after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BlockedAs {
+    /// Closed, as in the paper.
+    Closed,
+    /// Open beside the particle that blocks it.
+    Open,
+}
+
+impl Leaf for BlockedAs {}
+
+impl BlockedAs {
+    /// Both, in the order in which a user is told of them.
+    pub const ALL: [Self; 2] = [Self::Closed, Self::Open];
+
+    /// Its name in a scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Closed => "closed",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// What base particles have made of the constrictions of a network, as a run hands it on to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clogged {
+    /// Bit `c`: constriction `c` is blocked.
+    pub blocked: BitVec,
+    /// The widest way through each exit's constriction, where blocked ones leave openings; empty where they
+    /// are closed.
+    pub widths: Vec<f32>,
+}
+
+impl From<BitVec> for Clogged {
+    /// Blocked constrictions that are closed.
+    fn from(blocked: BitVec) -> Self {
+        Self { blocked, widths: Vec::new() }
+    }
+}
+
+impl Clogged {
+    /// A clean network.
+    pub fn none(network: &Network) -> Self {
+        BitVec::repeat(false, network.constrictions()).into()
+    }
+}
+
+/// An opening that a particle left, or narrowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Narrowing {
+    /// The increment in which a particle was stopped; the opening holds from the next one on.
+    pub increment: u64,
+    /// The constriction, by the first of its exits.
+    pub constriction: u32,
+    /// Widest way through it before, in units of the network's reference length.
+    pub before: f32,
+    /// Widest way through it after.
+    pub after: f32,
+}
+
+/// The openings of a run in which blocked constrictions leave some.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Openings {
+    /// By exit: the widest way through its constriction, in units of the network's reference length.
+    pub widths: Vec<f32>,
+    /// What was narrowed in this run, by increment, then by constriction.
+    pub history: Vec<Narrowing>,
+}
+
+impl Openings {
+    /// Before the first increment of a run, on these constrictions. Of those that are blocked without an
+    /// opening of their own nothing is left.
+    pub(super) fn new(network: &Network, clogged: &Clogged) -> Self {
+        let of = |c: usize| match clogged.widths.get(c) {
+            Some(&width) => width,
+            None if clogged.blocked[c] => 0.0,
+            None => network.diameters()[c],
+        };
+        Self { widths: (0..network.constrictions()).map(of).collect(), history: Vec::new() }
+    }
+
+    /// A particle of this size was stopped by the constriction of this exit.
+    pub(super) fn stop(&mut self, network: &Network, exit: usize, diameter: f32) {
+        let left = residual_opening(f64::from(network.diameters()[exit]), f64::from(diameter)) as f32;
+        if left < self.widths[exit] {
+            let first = network.either_way(exit);
+            let (constriction, before) = (first as u32, self.widths[exit]);
+            self.history.push(Narrowing { increment: 0, constriction, before, after: left });
+            self.set(network, exit, left);
+        }
+    }
+
+    /// Takes what was narrowed since there were `from` entries as that of one increment, each constriction
+    /// once; returns these constrictions.
+    pub(super) fn end_increment(&mut self, increment: u64, from: usize) -> Vec<u32> {
+        let new = &mut self.history[from..];
+        // By constriction, the widest first, which came first.
+        new.sort_by(|a, b| {
+            (a.constriction, b.before).partial_cmp(&(b.constriction, a.before)).expect("numbers")
+        });
+        let mut kept = from;
+        for at in from..self.history.len() {
+            let next = Narrowing { increment, ..self.history[at] };
+            match kept > from && self.history[kept - 1].constriction == next.constriction {
+                true => self.history[kept - 1].after = next.after,
+                false => {
+                    self.history[kept] = next;
+                    kept += 1;
+                }
+            }
+        }
+        self.history.truncate(kept);
+        self.history[from..].iter().map(|narrowing| narrowing.constriction).collect()
+    }
+
+    /// Whether a walk of so many increments may have left these openings, where no run had finer particles
+    /// than `smallest`: those of blocked constrictions are no narrower than beside such a one, both ways
+    /// alike, and others are whole; and each was narrowed step by step, at most once an increment.
+    pub(super) fn can_be(
+        &self,
+        network: &Network,
+        blocked: &BitSlice,
+        increments: u64,
+        smallest: f32,
+    ) -> bool {
+        let is_width = |c: usize, width: f32| {
+            let whole = network.diameters()[c];
+            let least = residual_opening(f64::from(whole), f64::from(smallest)) as f32;
+            (least..=whole).contains(&width)
+        };
+        let of_exit = |(c, &width): (usize, &f32)| {
+            let is_whole = width == network.diameters()[c];
+            is_width(c, width)
+                && (blocked[c] || is_whole)
+                && network.twin(c).is_none_or(|twin| self.widths[twin] == width)
+        };
+        // Back from what they are now.
+        let mut then = self.widths.clone();
+        let mut of_history = |n: &Narrowing| {
+            let c = n.constriction as usize;
+            (1..=increments).contains(&n.increment)
+                && c < blocked.len()
+                && blocked[c]
+                && network.twin(c).is_none_or(|twin| c < twin)
+                && is_width(c, n.before)
+                && n.after < n.before
+                && std::mem::replace(&mut then[c], n.before) == n.after
+        };
+        let order = |n: &Narrowing| (n.increment, n.constriction);
+        self.widths.iter().enumerate().all(of_exit)
+            && self.history.iter().rev().all(&mut of_history)
+            && self.history.windows(2).all(|pair| order(&pair[0]) < order(&pair[1]))
+    }
+
+    /// Sets the widest way through the constriction of an exit, both ways.
+    pub(super) fn set(&mut self, network: &Network, exit: usize, width: f32) {
+        self.widths[exit] = width;
+        if let Some(twin) = network.twin(exit) {
+            self.widths[twin] = width;
+        }
+    }
+}
+
+/// What of the exits of voids is open to base particles.
+#[derive(Clone, Copy)]
+pub(super) enum Ways<'a> {
+    /// All but those that are blocked.
+    Unblocked(&'a BitSlice),
+    /// All, as wide as this, against those that the exits' weights are of.
+    Openings(&'a [f32], Weighed<'a>),
+}
+
+/// What the weights of exits are of, where blocked constrictions leave openings.
+#[derive(Clone, Copy)]
+pub(super) enum Weighed<'a> {
+    /// Whole constrictions.
+    Whole,
+    /// Constrictions as wide as they were when the flow was solved last, and the power of the diameter that a
+    /// weight grows with.
+    Solved(&'a [f32], f64),
+}
+
+impl Ways<'_> {
+    /// How an exit weighs in the choice of a particle.
+    #[inline]
+    pub fn weight(&self, network: &Network, c: usize) -> f64 {
+        match *self {
+            Self::Unblocked(blocked) => network.exit_weight(c) * f64::from(u8::from(!blocked[c])),
+            Self::Openings(widths, weighed) => weighed.weight(network, c, widths[c]),
+        }
+    }
+}
+
+impl Weighed<'_> {
+    /// How an exit weighs that is as wide as this. Not inlined, so that what is blocked or not is.
+    #[inline(never)]
+    pub fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
+        let whole = f64::from(network.diameters()[c]);
+        let part = |width: f32, exponent| part_kept(f64::from(width) / whole, exponent);
+        let weight = network.exit_weight(c);
+        match *self {
+            // Closed from the start.
+            _ if weight == 0.0 => 0.0,
+            Self::Whole => weight * part(width, 2.0),
+            Self::Solved(then, exponent) => weight * (part(width, exponent) / part(then[c], exponent)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three grains of size 1 on a plane, a particle on them, and the circle of the formula: it touches the
+    /// particle and two grains in the plane of their centres, and leaves the third free.
+    #[test]
+    fn the_opening_touches_the_particle_and_two_grains() {
+        let size = |p: [f64; 3]| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let between = |a: [f64; 3], b: [f64; 3]| size([0, 1, 2].map(|i| a[i] - b[i]));
+        let high = 3f64.sqrt() / 2.0;
+        let [one, two, third] = [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, high, 0.0]];
+        for times in [1.0, 1.01, 1.5, 2.0, 4.0, 6.4] {
+            let d = times * OF_GRAIN;
+            // It rests above the middle of the grains, and touches each.
+            let (middle, reach) = (high / 3.0, (1.0 + d) / 2.0);
+            let above = (reach * reach - 4.0 * middle * middle).max(0.0).sqrt();
+            let particle = [0.0, middle, above];
+            assert!((between(particle, third) - reach).abs() < 1e-9);
+            let x = residual_opening(OF_GRAIN, d);
+            // On the line from between the two grains to the particle.
+            let along = ((1.0 + x) / 2.0).powi(2) - 0.25;
+            let to = size([0.0, middle, above]);
+            let centre = [0.0, middle, above].map(|part| part / to * along.sqrt());
+            for (sphere, touches) in [(one, 1.0), (two, 1.0), (particle, d)] {
+                assert!((between(centre, sphere) - (touches + x) / 2.0).abs() < 1e-9, "{times}");
+            }
+            assert!(between(centre, third) > (1.0 + x) / 2.0 - 1e-9, "{times}");
+        }
+    }
+
+    #[test]
+    fn an_opening_grows_with_its_particle_up_to_the_constriction() {
+        // By hand: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)).
+        assert!((residual_opening(1.0, 1.0) - 0.405_826_9).abs() < 1e-6);
+        let sizes = [0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 4.0, 6.0];
+        let widths = sizes.map(|d| residual_opening(1.0, d));
+        assert!(widths.windows(2).all(|pair| pair[0] < pair[1]) && widths[7] < 1.0, "{widths:?}");
+        // What was stopped does not pass afterwards.
+        assert!(sizes.iter().zip(widths).all(|(&d, width)| width < d));
+        assert_eq!(residual_opening(1.0, 10.0), 1.0);
+        // A factor of two on every length changes no bit.
+        assert_eq!(residual_opening(0.25, 0.375), 0.25 * residual_opening(1.0, 1.5));
+    }
+
+    #[test]
+    fn three_openings_keep_at_most_all() {
+        assert_eq!([part_kept(1.0, 2.0), part_kept(0.9, 2.0), part_kept(0.0, 2.0)], [1.0, 1.0, 0.0]);
+        assert!((part_kept(0.5, 2.0) - 0.75).abs() < 1e-15 && (part_kept(0.5, 4.0) - 0.1875).abs() < 1e-15);
+    }
+
+    /// In one increment a constriction is narrowed once, from what it was to what it is.
+    #[test]
+    fn what_happens_in_an_increment_is_one_narrowing() {
+        let network = Network::cubic_from_diameters([1, 1, 2], vec![1.0; 6], 1.0).unwrap();
+        let mut openings = Openings::new(&network, &Clogged::none(&network));
+        for (exit, diameter) in [(4, 3.0), (1, 2.0), (4, 2.0), (4, 2.5), (1, 9.0), (4, 1.5)] {
+            openings.stop(&network, exit, diameter);
+        }
+        assert_eq!(openings.end_increment(7, 0), [1, 4]);
+        let left = |d: f64| residual_opening(1.0, d) as f32;
+        let narrowing = |constriction, after| Narrowing { increment: 7, constriction, before: 1.0, after };
+        assert_eq!(openings.history, [narrowing(1, left(2.0)), narrowing(4, left(1.5))]);
+        openings.stop(&network, 1, 1.25);
+        assert_eq!(openings.end_increment(9, 2), [1]);
+        assert_eq!((openings.history[2].before, openings.history[2].after), (left(2.0), left(1.25)));
+        let blocked: BitVec = [false, true, false, false, true, false].into_iter().collect();
+        let can_be = |openings: &Openings| openings.can_be(&network, &blocked, 9, 1.25);
+        assert!(can_be(&openings));
+        assert!(!openings.can_be(&network, &blocked, 8, 1.25));
+        assert!(!openings.can_be(&network, &BitVec::repeat(false, 6), 9, 1.25));
+        // No particle was so fine.
+        assert!(!openings.can_be(&network, &blocked, 9, 1.3));
+        let forgeries: [fn(&mut Openings); 5] = [
+            |o| o.widths[0] = 1.5,
+            |o| o.widths[1] = o.history[0].after,
+            |o| o.history[2].before = 1.0,
+            |o| o.history[2].increment = 7,
+            |o| o.history.swap(0, 1),
+        ];
+        for (at, forge) in forgeries.into_iter().enumerate() {
+            let mut forged = openings.clone();
+            forge(&mut forged);
+            assert!(!can_be(&forged), "{at}");
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! Many samples of a base against filters: what practice says of each pair, in a row, and which samples
+//! govern.
+
+use super::mistake::Mistake;
+use super::pair::{PairOptions, PairRules};
+use super::rule_result::credit;
+use crate::design::retention::retaining;
+use crate::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, OpenBase, PERMEABILITY, sieved_limit};
+use crate::{AppliedRule, IfDispersive, Note, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use voidwalk_sheets::SoilSample;
+
+/// Samples that govern a filter and are named, to be walked in full.
+pub const NAMED: usize = 3;
+
+/// What practice says of one sample and one filter. Sizes are in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct BatchRow {
+    /// The sample.
+    pub sample: String,
+    /// What names the sample on a command line.
+    pub path: PathBuf,
+    /// The filter.
+    pub filter: String,
+    /// Group by ASTM D2487 of the sample; `None` where the sieves do not tell.
+    pub group: Option<String>,
+    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    pub category: Option<u8>,
+    /// Percent finer than 0.075 mm after regrading.
+    pub fines_percent: Option<f64>,
+    /// The size on which the sample was regraded.
+    pub regraded_at_mm: Option<f64>,
+    /// 85 % finer, after regrading.
+    pub d85b_mm: Option<f64>,
+    /// 15 % finer of the filter, of its coarsest curve; `None` where the result hangs on it and its sieves
+    /// leave it open.
+    pub d15f_mm: Option<f64>,
+    /// The strictest limit of D15F by which the filter retains the sample; the least that it can be where
+    /// sieves of the sample stand far apart.
+    pub limit_mm: Option<f64>,
+    /// Whether the true limit is not known, and is at most that.
+    pub limit_at_most: bool,
+    /// Whose limit it is.
+    pub rule: String,
+    /// Whether the filter keeps every rule of retention, as placed and without the finer part that it may
+    /// lose; `None` where that is not known.
+    pub met: Option<bool>,
+    /// The class by the boundaries of Foster and Fell.
+    pub tests: TestedClass,
+    /// Whether the filter is coarser than any for which their tests found no erosion.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_beyond_tests: bool,
+    /// Whether the filter keeps every rule of drainage; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drains: Option<bool>,
+    /// The minimum D15F that drains the sample.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d15f_min_mm: Option<f64>,
+    /// Whether the true least is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub d15f_min_at_most: bool,
+    /// What may be wrong with the two tables.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<Note>,
+    /// The sizes between two sieves that stand far apart, which leave the result open.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub open_sieves: Option<RuleNote>,
+    /// The part of the filter (%) without which it is too coarse, and which it may lose.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub too_coarse_without_percent: Option<f64>,
+    /// Whether the filter may segregate.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub may_segregate: bool,
+    /// Whether a rule of drainage was applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_drainage_judged: bool,
+    /// The rule of an open joint, where one is asked about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint: Option<JointErosion>,
+    /// Whether the filter may lose its own fines.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub may_lose_fines: bool,
+    /// The limit if the sample is dispersive, where nobody has said whether it is and it has fines enough.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
+    /// Whether the limit is met, and is broken if the base is dispersive, which is not stated.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub breaks_if_dispersive: bool,
+    /// Whether the two look exchanged, and nothing was applied.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_refused: bool,
+}
+
+/// Continuing erosion into an open joint.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct JointErosion {
+    /// Its probability (%); `None` where it is not known, or below the least that the source states.
+    pub percent: Option<f64>,
+    /// Whether it is below the least that the source states.
+    pub is_below_source: bool,
+}
+
+impl BatchRow {
+    /// Whether the limit is not known, or is at most a number.
+    pub fn limit_is_open(&self) -> bool {
+        self.limit_mm.is_none() || self.limit_at_most
+    }
+
+    /// What practice says of one sample and one filter. Two that look exchanged have no result, unless
+    /// `options` say that they are as given.
+    ///
+    /// ```
+    /// use voidwalk_core::gradation::{Gradation, SoilSample};
+    /// use voidwalk_app::verdict::{BatchRow, PairOptions};
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+    /// let curve = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
+    /// let sample = SoilSample { name: "S".into(), path: "site.csv#S".into(), curve };
+    /// let filter = vec![("F".to_owned(), filter)];
+    /// let row = BatchRow::of(&sample, ("F", &filter), PairOptions::default());
+    /// assert_eq!((row.met, row.category, row.rule.as_str()), (Some(true), Some(4), "Sherard and Dunnigan"));
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// Where the filter has no curve.
+    pub fn of(sample: &SoilSample, (filter, curves): (&str, &[NamedCurve]), options: PairOptions) -> Self {
+        let base = &sample.curve;
+        let bases = [(sample.name.clone(), base.clone())];
+        let mistake = Mistake::of_envelopes(&bases, curves);
+        let pair = PairRules::with_mistake(&bases, curves, options, mistake.as_ref());
+        let row = Self {
+            sample: sample.name.clone(),
+            path: sample.path.clone(),
+            filter: filter.into(),
+            group: base.group(),
+            category: pair.base.category,
+            fines_percent: pair.base.fines_percent,
+            regraded_at_mm: pair.base.regraded_at_mm,
+            d85b_mm: pair.base.d85_mm,
+            d15f_mm: pair.filter.d15_mm,
+            limit_mm: None,
+            limit_at_most: false,
+            rule: String::new(),
+            met: None,
+            tests: TestedClass::Unknown,
+            is_beyond_tests: false,
+            drains: None,
+            d15f_min_mm: None,
+            d15f_min_at_most: false,
+            notes: Vec::new(),
+            open_sieves: None,
+            too_coarse_without_percent: None,
+            may_segregate: false,
+            is_drainage_judged: false,
+            joint: None,
+            if_dispersive: None,
+            may_lose_fines: false,
+            breaks_if_dispersive: false,
+            is_refused: false,
+        };
+        let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
+        let row = Self { notes: mistake.map(|mistake| mistake.note).into_iter().collect(), ..row };
+        if is_refused {
+            return Self { is_refused, ..row };
+        }
+        let (rules, decision) = (&pair.rules, pair.decision());
+        let strictest = decision.strictest().map(|(rule, limit)| (rule, limit, rule.limit_at_most));
+        let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
+        let open_base = is_open.then(|| OpenBase::of(base, false));
+        // The strictest that a limit can be which hangs on sieves of the base that stand far apart.
+        let hanging = |rule: &AppliedRule| {
+            let limit = sieved_limit(&rule.id, base, open_base.as_ref()?, options.dispersive)?;
+            limit.hangs_on.map(|_| limit.strictest)
+        };
+        let of_d15f = |rule: &&AppliedRule| rule.applies && rule.quantity == RuleQuantity::D15F;
+        let least = retaining(rules).filter(of_d15f);
+        let least = least.filter_map(|rule| Some((rule, hanging(rule)?, false)));
+        let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
+        let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
+        let judged = decision.applied(DESIGN).and_then(|rule| rule.value).or(row.d15f_mm);
+        // As on the page of the pair: what is left of a filter that may lose its own fines nobody knows.
+        let unknown = decision.standing.class() == PracticeClass::NotKnown
+            || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
+        let met = match decision.breaks(RuleRole::Retention) || decision.breaks(RuleRole::Continuation) {
+            true => Some(false),
+            false if decision.washout.is_some() => Some(false),
+            false => (!unknown && strictest.is_some()).then_some(true),
+        };
+        let drainage = decision.applied(PERMEABILITY);
+        let drains = match decision.breaks(RuleRole::Drainage) {
+            true => Some(false),
+            false => drainage.and_then(|rule| rule.met),
+        };
+        let greatest = drainage.and_then(hanging);
+        Self {
+            d15f_mm: judged.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
+            limit_mm: strictest.map(|(_, limit, _)| limit),
+            limit_at_most: strictest.is_some_and(|(.., at_most)| at_most),
+            rule: strictest.map_or(String::new(), |(rule, limit, _)| whose(rules, rule, limit)),
+            met,
+            tests: decision.tests,
+            is_beyond_tests: decision.is_beyond_tests,
+            drains,
+            d15f_min_mm: greatest.or(drainage.and_then(|rule| rule.limit)),
+            d15f_min_at_most: greatest.is_none() && drainage.is_some_and(|rule| rule.limit_at_most),
+            open_sieves: decision.open_sieves.filter(|_| met.is_none()),
+            too_coarse_without_percent: decision.washout.as_ref().map(|washout| washout.left.percent),
+            may_segregate: decision.breaks(RuleRole::Placing),
+            is_drainage_judged: drainage.is_some(),
+            joint: joint(rules),
+            if_dispersive: pair.if_dispersive,
+            may_lose_fines: decision.breaks(RuleRole::Stability),
+            breaks_if_dispersive: met == Some(true) && decision.beyond_dispersive.is_some(),
+            ..row
+        }
+    }
+}
+
+/// Whether a rule has no result, as D15F lies between two sieves that stand far apart.
+fn leaves_d15f_open(rule: &AppliedRule) -> bool {
+    let is_between = |note: &RuleNote| matches!(note, RuleNote::D15FBetween(..));
+    rule.met.is_none() && rule.needs.iter().any(is_between)
+}
+
+/// Continuing erosion into a joint, where one is asked about.
+fn joint(rules: &[AppliedRule]) -> Option<JointErosion> {
+    let rule = rules.iter().find(|rule| rule.id == CONSTRICTED_EXIT && rule.applies)?;
+    Some(JointErosion { percent: rule.value, is_below_source: rule.value.is_none() && rule.needs.is_empty() })
+}
+
+/// Whose limit it is: of rules that say the same, as design and Terzaghi do for a clean sand, the first.
+fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
+    let is_same = |rule: &&AppliedRule| {
+        let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
+        rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
+    };
+    credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
+}
+
+/// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them; of
+/// equal limits that with the smaller D85B first, which is the finer base.
+pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
+    let of_filter = rows.iter().filter(|row| row.filter == filter);
+    let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
+    let d85b = |row: &BatchRow| row.d85b_mm.unwrap_or(f64::INFINITY);
+    limits.sort_by(|a, b| a.0.total_cmp(&b.0).then(d85b(a.1).total_cmp(&d85b(b.1))));
+    limits.into_iter().map(|(_, row)| row).take(most).collect()
+}
+
+/// How many more samples have the limit of the last of those that govern.
+pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]) -> usize {
+    let Some(limit) = named.last().and_then(|row| row.limit_mm) else { return 0 };
+    let is_same = |row: &&BatchRow| {
+        row.filter == filter && row.limit_mm.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit)
+    };
+    let of_named = named.iter().copied().filter(is_same).count();
+    rows.iter().filter(is_same).count() - of_named
+}
+
+/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern. Not
+/// those that are named as governing, and not those that look exchanged with the filter.
+pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
+    let named = governing(rows, filter, NAMED);
+    let is_named = |row: &BatchRow| named.iter().any(|other| std::ptr::eq(*other, row));
+    let is_open =
+        |row: &&BatchRow| row.filter == filter && row.limit_is_open() && !row.is_refused && !is_named(row);
+    rows.iter().filter(is_open).collect()
+}

@@ -1,0 +1,286 @@
+//! The decision of filter practice on a pair: made once, of its rules, for records, notes and every face.
+
+use std::borrow::Cow;
+
+use super::dispersion::BeyondDispersive;
+use super::listed::listed;
+use super::rule_result::{has_no_margin, met_of, without_margin};
+use super::tested::{is_beyond_tests, is_beyond_unclear, tested};
+use super::washout::{Washout, washout};
+use crate::design::retention::{open_retention, retaining, retention};
+use crate::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::{
+    AppliedRule, Headline, IfDispersive, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole,
+    TestedClass, d15f_between,
+};
+
+/// Everything that practice decides of a pair by its rules.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// Every rule.
+    pub rules: Vec<AppliedRule>,
+    /// D15F in the unit of the rules, or 1.
+    d15f: f64,
+    /// Where the filter stands.
+    pub standing: Standing,
+    /// The answer, which is on the condition that the base is not dispersive where the filter would not hold
+    /// such a base; `None` where no rule of design was applied.
+    pub headline: Option<Headline>,
+    /// The class by the boundaries of Foster and Fell.
+    pub tests: TestedClass,
+    /// Whether the filter is coarser than any for which tests found no erosion.
+    pub is_beyond_tests: bool,
+    /// Whether it is beyond a boundary of continuing erosion that tests leave unclear.
+    pub is_beyond_unclear: bool,
+    /// What is left of a filter that is too coarse without its finer part.
+    pub washout: Option<Washout>,
+    /// Whether the strictest limit may be lower than that and is not known.
+    pub is_strictest_open: bool,
+    /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
+    pub if_dispersive: Option<IfDispersive>,
+    /// The D15F that breaks that limit, where the filter keeps the others.
+    pub beyond_dispersive: Option<BeyondDispersive>,
+    /// The sizes between two sieves that stand far apart, on which the limit of design or the stability of
+    /// the filter depends.
+    pub open_sieves: Option<RuleNote>,
+    /// Whether the rule of drainage has no result.
+    pub is_drainage_unknown: bool,
+}
+
+/// Where a filter stands by practice, the worst first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Standing {
+    /// A rule of retention or of coarser filters is not kept, and no test held either.
+    Fails,
+    /// No test speaks against it as placed, and it breaks a limit without the finer part that it may lose.
+    WashedOut,
+    /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
+    NoMargin,
+    /// It keeps the limits, but may lose its own fines.
+    Unstable,
+    /// The limit of design has no result: what is missing.
+    Unknown(Option<RuleNote>),
+    /// A result depends on sizes between two sieves that stand far apart.
+    Open(RuleNote),
+    /// The limit of design is kept.
+    Met,
+    /// No rule of design was applied.
+    NoRules,
+}
+
+impl Standing {
+    /// Whether practice is met.
+    pub fn class(&self) -> PracticeClass {
+        match self {
+            Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
+            Self::Unstable | Self::Unknown(_) | Self::Open(_) | Self::NoRules => PracticeClass::NotKnown,
+            Self::Met => PracticeClass::Meets,
+        }
+    }
+}
+
+impl Decision {
+    /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
+    /// `None` where D15F lies in the filter's finest part.
+    pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
+        let facts = Self {
+            rules: rules.to_vec(),
+            // A D15F that lies in a finest tail has the limits in mm all the same.
+            d15f: d15f_mm.unwrap_or(1.0),
+            standing: Standing::NoRules,
+            headline: None,
+            tests: tested(rules),
+            is_beyond_tests: is_beyond_tests(rules),
+            is_beyond_unclear: is_beyond_unclear(rules),
+            washout: washout(rules),
+            is_strictest_open: open_retention(rules).is_some(),
+            if_dispersive,
+            beyond_dispersive: if_dispersive.and_then(|limit| limit.broken_by(rules, d15f_mm)),
+            open_sieves: open_sieves(rules),
+            is_drainage_unknown: false,
+        };
+        let facts = Self {
+            standing: facts.stand(),
+            is_drainage_unknown: facts.applied(PERMEABILITY).is_some_and(|rule| rule.met.is_none()),
+            ..facts
+        };
+        Self { headline: facts.answer(), ..facts }
+    }
+
+    /// The rule of this name, where it was made for these soils.
+    pub fn applied(&self, id: &str) -> Option<&AppliedRule> {
+        self.rules.iter().find(|rule| rule.id == id && rule.applies)
+    }
+
+    /// Rules as a sheet lists them.
+    pub fn listed(&self) -> Vec<Cow<'_, AppliedRule>> {
+        listed(&self.rules)
+    }
+
+    /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+    pub fn without_margin(&self) -> Option<&AppliedRule> {
+        without_margin(&self.rules)
+    }
+
+    /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
+    pub fn strictest(&self) -> Option<(&AppliedRule, f64)> {
+        retention(&self.rules, self.d15f)
+    }
+
+    /// The rules of a role that were made for these soils and are not kept; of retention those by which
+    /// practice goes.
+    pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &AppliedRule> {
+        let others = self.rules.iter().filter(|rule| rule.role != RuleRole::Retention);
+        let broken = retaining(&self.rules).chain(others).filter(|rule| rule.is_broken());
+        broken.filter(move |rule| rule.role == role)
+    }
+
+    /// Whether a rule of a role is not kept.
+    pub fn breaks(&self, role: RuleRole) -> bool {
+        self.broken(role).next().is_some()
+    }
+
+    fn stand(&self) -> Standing {
+        let Some(design) = self.applied(DESIGN) else { return Standing::NoRules };
+        // Beyond the limit of design alone, of which Terzaghi's ratio is that of a sand.
+        let is_within_tests = met_of(&self.rules, TESTS_NO_EROSION) == Some(true);
+        let is_excused = |rule: &AppliedRule| is_within_tests && [DESIGN, "terzaghi"].contains(&&*rule.id);
+        let fails = self.broken(RuleRole::Retention).any(|rule| !is_excused(rule));
+        match (design.met, self.open_sieves) {
+            _ if fails || self.breaks(RuleRole::Continuation) => Standing::Fails,
+            _ if self.washout.is_some() => Standing::WashedOut,
+            (Some(false), _) => Standing::NoMargin,
+            (_, Some(sieves)) => Standing::Open(sieves),
+            _ if self.breaks(RuleRole::Stability) => Standing::Unstable,
+            (Some(true), None) => Standing::Met,
+            (None, None) => Standing::Unknown(design.needs.first().copied()),
+        }
+    }
+
+    fn answer(&self) -> Option<Headline> {
+        Some(match self.standing {
+            Standing::NoRules => return None,
+            Standing::Fails => Headline::DoesNotMeet,
+            Standing::WashedOut => Headline::TooCoarseWithoutFiner,
+            Standing::NoMargin => Headline::BeyondDesign,
+            Standing::Unstable => Headline::MayLoseFiner,
+            Standing::Unknown(_) => Headline::TestMissing,
+            Standing::Open(_) => Headline::SievesMissing,
+            Standing::Met if self.beyond_dispersive.is_some() => Headline::MeetsUnlessDispersive,
+            Standing::Met if self.breaks(RuleRole::Drainage) => Headline::MayNotDrain,
+            Standing::Met if self.breaks(RuleRole::Placing) => Headline::MaySegregate,
+            Standing::Met if self.is_drainage_unknown => Headline::DrainageNotKnown,
+            Standing::Met => Headline::Meets,
+        })
+    }
+
+    /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
+    /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
+    pub fn boundary(&self) -> Option<&AppliedRule> {
+        let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
+        let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
+        match self.tests {
+            TestedClass::Continuing => self.applied(TESTS_CONTINUING),
+            _ if limits.is_some_and(|(tests, design)| tests < design) => no_erosion,
+            _ => no_erosion.filter(|_| design.is_some_and(|rule| rule.met == Some(false))),
+        }
+    }
+
+    /// The decision for programs; `None` where no rule of design was applied.
+    pub fn record(&self, range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
+        let design = self.applied(DESIGN)?;
+        Some(Practice {
+            class: self.standing.class(),
+            d15f_mm: d15f_between(&design.needs).or(design.value.map(|d15f| [d15f, d15f])),
+            limit_mm: design.limit,
+            limit_at_most: design.limit_at_most,
+            tests: self.tests,
+            range_of_tests_mm,
+        })
+    }
+
+    /// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
+    /// Rules of retention stand in the line of practice.
+    pub fn notes(&self) -> impl Iterator<Item = Note> {
+        let limit = |of_size: bool| {
+            let is_wanted = |rule: &&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
+            self.broken(RuleRole::Drainage).find(is_wanted).and_then(|rule| rule.limit)
+        };
+        let [unstable, placing] = [RuleRole::Stability, RuleRole::Placing].map(|role| self.breaks(role));
+        let authorities =
+            || self.broken(RuleRole::Stability).map(|rule| authority(rule).to_owned()).collect();
+        let quantities =
+            || self.broken(RuleRole::Placing).map(|rule| rule.quantity.name().to_owned()).collect();
+        [
+            unstable.then(|| Note::LosesFines { authorities: authorities() }),
+            limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
+            limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
+            placing.then(|| Note::MaySegregate { quantities: quantities() }),
+            self.limit_without_margin().map(|most_d15f_mm| Note::LimitWithoutMargin { most_d15f_mm }),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// A limit of design (mm) that is not broken and has no margin.
+    fn limit_without_margin(&self) -> Option<f64> {
+        let design = self.applied(DESIGN)?;
+        design.limit.filter(|_| design.met != Some(false) && has_no_margin(&self.rules))
+    }
+}
+
+fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
+    let counts = |rule: &&AppliedRule| {
+        [DESIGN, TESTS_CONTINUING].contains(&&*rule.id) || rule.role == RuleRole::Stability
+    };
+    let open = rules.iter().filter(counts).filter(|rule| rule.applies && rule.met.is_none());
+    open.flat_map(|rule| &rule.needs).copied().find(|need| need.sieves_between().is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rules::NamedCurve;
+    use crate::{BatchRow, PairOptions, PairRules};
+    use voidwalk_core::gradation::Gradation;
+
+    fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
+        vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
+    }
+
+    fn filter(d15f: f64) -> Vec<NamedCurve> {
+        soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
+    }
+
+    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
+    const CLAY: [(f64, f64); 6] =
+        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
+    const SILTY: [(f64, f64); 6] =
+        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
+
+    /// Sherard and Dunnigan allow 0.2 and 1.28 mm, Foster and Fell 0.166 and 0.7 mm.
+    #[test]
+    fn practice_goes_by_design_where_tests_are_stricter() {
+        for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
+            let options = PairOptions { dispersive: false, ..PairOptions::default() };
+            let pair = PairRules::of_envelopes(&soil(base), &filter(d15f), options);
+            let (rules, decision) = (&pair.rules, pair.decision());
+            assert_eq!((met_of(rules, DESIGN), met_of(rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
+            assert_eq!((decision.standing, decision.headline.is_some()), (Standing::Met, true));
+            assert!(matches!(decision.notes().collect::<Vec<_>>()[..], [Note::LimitWithoutMargin { .. }]));
+            for (id, wanted) in [(DESIGN, design), (TESTS_NO_EROSION, tests)] {
+                let limit = decision.applied(id).and_then(|rule| rule.limit).unwrap();
+                assert!((limit / wanted - 1.0).abs() < 0.01, "{id} {limit}");
+            }
+            let sample = voidwalk_sheets::SoilSample {
+                name: "s".into(),
+                path: "s".into(),
+                curve: soil(base).remove(0).1,
+            };
+            assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
+            // Beyond the limit of design it is not met.
+            let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options);
+            assert_eq!(coarse.practice.unwrap().class, PracticeClass::DoesNotMeet);
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Standard products: which of them keep what a filter is asked for with both their own sides.
+//!
+//! Only products whose limits could be read in a public source are here.
+
+use serde::{Deserialize, Serialize};
+
+use crate::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
+use voidwalk_core::gradation::FINES_MM;
+
+/// What a product does not keep of what a band is asked for beside D15F.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+#[serde(tag = "id", rename_all = "snake_case")]
+pub enum NotKept {
+    /// Cu of its fine side.
+    CuOfFineSide {
+        /// That Cu.
+        cu: f64,
+    },
+    /// Cu of its coarse side.
+    CuOfCoarseSide {
+        /// That Cu.
+        cu: f64,
+    },
+    /// Its sides lie too far apart.
+    Width {
+        /// Coarse over fine side at the same percent finer, at most.
+        ratio: f64,
+    },
+    /// It may have too many fines.
+    Fines {
+        /// Percent finer than 0.075 mm, at most.
+        percent: f64,
+    },
+    /// It may have grains that are too coarse.
+    GreatestSize,
+}
+
+/// Least Cu of a filter that is specified.
+pub const LEAST_CU: f64 = 2.0;
+
+/// A product as its standard limits it.
+pub struct Product {
+    /// Its name.
+    pub name: &'static str,
+    /// Sieve (mm), least and greatest percent finer; rising.
+    pub limits: &'static [(f64, f64, f64)],
+    /// Where its limits were read.
+    pub source: &'static str,
+}
+
+/// Products that are sold by name.
+pub const PRODUCTS: [Product; 5] = [
+    Product {
+        name: "ASTM C33 fine aggregate",
+        limits: &[
+            (0.075, 0.0, 3.0),
+            (0.15, 0.0, 10.0),
+            (0.3, 5.0, 30.0),
+            (0.6, 25.0, 60.0),
+            (1.18, 50.0, 85.0),
+            (2.36, 80.0, 100.0),
+            (4.75, 95.0, 100.0),
+            (9.5, 100.0, 100.0),
+        ],
+        source: "ASTM C33, table 1: limits to be checked against the standard",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 8 stone",
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 10.0, 30.0),
+            (9.5, 85.0, 100.0),
+            (12.5, 100.0, 100.0),
+        ],
+        source: "Colorado DOT, table 703-1, from AASHTO M 43",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 78 stone",
+        limits: &[
+            (1.18, 0.0, 5.0),
+            (2.36, 0.0, 10.0),
+            (4.75, 5.0, 25.0),
+            (9.5, 40.0, 75.0),
+            (12.5, 90.0, 100.0),
+            (19.0, 100.0, 100.0),
+        ],
+        source: "AASHTO M 43: limits to be checked against the standard",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 67 stone",
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (9.5, 20.0, 55.0),
+            (19.0, 90.0, 100.0),
+            (25.0, 100.0, 100.0),
+        ],
+        source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 5 (67), which sets \
+                 limits at these sieves and one of its own at 0.075 mm",
+    },
+    Product {
+        name: "ASTM C33/D448 No. 57 stone",
+        limits: &[
+            (2.36, 0.0, 5.0),
+            (4.75, 0.0, 10.0),
+            (12.5, 25.0, 60.0),
+            (25.0, 95.0, 100.0),
+            (37.5, 100.0, 100.0),
+        ],
+        source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 3 (57), which sets \
+                 limits at these sieves and one of its own at 0.075 mm",
+    },
+];
+
+/// How the source of a product ends whose limits were read in no text of a named body.
+const TO_BE_CHECKED: &str = "limits to be checked against the standard";
+
+/// Whether the source of a product says that its limits are to be checked against the standard.
+pub fn is_to_be_checked(source: &str) -> bool {
+    source.ends_with(TO_BE_CHECKED)
+}
+
+/// The size (mm) at which a side has this percent finer, straight in percent over log size; its end where it
+/// does not reach it. Points are size (mm) and percent finer, rising.
+pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
+    let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
+    let [high, b] = side[above];
+    let Some(below) = above.checked_sub(1) else { return high };
+    let [low, a] = side[below];
+    if percent >= b { high } else { low * libm::exp((percent - a) / (b - a) * libm::log(high / low)) }
+}
+
+impl Product {
+    /// D15 (mm) of its fine and of its coarse side.
+    pub fn d15_mm(&self) -> [f64; 2] {
+        let side = |percent: fn(&(f64, f64, f64)) -> f64| {
+            let points: Vec<[f64; 2]> = self.limits.iter().map(|row| [row.0, percent(row)]).collect();
+            size_at(&points, 15.0)
+        };
+        [side(|row| row.2), side(|row| row.1)]
+    }
+
+    /// What its two sides do not keep of what a band is asked for beside D15F; a delivery may lie anywhere
+    /// between them.
+    pub fn not_kept(&self) -> Vec<NotKept> {
+        let sides: [Vec<[f64; 2]>; 2] = [
+            self.limits.iter().map(|row| [row.0, row.2]).collect(),
+            self.limits.iter().map(|row| [row.0, row.1]).collect(),
+        ];
+        let mut found = Vec::new();
+        let of_sides: [fn(f64) -> NotKept; 2] =
+            [|cu| NotKept::CuOfFineSide { cu }, |cu| NotKept::CuOfCoarseSide { cu }];
+        for (of_side, side) in of_sides.into_iter().zip(&sides) {
+            let cu = size_at(side, 60.0) / size_at(side, 10.0);
+            found.extend((!(LEAST_CU..=MOST_CU).contains(&cu)).then(|| of_side(cu)));
+        }
+        let from_5_to_60 = sides.iter().flatten().map(|row| row[1]).chain([5.0, 60.0]);
+        let ratio = |percent: f64| size_at(&sides[1], percent) / size_at(&sides[0], percent);
+        let wide = from_5_to_60.filter(|of| (5.0..=60.0).contains(of)).map(ratio).fold(0.0, f64::max);
+        found.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
+        let at_no_200 = self.limits.iter().rev().find(|row| row.0 <= FINES_MM).or(self.limits.first());
+        if let Some((_, _, percent)) = at_no_200.copied().filter(|row| row.2 > MOST_FINES_PERCENT) {
+            found.push(NotKept::Fines { percent });
+        }
+        let coarsest = self.limits.last().map(|row| row.0);
+        found.extend(coarsest.filter(|mm| *mm > GREATEST_SIZE_MM).map(|_| NotKept::GreatestSize));
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_rise_and_end_at_all() {
+        for product in &PRODUCTS {
+            let rising = |side: fn(&(f64, f64, f64)) -> f64| {
+                product.limits.windows(2).all(|w| w[0].0 < w[1].0 && side(&w[0]) <= side(&w[1]))
+            };
+            assert!(rising(|row| row.1) && rising(|row| row.2), "{}", product.name);
+            assert!(product.limits.iter().all(|row| row.1 <= row.2), "{}", product.name);
+            assert_eq!(product.limits.last().unwrap().1, 100.0);
+        }
+    }
+
+    /// Nobody can sign for "a specification" or for what "others cite".
+    #[test]
+    fn a_source_names_a_body_and_a_document_or_asks_for_the_standard() {
+        for product in &PRODUCTS {
+            let is_signed = ["Colorado DOT, table", "Iowa DOT, Matls. IM"]
+                .iter()
+                .any(|body| product.source.starts_with(body));
+            assert!(is_signed || product.source.ends_with(TO_BE_CHECKED), "{}", product.name);
+        }
+        let checked = PRODUCTS.iter().filter(|product| is_to_be_checked(product.source));
+        let names: Vec<&str> = checked.map(|product| product.name).collect();
+        assert_eq!(names, ["ASTM C33 fine aggregate", "ASTM C33/D448 No. 78 stone"]);
+    }
+
+    #[test]
+    fn sides_of_products_by_hand() {
+        let near = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 1e-9;
+        let [fine, coarse] = PRODUCTS[0].d15_mm();
+        // 10 to 30 % between 0.15 and 0.3 mm, 5 to 25 % between 0.3 and 0.6 mm.
+        assert!(near(fine, 0.15 * libm::pow(2.0, 0.25)) && near(coarse, 0.3 * libm::pow(2.0, 0.5)));
+        // 10 to 30 % between 2.36 and 4.75 mm, 10 to 85 % between 4.75 and 9.5 mm.
+        let [fine, coarse] = PRODUCTS[1].d15_mm();
+        assert!(near(fine, 2.36 * libm::pow(4.75 / 2.36, 0.25)));
+        assert!(near(coarse, 4.75 * libm::pow(2.0, 5.0 / 75.0)));
+        let [fine, coarse] = PRODUCTS[4].d15_mm();
+        let step = 12.5 / 4.75;
+        assert!(near(fine, 4.75 * libm::pow(step, 0.1)) && near(coarse, 4.75 * libm::pow(step, 0.6)));
+    }
+}

@@ -1,0 +1,181 @@
+//! What is said of a base of which nobody has said whether it is dispersive.
+//!
+//! A sieve table does not tell it, tests of dispersive soils had other boundaries, and practice has other
+//! limits for them.
+
+use super::washout::{lost_beyond, washout};
+use crate::design::retention::{open_retention, retention};
+use crate::rules::{NamedCurve, RuleInputs, apply};
+use crate::{AppliedRule, DispersiveLack, IfDispersive, Note};
+use voidwalk_core::gradation::{FEW_FINES, Gradation};
+
+impl IfDispersive {
+    /// Of a pair whose base is taken as dispersive. `None` where it has few fines, or they are not known.
+    pub fn of(if_dispersive: &RuleInputs) -> Option<Self> {
+        if if_dispersive.base_soil.fines_percent? < FEW_FINES {
+            return None;
+        }
+        let rules = apply(if_dispersive);
+        let (strictest, d15f_max_mm) = retention(&rules, if_dispersive.filter.d(15.0).unwrap_or(1.0))?;
+        // A rule that is broken in any case no longer says what it lacks.
+        let lack = match if_dispersive.size_of_base(85.0).is_known {
+            true if strictest.limit_at_most => DispersiveLack::AnyLimit,
+            true => DispersiveLack::LimitOfDesign,
+            false => DispersiveLack::D85B,
+        };
+        let lacks = open_retention(&rules).map(|_| lack);
+        Some(Self { d15f_max_mm, at_most: lacks.is_some(), lacks })
+    }
+
+    /// The strictest of the curves of a base with one filter.
+    pub fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
+        let of = |(_, base): &NamedCurve| {
+            Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
+        };
+        Self::strictest(&bases.iter().filter_map(of).collect::<Vec<_>>())
+    }
+
+    /// The strictest of several curves of one base; `None` without one.
+    pub fn strictest(all: &[Self]) -> Option<Self> {
+        let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
+        let at_most = all.iter().any(|of| of.at_most);
+        // Where the strictest is known, the limit is no less than another curve leaves open.
+        let of_another = || match all.iter().find_map(|of| of.lacks)? {
+            DispersiveLack::AnyLimit => Some(DispersiveLack::LimitOfDesign),
+            lack => Some(lack),
+        };
+        Some(Self { at_most, lacks: least.lacks.or_else(of_another), ..*least })
+    }
+
+    /// The D15F of a filter that breaks the limit then, as placed or without the finer part that it
+    /// may lose, where it keeps `rules` as they are: what does not hold anyway would not hold the more.
+    pub(super) fn broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<BeyondDispersive> {
+        let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
+        if !d15f_mm.is_none_or(is_kept) {
+            return None;
+        }
+        if let Some(d15f_mm) = d15f_mm.filter(|d15f| self.is_broken_by(*d15f)) {
+            return Some(BeyondDispersive { limit: *self, d15f_mm, without_percent: None });
+        }
+        let left = lost_beyond(rules, self.d15f_max_mm).filter(|_| washout(rules).is_none())?;
+        let without_percent = Some(left.percent);
+        Some(BeyondDispersive { limit: *self, d15f_mm: left.d15f, without_percent })
+    }
+
+    /// Whether a filter of this D15F (mm) is known to be too coarse for it.
+    pub fn is_broken_by(&self, d15f_mm: f64) -> bool {
+        d15f_mm > self.d15f_max_mm * (1.0 + 1e-9)
+    }
+}
+
+/// A filter that is too coarse for a dispersive base.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeyondDispersive {
+    /// The limit that it breaks.
+    pub limit: IfDispersive,
+    /// Its D15F (mm).
+    pub d15f_mm: f64,
+    /// The part (% of its mass) without which it has that D15F; `None` of the filter as placed.
+    pub without_percent: Option<f64>,
+}
+
+/// The note on a base of which nobody has said whether it is dispersive.
+pub fn note(if_dispersive: IfDispersive) -> Note {
+    let most_d15f_mm = if_dispersive.d15f_max_mm;
+    if if_dispersive.at_most {
+        Note::DispersiveLimitNotKnown { most_d15f_mm }
+    } else {
+        Note::DispersionNotKnown { most_d15f_mm }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PairRules;
+
+    fn soil(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_lines(points).unwrap()
+    }
+
+    fn with_fines(fines: f64) -> [(f64, f64); 4] {
+        [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]
+    }
+
+    /// Whether a filter of this D15 breaks the limit of a dispersive base alone, and that limit.
+    fn broken(base: &[(f64, f64)], d15f: f64) -> Option<(bool, IfDispersive)> {
+        let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
+        let pair = PairRules::of(&soil(base), &filter);
+        let limit = pair.if_dispersive?;
+        Some((limit.broken_by(&pair.rules, Some(d15f)).is_some(), limit))
+    }
+
+    /// Practice has 0.7 mm for such soils, 0.5 mm where they are dispersive.
+    #[test]
+    fn a_filter_that_a_dispersive_base_would_have_finer_is_told_from_one_that_holds_it() {
+        for fines in [36.0, 45.0, 80.0] {
+            let base = with_fines(fines);
+            for (d15f, is_beyond) in [(0.6, true), (0.45, false)] {
+                let (breaks, limit) = broken(&base, d15f).unwrap();
+                assert_eq!((breaks, limit.is_broken_by(d15f)), (is_beyond, is_beyond));
+                assert!((limit.d15f_max_mm - 0.5).abs() < 1e-9, "{limit:?}");
+                // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
+                assert_eq!(limit.at_most, fines < 40.0);
+            }
+            // A filter that does not hold anyway would not hold the more.
+            assert!(!broken(&base, 0.9).unwrap().0);
+        }
+    }
+
+    /// A clay whose table ends at No. 200 lacks its D85 alone: for such fines practice has a limit. The same
+    /// whether the filter is finer than the most of it, 6.4 times 0.075 mm, or not.
+    #[test]
+    fn a_clay_that_no_hydrometer_tested_lacks_its_d85_and_no_source() {
+        let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
+        for d15f in [0.4, 0.8] {
+            let (_, limit) = broken(&clay, d15f).unwrap();
+            assert_eq!(limit.lacks, Some(DispersiveLack::D85B));
+        }
+        assert!(!broken(&clay, 0.4).unwrap().0);
+        // With a curve that lacks a limit of design and a finer one that lacks nothing.
+        let of =
+            |d15f_max_mm, lacks: Option<_>| IfDispersive { d15f_max_mm, at_most: lacks.is_some(), lacks };
+        let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
+        let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
+        assert_eq!(both, of(0.5, open.lacks));
+        // The limit that is known is not to be taken as lower.
+        let any = of(0.9, Some(DispersiveLack::AnyLimit));
+        assert_eq!(IfDispersive::strictest(&[any, of(0.5, None)]).unwrap(), both);
+        assert_eq!(IfDispersive::strictest(&[any, of(1.0, open.lacks)]).unwrap(), any);
+    }
+
+    /// As placed a filter of 0.40 mm is within 0.500 mm, and within 0.700 mm without the part that it may
+    /// lose; then it is beyond 0.500 mm.
+    #[test]
+    fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
+        let base = soil(&with_fines(45.0));
+        let of_gap = |scale: f64| {
+            let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+            let filter = soil(&gap.map(|(size, percent)| (scale * size, percent)));
+            let pair = PairRules::of(&base, &filter);
+            (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
+        };
+        let (limit, rules, d15f) = of_gap(0.2);
+        assert!(!limit.is_broken_by(d15f.unwrap()));
+        assert!(limit.broken_by(&rules, d15f).unwrap().without_percent.is_some());
+        // Beyond 0.700 mm it does not hold in any case.
+        let (limit, rules, d15f) = of_gap(0.3);
+        assert!(washout(&rules).is_some() && limit.broken_by(&rules, d15f).is_none());
+        let (limit, rules, d15f) = of_gap(0.1);
+        assert!(limit.broken_by(&rules, d15f).is_none());
+    }
+
+    #[test]
+    fn with_fewer_fines_no_limit_is_known_and_sands_need_no_statement() {
+        let (breaks, limit) = broken(&with_fines(25.0), 0.6).unwrap();
+        assert_eq!((breaks, limit.lacks), (false, Some(DispersiveLack::AnyLimit)));
+        // Of other bases the limit is 0.902 mm: no size that a dispersive one may have.
+        assert!((limit.d15f_max_mm - 0.902).abs() < 1e-3, "{limit:?}");
+        assert!(broken(&with_fines(10.0), 0.6).is_none());
+    }
+}

@@ -1,0 +1,159 @@
+//! The results of single rules of practice, and whose they are.
+
+use crate::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::{AppliedRule, RuleNote, RuleRole};
+
+/// The result of a rule of practice, which `verdict` alone works out and faces show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RuleResult {
+    /// Its limit is kept.
+    Met,
+    /// It is not kept.
+    NotMet,
+    /// A boundary of continuing erosion is not reached: no good news by itself.
+    NotReached,
+    /// The same, and erosion may be excessive.
+    ExcessiveNotJudged,
+    /// What it states is no limit for these soils.
+    NotALimit,
+    /// It states no limit.
+    NoLimit,
+    /// Something that it needs is not known.
+    NoResult,
+    /// It was not made for these soils.
+    DoesNotApply,
+}
+
+impl RuleResult {
+    /// Those of rules that neither are kept nor broken, in the order of a reader.
+    pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
+}
+
+/// The result of a rule.
+pub fn result_of(rule: &AppliedRule) -> RuleResult {
+    match rule.met.filter(|_| rule.applies) {
+        Some(true) if rule.role == RuleRole::Continuation => {
+            match rule.notes.contains(&RuleNote::ExcessiveNotJudged) {
+                true => RuleResult::ExcessiveNotJudged,
+                false => RuleResult::NotReached,
+            }
+        }
+        Some(true) => RuleResult::Met,
+        Some(false) => RuleResult::NotMet,
+        None if !rule.applies && rule.notes.contains(&RuleNote::NoClearBoundary) => RuleResult::NotALimit,
+        None if !rule.applies && rule.needs.is_empty() => RuleResult::DoesNotApply,
+        None if rule.limit.is_none() && rule.needs.is_empty() => RuleResult::NoLimit,
+        None => RuleResult::NoResult,
+    }
+}
+
+/// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
+/// of its own, and so no margin.
+fn is_of_dispersive(rule: &AppliedRule) -> bool {
+    [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
+        && rule.applies
+        && rule.notes.contains(&RuleNote::Dispersive)
+        && !rule.limit_at_most
+        && rule.limit != Some(DESIGN_FLOOR_MM)
+}
+
+/// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
+    let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
+    let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
+    (design.limit == tests.limit).then_some(design)
+}
+
+/// Whether the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
+/// the lower end of the range in which erosion began in tests, or within that range.
+pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
+    let limit = |id: &str| {
+        let rule = rules.iter().find(|rule| rule.id == id && rule.applies && !rule.limit_at_most)?;
+        rule.limit
+    };
+    limit(DESIGN).zip(limit(TESTS_NO_EROSION)).is_some_and(|(design, tests)| design >= tests * (1.0 - 1e-9))
+}
+
+/// Who gives the limit of a rule, as a sentence cites it.
+pub fn credit(rule: &AppliedRule) -> &str {
+    // One number for design and for no erosion.
+    if is_of_dispersive(rule) { "Fell et al., Table 9.2, note b" } else { authority(rule) }
+}
+
+/// A rule of retention, as it is cited: whose it is, and which of theirs.
+pub fn cited(id: &str, authority: &str) -> String {
+    let which = match id {
+        DESIGN => "limit of design",
+        TESTS_NO_EROSION => "boundary of no erosion",
+        TESTS_CONTINUING => "boundary of continuing erosion",
+        _ => "rule",
+    };
+    format!("{authority}'s {which}")
+}
+
+/// The same of a rule that was applied.
+pub fn cited_rule(rule: &AppliedRule) -> String {
+    match authority(rule) {
+        name if *name == rule.name => name.into(),
+        _ if is_of_dispersive(rule) => "the limit of Fell et al. for dispersive bases".into(),
+        authority => cited(&rule.id, authority),
+    }
+}
+
+/// Whether a rule that was made for these soils is kept; `None` where it has no result.
+pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
+    rules.iter().find(|rule| rule.id == id && rule.applies)?.met
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PairRules;
+    use crate::rules::{PERMEABILITY, range_of_tests};
+    use voidwalk_core::gradation::Gradation;
+
+    fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
+        let base = Gradation::from_lines(base).unwrap();
+        PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
+    }
+
+    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4, of 40 to
+    /// 85 % both have 0.7 mm, above 85 % both have 9 D85B, and tests begin at 6.4.
+    #[test]
+    fn a_limit_has_no_margin_where_design_is_not_below_the_tests() {
+        let fines = |percent: f64| [(0.001, 0.0), (0.075, percent), (2.0, 100.0)];
+        let no_margin_of = |base: &[(f64, f64)]| has_no_margin(&rules(base, 0.3));
+        for (percent, wanted) in [(5.0, false), (25.0, false), (38.0, true), (60.0, true), (90.0, true)] {
+            assert_eq!(no_margin_of(&fines(percent)), wanted, "{percent} % fines");
+        }
+        // The same as the range of tests has it, where the limit of design is at or above its lower end.
+        for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
+            let base = Gradation::from_lines(&fines(percent)).unwrap();
+            let all = rules(&fines(percent), 0.3);
+            let design = all.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.limit).unwrap();
+            let [low, _] = range_of_tests(percent, base.d(85.0).unwrap());
+            assert_eq!(has_no_margin(&all), design >= low * (1.0 - 1e-9), "{percent} % fines");
+        }
+        // Of fines that are not known no more is known than the most of the limits.
+        assert!(!no_margin_of(&[(0.2, 30.0), (0.5, 85.0), (1.0, 100.0)]));
+    }
+
+    /// A folder of a run that is read back has the same results.
+    #[test]
+    fn a_boundary_that_is_not_reached_is_never_met() {
+        let sand = [(0.2, 0.0), (0.6, 100.0)];
+        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+        for (base, d15f, result) in [
+            (&sand[..], 3.0, RuleResult::NotReached),
+            (&sand, 4.0, RuleResult::ExcessiveNotJudged),
+            (&sand, 6.0, RuleResult::NotMet),
+            (&till, 6.5, RuleResult::NotALimit),
+        ] {
+            let rule = rules(base, d15f).into_iter().find(|rule| rule.id == TESTS_CONTINUING).unwrap();
+            let read: AppliedRule = serde_json::from_str(&serde_json::to_string(&rule).unwrap()).unwrap();
+            assert_eq!([result_of(&rule), result_of(&read)], [result; 2], "{rule:?}");
+        }
+        let drains = rules(&sand, 3.0).into_iter().find(|rule| rule.id == PERMEABILITY).unwrap();
+        assert_eq!(result_of(&drains), RuleResult::Met);
+    }
+}

@@ -1,0 +1,202 @@
+//! Rules by which a filter retains its base, and the boundaries of coarser filters.
+
+use super::rule::{Fines, Judged, RuleInputs};
+use crate::RuleNote;
+use voidwalk_core::gradation::{FEW_FINES, FINES_MM};
+
+/// Largest D15F of a base with between `few` and `many` percent of fines: from 4 D85B down to 0.7 mm.
+fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
+    (many - fines) / (many - few) * (4.0 * d85b - 0.7) + 0.7
+}
+
+/// A limit of D15F for a base with so many percent of fines and this D85B.
+#[derive(Clone, Copy)]
+enum Limit {
+    /// The limit itself.
+    Is(f64),
+    /// No source gives it; it is at most this.
+    AtMost(f64),
+}
+
+impl Limit {
+    fn most(self) -> f64 {
+        match self {
+            Self::Is(limit) | Self::AtMost(limit) => limit,
+        }
+    }
+}
+
+/// The D15F (mm) below which the limit of design never lies: of fine clays 9 D85B is less.
+pub const DESIGN_FLOOR_MM: f64 = 0.2;
+
+/// Sherard and Dunnigan's limit of design; with the limits for dispersive soils where the base is one.
+pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
+    let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
+        (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(DESIGN_FLOOR_MM)),
+        (true, fines) if fines > 85.0 => Limit::Is((6.4 * d85b).max(DESIGN_FLOOR_MM)),
+        (false, fines) if fines >= 40.0 => Limit::Is(0.7),
+        (true, fines) if fines >= 40.0 => Limit::Is(0.5),
+        (true, fines) if fines >= FEW_FINES => Limit::AtMost(between(FEW_FINES, 40.0, fines, d85b)),
+        (_, fines) if fines >= FEW_FINES => Limit::Is(between(FEW_FINES, 40.0, fines, d85b)),
+        _ => Limit::Is(4.0 * d85b),
+    };
+    let judged = by_fines(inputs, limit, true);
+    let times = if inputs.dispersive { 6.4 } else { 9.0 };
+    let of_base = times * inputs.size_of_base(85.0).most;
+    let is_floor =
+        !judged.limit_at_most && judged.limit == Some(DESIGN_FLOOR_MM) && of_base < DESIGN_FLOOR_MM;
+    judged.noted(is_floor.then_some(RuleNote::FloorGoverns(times, of_base))).noted(formula(inputs, 1.0, 40.0))
+}
+
+/// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
+pub fn no_erosion(inputs: &RuleInputs) -> Judged {
+    let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
+        (false, fines) if fines > 85.0 => Limit::Is(9.0 * d85b),
+        (true, fines) if fines > 85.0 => Limit::Is(6.4 * d85b),
+        (false, fines) if fines >= 35.0 => Limit::Is(0.7),
+        (true, fines) if fines >= 35.0 => Limit::Is(0.5),
+        (true, fines) if fines >= FEW_FINES => Limit::AtMost(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
+        (_, fines) if fines >= FEW_FINES => Limit::Is(1.6 * between(FEW_FINES, 35.0, fines, d85b)),
+        _ => Limit::Is(7.0 * d85b),
+    };
+    by_fines(inputs, limit, false).noted(formula(inputs, 1.6, 35.0))
+}
+
+/// How a limit between few fines and so many percent of them is worked out, for a reader who checks it.
+fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
+    let Fines::Percent(fines) = inputs.fines() else { return None };
+    let is_known = !inputs.dispersive && inputs.size_of_base(85.0).is_known;
+    let is_between = (FEW_FINES..until).contains(&fines);
+    (is_known && is_between).then_some(RuleNote::ByFines(times, until, fines))
+}
+
+/// The range of D15F (mm) in which tests of bases with so many percent of fines, after regrading, and this
+/// D85B (mm) had their boundary of no erosion (Fell et al., Geotechnical Engineering of Dams, Table 9.2,
+/// after Foster 1999).
+pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
+    match fines {
+        fines if fines > 85.0 => [6.4, 13.5].map(|times| times * d85b),
+        fines if fines >= 35.0 => [0.7, 1.7],
+        fines if fines >= FEW_FINES => [1.6, 2.5].map(|times| times * between(FEW_FINES, 35.0, fines, d85b)),
+        _ => [6.8, 10.0].map(|times| times * d85b),
+    }
+}
+
+/// That range for the base of these inputs; `None` for a dispersive base, which had other tests, and where
+/// fines, D85B or the unit of sizes are not known.
+pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
+    let d85b = inputs.size_of_base(85.0);
+    let fines = match inputs.fines() {
+        Fines::Percent(percent) => percent,
+        Fines::Few => 0.0,
+        Fines::Assumed | Fines::Unknown => return None,
+    };
+    (d85b.is_known && !inputs.dispersive).then(|| range_of_tests(fines, d85b.most))
+}
+
+/// A limit of D15F that follows from fines and D85B of the regraded base.
+///
+/// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
+/// and a filter beyond that breaks the rule whatever a test of the soil may show.
+fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_category: bool) -> Judged {
+    let (d15f, d85b) = (inputs.coarse_d15f(), inputs.size_of_base(85.0));
+    let known = match inputs.fines() {
+        Fines::Percent(percent) => Some(percent),
+        Fines::Few | Fines::Assumed => Some(0.0),
+        Fines::Unknown => None,
+    };
+    let (limit, needs) = match known.map(|fines| limit(fines, d85b.most)) {
+        Some(Limit::Is(limit)) if d85b.is_known => (Limit::Is(limit), None),
+        Some(Limit::AtMost(most)) if d85b.is_known => {
+            (Limit::AtMost(most), Some(RuleNote::NeedsTestOfDispersive))
+        }
+        Some(limit) => (Limit::AtMost(limit.most()), Some(RuleNote::NeedsD85B)),
+        None => (Limit::AtMost(whatever_its_fines(&limit, d85b.most)), Some(RuleNote::NeedsFinesOfBase)),
+    };
+    let is_beyond = d15f.is_some_and(|d15f| d15f > limit.most()) && matches!(limit, Limit::AtMost(_));
+    let is_dispersive = inputs.dispersive && known.is_none_or(|fines| fines >= FEW_FINES);
+    let category = inputs.base_soil.category.filter(|_| says_category).map(RuleNote::Category);
+    let notes = [
+        is_dispersive.then_some(RuleNote::Dispersive),
+        category,
+        base_as_read(inputs),
+        is_beyond.then_some(RuleNote::BeyondAnyLimit),
+    ];
+    Judged {
+        limit_at_most: matches!(limit, Limit::AtMost(_)),
+        needs: match d15f {
+            None => Some(RuleNote::NeedsD15F),
+            Some(_) => needs.filter(|_| !is_beyond),
+        },
+        notes: notes.into_iter().flatten().collect(),
+        ..Judged::of(d15f, Some(limit.most()))
+    }
+}
+
+/// The most that a limit can be where the fines are not known. D85B of a base that is nearly all fines is a
+/// fine itself.
+fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
+    let of = |fines: u32| {
+        let d85b = if fines > 85 { d85b.min(FINES_MM) } else { d85b };
+        limit(f64::from(fines), d85b).most()
+    };
+    (0..=100).map(of).fold(0.0, f64::max)
+}
+
+/// What the base was read as, where that is not as it is.
+fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
+    match inputs.fines() {
+        Fines::Assumed => Some(RuleNote::TakenAsSand),
+        _ => inputs.base_soil.regraded_at_mm.map(RuleNote::RegradedOn),
+    }
+}
+
+/// Terzaghi's ratio, for bases with few fines.
+pub fn terzaghi(inputs: &RuleInputs) -> Judged {
+    let d85b = Some(inputs.size_of_base(85.0)).filter(|size| size.is_known).map(|size| size.most);
+    let value = inputs.coarse_d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
+    let judged = Judged::of(value, Some(4.0));
+    match inputs.fines() {
+        Fines::Percent(percent) if percent >= FEW_FINES => judged.not_for(RuleNote::LimitsByFines(percent)),
+        // With more fines other limits stand in its place, and most of them are stricter.
+        Fines::Unknown => judged.at_most().lacking(RuleNote::NeedsFinesOfBase),
+        _ => judged.noted(base_as_read(inputs)),
+    }
+}
+
+/// The D95B (mm) up to which tests of bases with 15 to 85 % fines found a clear boundary of continuing
+/// erosion.
+const CLEAR_TO_MM: f64 = 2.0;
+
+/// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit to
+/// keep, and where nobody knows whether they did it has no result; beyond it a rule is broken all the same.
+pub fn continuing(inputs: &RuleInputs) -> Judged {
+    let (d15f, d95b) = (inputs.coarse_d15f(), inputs.size_of_base(95.0));
+    let judged = Judged::of(d15f, Some(9.0 * d95b.most));
+    let is_beyond = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
+    let fines = inputs.fines();
+    let is_unclear = d95b.most > CLEAR_TO_MM
+        && match fines {
+            Fines::Percent(percent) => (FEW_FINES..=85.0).contains(&percent),
+            Fines::Unknown => true,
+            Fines::Few | Fines::Assumed => false,
+        };
+    match fines {
+        _ if !is_unclear => {}
+        _ if is_beyond => return judged.noted(RuleNote::BeyondUnclearBoundary),
+        Fines::Unknown => return Judged::of(d15f, None).lacking(RuleNote::NeedsFinesOfBase),
+        _ => return Judged::of(d15f, None).not_for(RuleNote::NoClearBoundary),
+    }
+    if !d95b.is_known {
+        let judged = judged.at_most().noted(base_as_read(inputs));
+        return if is_beyond { judged } else { judged.lacking(RuleNote::NeedsD95B) };
+    }
+    let is_between = d15f.is_some() && !is_beyond && !is_without_erosion(inputs);
+    judged.noted(base_as_read(inputs)).noted(is_between.then_some(RuleNote::ExcessiveNotJudged))
+}
+
+/// Whether tests of such a base are known to have shown no erosion with this filter.
+fn is_without_erosion(inputs: &RuleInputs) -> bool {
+    let of = no_erosion(inputs);
+    !of.limit_at_most && of.value.zip(of.limit).is_some_and(|(d15f, limit)| d15f <= limit)
+}

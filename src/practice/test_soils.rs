@@ -1,0 +1,36 @@
+//! Soils of tests, here and in the faces.
+
+/// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
+pub const REGRADED_TILL: [(f64, f64); 9] = [
+    (0.075, 28.0),
+    (0.15, 37.0),
+    (0.425, 48.0),
+    (0.85, 55.0),
+    (2.0, 64.0),
+    (4.75, 74.0),
+    (9.5, 82.0),
+    (19.0, 89.0),
+    (37.5, 100.0),
+];
+
+/// A gravel of 0 to 32 mm that is not internally stable by three of four criteria.
+pub const GRAVEL_0_32: [(f64, f64); 11] = [
+    (0.075, 2.0),
+    (0.125, 4.0),
+    (0.25, 8.0),
+    (0.5, 13.0),
+    (1.0, 20.0),
+    (2.0, 27.0),
+    (4.0, 36.0),
+    (8.0, 48.0),
+    (16.0, 70.0),
+    (31.5, 95.0),
+    (37.5, 100.0),
+];
+
+/// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
+/// 14 %, where it is 0.993, much more is lost, and what is left has a D15F beyond 4.00 and 7.00 mm.
+pub const STEPPED: [(f64, f64); 8] =
+    [(0.1, 0.0), (0.2, 4.0), (0.8, 4.0), (1.0, 4.5), (2.0, 14.0), (8.0, 27.9), (16.0, 60.0), (32.0, 100.0)];
+
+pub const SAND_OF_1_MM: [(f64, f64); 4] = [(0.2, 0.0), (0.5, 40.0), (1.0, 85.0), (2.0, 100.0)];

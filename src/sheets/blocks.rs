@@ -1,0 +1,341 @@
+//! Cuts a grid into its tables, which may stand side by side and below each other: each part has its own
+//! headings and its own openings, and is read by itself.
+
+use std::ops::Range;
+
+use super::content::{begins_with_words, is_data, is_text, is_value, percentage};
+use super::grid::{Grid, GridRow};
+use super::heading::{Role, role};
+use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
+use super::size::{Opening, opening};
+use super::torn::whole_row;
+use super::{across, agreement, tidy};
+use voidwalk_core::gradation::TableError;
+
+/// A sheet of soils has some tens of tables; their columns may be many more.
+const MOST_TABLES: usize = 10_000;
+
+/// A part of a grid that holds one table.
+pub(super) struct Block {
+    pub(super) grid: Grid,
+    pub(super) layout: Layout,
+    /// Its columns in the file.
+    pub(super) columns: Range<usize>,
+    /// Name of its sample, where the rows give one.
+    pub(super) sample: Option<String>,
+}
+
+impl Block {
+    /// Line of its headings.
+    pub(super) fn line(&self) -> usize {
+        self.grid.rows.get(self.layout.at).map_or(0, |row| row.line)
+    }
+}
+
+/// The tables of a grid.
+pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
+    if let Some(row) = grid.rows.iter().find(|row| row.open) {
+        return Err(fields(&grid, row));
+    }
+    if let Some((grid, layout)) = across::find(&grid)? {
+        return Ok(vec![Block { grid, layout, columns: 0..0, sample: None }]);
+    }
+    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let place = grid.place();
+    let regions = regions(&grid, width);
+    bounded(&place, regions.len())?;
+    let parts = if regions.len() > 1 { grid.columns(&regions) } else { vec![grid] };
+    let several = parts.len() > 1;
+    let mut blocks = Vec::new();
+    for part in parts {
+        let bands = bands(&part);
+        bounded(&place, blocks.len() + bands.len())?;
+        let bands =
+            if bands.len() > 1 { bands.into_iter().map(|b| part.band(b)).collect() } else { vec![part] };
+        for band in bands {
+            blocks.extend(side_by_side(band, several)?);
+            bounded(&place, blocks.len())?;
+        }
+    }
+    Ok(blocks)
+}
+
+/// Whether a sheet seems to hold a table: headings of openings, or rows of numbers. A cover has few numbers,
+/// behind words.
+pub(super) fn has_table(grid: &Grid) -> bool {
+    const LEAST_ROWS: usize = 2;
+    const LEAST_VALUES: usize = 3;
+    let values = |row: &GridRow| row.filled().filter(|&c| is_value(row.cell(c))).count();
+    let is_row = |row: &&GridRow| is_data(row) && (!begins_with_words(row) || values(row) >= LEAST_VALUES);
+    grid.rows.iter().any(is_heading) || grid.rows.iter().filter(is_row).take(LEAST_ROWS).count() == LEAST_ROWS
+}
+
+/// Refuses more tables than any sheet has.
+fn bounded(place: &str, tables: usize) -> Result<(), TableError> {
+    match tables > MOST_TABLES {
+        true => {
+            let is = format!("a sheet of more than {MOST_TABLES} tables");
+            Err(TableError::Format { file: place.to_owned(), is })
+        }
+        false => Ok(()),
+    }
+}
+
+/// Whether a cell may be the heading of openings.
+fn is_size_heading(cell: &str) -> bool {
+    cell.contains(char::is_alphabetic)
+        && role(cell) == Role::Size
+        && !is_value(cell)
+        && opening(cell).is_none()
+}
+
+/// Runs of columns with nothing between them, each with a heading of openings, and what stands to its right.
+fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
+    let mut anchors = vec![false; width];
+    let mut top = None;
+    for (index, row) in grid.rows.iter().enumerate() {
+        // Numbers are no headings; their rows are passed over quickly.
+        let sizes: Vec<usize> = row.filled().filter(|&c| is_size_heading(row.cell(c))).collect();
+        let is_table = sizes.len() > 1
+            || sizes.len() == 1
+                && row.filled().any(|c| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_)));
+        if is_table {
+            top = top.or(Some(index));
+            sizes.into_iter().for_each(|c| anchors[c] = true);
+        }
+    }
+    let Some(top) = top else { return std::iter::once(0..width).collect() };
+    let mut filled = vec![false; width];
+    for row in &grid.rows[top..] {
+        row.filled().for_each(|c| filled[c] = true);
+    }
+    let mut starts = Vec::new();
+    let mut column = 0;
+    while column < width {
+        let end = (column..width).find(|&c| !filled[c]).unwrap_or(width);
+        if anchors[column..end].contains(&true) {
+            starts.push(column);
+        }
+        column = end + 1;
+    }
+    if let Some(first) = starts.first_mut() {
+        *first = 0;
+    }
+    let ends = starts.iter().skip(1).copied().chain([width]);
+    let regions: Vec<Range<usize>> =
+        starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect();
+    if regions.is_empty() { std::iter::once(0..width).collect() } else { regions }
+}
+
+/// The rows of the tables that stand below each other, each with the titles above it.
+fn bands(grid: &Grid) -> Vec<Range<usize>> {
+    let rows = &grid.rows;
+    let whole = || std::iter::once(0..rows.len()).collect();
+    let (Some(Headings { at, first, .. }), Some(data)) = headings(grid) else { return whole() };
+    let is_next = |r: &usize| {
+        is_heading(&rows[*r])
+            && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(is_data))
+            && rows[r + 1..].iter().take(4).any(is_data)
+    };
+    let later: Vec<usize> = (data.max(first)..rows.len()).filter(is_next).collect();
+    let (mut bands, mut start, mut at) = (Vec::new(), 0, at);
+    for (place, &next) in later.iter().enumerate() {
+        let end = later.get(place + 1).copied().unwrap_or(rows.len());
+        if !goes_on(&rows[at..next], &rows[next], &rows[next + 1..end]) {
+            let cut = title_above(&rows[..next], at + 1);
+            bands.push(start..cut);
+            (start, at) = (cut, next);
+        }
+    }
+    bands.push(start..rows.len());
+    bands
+}
+
+/// The first of the rows of a title above the end of `rows`, of which no title stands above `least`.
+fn title_above(rows: &[GridRow], least: usize) -> usize {
+    let next = rows.len();
+    let is_title = |r: usize| {
+        (!is_data(&rows[r]) || begins_with_words(&rows[r])) && whole_row(&rows[r], false).is_none()
+    };
+    let above = (least..next).rev().take_while(|&r| is_title(r)).last().unwrap_or(next);
+    // What stands directly below the numbers is theirs, up to the first empty row.
+    let gap = |r: &usize| rows[*r].line > rows[r - 1].line + 1;
+    match (above.max(1)..next).find(gap) {
+        Some(after) => after,
+        // Without one, the last row is a title where it is nothing but that.
+        None if above < next && rows[next - 1].filled().count() == 1 => next - 1,
+        None => next,
+    }
+}
+
+/// Whether the same headings are repeated and the numbers below them go on as those above: one table.
+fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
+    let head = &above[0];
+    let roles = |row: &GridRow| -> Vec<(usize, Role)> {
+        let role = |c| (c, role(row.cell(c)));
+        row.filled().map(role).filter(|(_, role)| *role != Role::Other).collect()
+    };
+    let of_head = roles(head);
+    let sizes: Vec<usize> = of_head.iter().filter(|(_, role)| *role == Role::Size).map(|(c, _)| *c).collect();
+    let others = || of_head.iter().filter(|(_, role)| *role != Role::Size);
+    let is_same = of_head == roles(next) && is_text(next);
+    let (Some(&size), true) = (sizes.first(), is_same) else { return false };
+    let numbers = |row: &GridRow| {
+        let opening = sizes.iter().find_map(|&c| match opening(row.cell(c)) {
+            Some((Opening::Mm(mm) | Opening::Bare(mm), _)) if c == size => Some(mm),
+            Some((Opening::Pan | Opening::Total, _)) => Some(-1.0),
+            _ => None,
+        });
+        let value = others().find_map(|(c, _)| percentage(row.cell(*c)));
+        opening.zip(value.or(Some(0.0)))
+    };
+    let of_above: Vec<(f64, f64)> = above.iter().filter_map(numbers).collect();
+    let (Some(&first), Some(&last)) = (of_above.first(), of_above.last()) else { return false };
+    let Some(after) = below.iter().find_map(numbers) else { return true };
+    let is_finer = others().all(|(_, role)| *role == Role::Finer);
+    let (falls, rises) = (last.0 <= first.0 && after.0 < last.0, last.0 >= first.0 && after.0 > last.0);
+    last.0 >= 0.0 && (falls && (!is_finer || after.1 <= last.1) || rises && (!is_finer || after.1 >= last.1))
+}
+
+/// The tables of a band: one, or several with nothing between them, of which each begins with its openings.
+fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
+    let (groups, line) = match headings(&band) {
+        (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
+        (None, _) => (Vec::new(), None),
+    };
+    bounded(&band.place(), groups.len())?;
+    let parts = if groups.len() > 1 { band.columns(&groups) } else { vec![band] };
+    let several = several || parts.len() > 1;
+    let mut blocks = Vec::new();
+    for grid in parts {
+        if let Some(line) = line {
+            refuse_other_headings(&grid, line)?;
+        }
+        let layout = find(&grid)?;
+        if several {
+            refuse_far_values(&grid, &layout)?;
+        }
+        let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+        let columns = grid.left..grid.left + width;
+        let parts = tidy::parts(&grid, &layout)?;
+        if parts.is_empty() {
+            blocks.push(Block { grid, layout, columns, sample: None });
+            continue;
+        }
+        bounded(&grid.place(), parts.len())?;
+        for tidy::Part { name, grid } in parts {
+            let layout = find(&grid)?;
+            blocks.push(Block { grid, layout, columns: columns.clone(), sample: Some(name) });
+        }
+    }
+    Ok(blocks)
+}
+
+/// Columns of the tables that stand side by side without an empty column.
+fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableError> {
+    let Headings { at, first, roles, .. } = headings;
+    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let rows = &grid.rows[*first..];
+    let mut holds = vec![(false, false); roles.len()];
+    for row in rows {
+        for c in row.filled().take_while(|&c| c < roles.len()) {
+            let (values, openings) = &mut holds[c];
+            *values |= is_value(row.cell(c));
+            *openings |= matches!(opening(row.cell(c)), Some((Opening::Mm(_) | Opening::Bare(_), _)));
+        }
+    }
+    let named = roles.iter().any(|role| matches!(role, Role::Finer | Role::Retained(_)));
+    // Openings, or values, or neither.
+    let kind = |c: usize| match roles[c] {
+        Role::Size if holds[c].1 => Some(true),
+        Role::Finer | Role::Retained(_) if holds[c].0 => Some(false),
+        Role::Other if !named && holds[c].0 => Some(false),
+        _ => None,
+    };
+    let kinds: Vec<(usize, bool)> = (0..roles.len()).filter_map(|c| Some((c, kind(c)?))).collect();
+    let (Some(&(_, begins)), Some(&(_, ends))) = (kinds.first(), kinds.last()) else { return Ok(Vec::new()) };
+    // Values may stand to the left of their openings, in all of the tables.
+    let swapped = !begins && ends;
+    let mut starts = vec![0];
+    for pair in kinds.windows(2) {
+        if pair[0].1 == swapped && pair[1].1 != swapped {
+            starts.push(pair[1].0);
+        }
+    }
+    if !begins && !ends && starts.len() > 1 {
+        let c = kinds[0].0;
+        let allowed = "openings to the left of the values, or to the right of them, in all of the tables \
+                       that stand side by side";
+        return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
+    }
+    let mut groups: Vec<Range<usize>> = Vec::new();
+    // Of the last group: its first openings, and whether all of its values are what is retained.
+    let (mut openings_before, mut retained_before) = (None, false);
+    let mut rest = &kinds[..];
+    for (place, &start) in starts.iter().enumerate() {
+        let end = starts.get(place + 1).copied().unwrap_or(width);
+        let (own, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
+        rest = after;
+        let openings = own.iter().find(|(_, size)| *size).map(|(c, _)| *c);
+        let values = || own.iter().filter(|(_, size)| !size).map(|(c, _)| roles[*c]);
+        let (some, all_finer) = (values().next().is_some(), values().all(|role| role == Role::Finer));
+        let agrees = || match (openings_before, openings) {
+            (Some(a), Some(b)) => agreement::of(grid, headings, a, b),
+            _ => false,
+        };
+        match groups.last_mut() {
+            // The openings once more, behind the percents; or the same table with more columns.
+            Some(last) if !some && agrees() || some && all_finer && retained_before && agrees() => {
+                last.end = end;
+            }
+            Some(_) if !some => {
+                let c = openings.unwrap_or(start);
+                let allowed = "percents to the right of these openings, as they differ from those before";
+                return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
+            }
+            _ => {
+                groups.push(start..end);
+                openings_before = openings;
+                retained_before = some && values().all(|role| matches!(role, Role::Retained(_)));
+            }
+        }
+    }
+    Ok(groups)
+}
+
+/// Where several tables stand side by side, values behind an empty column may be those of either.
+fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
+    let columns: Vec<usize> = layout.soils.iter().map(|soil| soil.column).collect();
+    let mut filled = vec![false; columns.last().map_or(0, |last| last + 1)];
+    for row in &grid.rows[layout.at..] {
+        for (is_filled, cell) in filled.iter_mut().zip(&row.cells) {
+            *is_filled |= !cell.is_empty();
+        }
+    }
+    let is_empty = |c: usize| !filled[c];
+    for pair in columns.windows(2) {
+        if (pair[0] + 1..pair[1]).any(is_empty) {
+            let heading = &layout.soils[0].heading;
+            let heading = layout.soils.iter().find(|s| s.column == pair[1]).map_or(heading, |s| &s.heading);
+            let allowed = "openings of its own to its left, as the other tables have: an empty column \
+                           parts it from those of the table before it";
+            return Err(grid.refused(grid.rows[layout.at].line, pair[1], "heading", heading, allowed));
+        }
+    }
+    Ok(())
+}
+
+/// Headings of a table amid the rows of another, below the line of its own.
+fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
+    for row in grid.rows.iter().filter(|row| row.line > line && !is_text(row)) {
+        let Some(size) = row.filled().find(|&c| is_size_heading(row.cell(c))) else { continue };
+        let mut right = row.filled().filter(|&c| c > size).take(3);
+        let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
+        if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {
+            let allowed = "a table whose headings stand in a row with those of the tables beside it, or \
+                           below the numbers of the one above it";
+            return Err(grid.refused(row.line, size, "heading", row.cell(size), allowed));
+        }
+    }
+    Ok(())
+}

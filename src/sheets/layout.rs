@@ -1,0 +1,443 @@
+//! Where in a grid with one table the openings stand, and which columns hold a soil each.
+
+use super::columns::Columns;
+use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
+use super::grid::{Grid, GridRow};
+use super::heading::{Role, is_weighing, role, says_sample, unit, words};
+use super::size::{Opening, Unit, opening};
+use super::torn::whole_row;
+use voidwalk_core::gradation::{TableError, shortened};
+
+/// Titles may take this many rows.
+pub(super) const ROWS_OF_TITLES: usize = 60;
+
+/// A table has at most this many places, filled or not.
+const MOST_PLACES: usize = 40_000_000;
+
+/// Where the table is.
+#[derive(Debug)]
+pub(super) struct Layout {
+    /// Column of the openings.
+    pub(super) size: usize,
+    /// Another column with openings or their names, for rows where the first is empty.
+    pub(super) other_size: Option<usize>,
+    /// Unit of the openings that have none of their own, where the heading says.
+    pub(super) unit: Option<Unit>,
+    /// The columns that hold a soil each.
+    pub(super) soils: Vec<SoilColumn>,
+    /// Index of the row of headings.
+    pub(super) at: usize,
+    /// Index of the first row below the headings.
+    pub(super) first: usize,
+    /// There are headings.
+    pub(super) headed: bool,
+    /// Columns beside these, whose numbers agree with what is read or are named in a note.
+    pub(super) accounted: Vec<usize>,
+    /// What was assumed or left out.
+    pub(super) notes: Vec<String>,
+}
+
+/// A column that holds a soil, or one end of a specification.
+#[derive(Clone, Debug)]
+pub(super) struct SoilColumn {
+    pub(super) column: usize,
+    pub(super) heading: String,
+    pub(super) role: Role,
+    /// Which end is read of ranges such as `95-100`.
+    pub(super) end: Option<End>,
+}
+
+/// An end of a range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    Least,
+    Most,
+}
+
+/// A row of headings: one of them that of openings, none of them a number.
+pub(super) fn is_heading(row: &GridRow) -> bool {
+    row.filled().take(2).count() == 2
+        && row.filled().all(|c| !is_value(row.cell(c)) && !is_short_opening(row.cell(c)))
+        && row.filled().any(|c| role(row.cell(c)) == Role::Size)
+}
+
+/// Whether a heading says that its column holds a soil.
+pub(super) fn says_soil(row: &GridRow) -> bool {
+    row.filled().any(|c| !matches!(role(row.cell(c)), Role::Size | Role::Other))
+}
+
+/// A table's headings again, as above the rows of a hydrometer.
+pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
+    is_text(row)
+        && role(row.cell(layout.size)) == Role::Size
+        && unit(row.cell(layout.size)) == Ok(layout.unit)
+        && layout.soils.iter().all(|soil| role(row.cell(soil.column)) == soil.role)
+}
+
+/// The headings of a table.
+pub(super) struct Headings {
+    /// Index of their row.
+    pub(super) at: usize,
+    /// Index of the first row below them and what belongs to them.
+    pub(super) first: usize,
+    /// What stands above each column.
+    pub(super) heads: Vec<String>,
+    pub(super) roles: Vec<Role>,
+}
+
+/// The headings of the first table of a grid, and the first row of its numbers.
+pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
+    let rows = &grid.rows;
+    let upper = &rows[..rows.len().min(ROWS_OF_TITLES)];
+    let above = |data: Option<usize>| {
+        let above = &upper[..data.unwrap_or(upper.len())];
+        let headings = above.iter().rposition(|row| is_heading(row) && says_soil(row));
+        headings.or_else(|| above.iter().rposition(is_heading))
+    };
+    // Numbers behind words may be a depth above the table.
+    let plain = upper.iter().position(|row| is_data(row) && !begins_with_words(row));
+    let any = upper.iter().position(is_data);
+    let (at, data) = match above(plain) {
+        Some(at) => (Some(at), plain.or(any.filter(|&row| row > at))),
+        None => (above(any), any),
+    };
+    let Some(at) = at else { return (None, any) };
+    // Units, or the names of soils, may stand in rows below the headings.
+    let sizes: Vec<usize> = rows[at].filled().filter(|&c| role(rows[at].cell(c)) == Role::Size).collect();
+    let belongs = |row: &&GridRow| {
+        is_text(row)
+            && sizes.iter().all(|&c| belongs_to_heading(row.cell(c)))
+            && whole_row(row, true).is_none()
+    };
+    let below = data.map_or(0, |data| data - at - 1);
+    let below = rows[at + 1..].iter().take_while(belongs).take(below).count();
+    let samples =
+        rows[..at].iter().rev().find(|row| row.filled().next().is_some_and(|c| says_sample(row.cell(c))));
+    let wide = rows[at..=at + below].iter().chain(samples);
+    let width = wide.map(|row| row.cells.len()).max().unwrap_or(0);
+    let heads = (0..width).map(|c| head(&rows[at..=at + below], c)).collect();
+    let (heads, roles) = spread(&rows[at..=at + below], samples, heads);
+    (Some(Headings { at, first: at + 1 + below, heads, roles }), data)
+}
+
+/// Whether a cell below the heading of openings is a part of it, such as a unit; `4..75` is none.
+fn belongs_to_heading(cell: &str) -> bool {
+    !cell.contains(|c: char| c.is_ascii_digit()) || cell.starts_with(char::is_alphabetic)
+}
+
+/// Finds the table of a grid that holds one.
+pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
+    match headings(grid) {
+        (Some(headings), _) => with_headings(grid, headings),
+        (None, data) => without_headings(grid, data),
+    }
+}
+
+/// What stands above a column.
+pub(super) fn head(rows: &[GridRow], column: usize) -> String {
+    let cells: Vec<&str> = rows.iter().map(|row| row.cell(column)).filter(|cell| !cell.is_empty()).collect();
+    cells.join(" ")
+}
+
+fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> {
+    let Headings { at, first, heads, roles } = headings;
+    let rows = &grid.rows[first..];
+    let line = grid.rows[at].line;
+    if is_constriction_curve(&heads) {
+        let header = heads.join(&grid.delimiter.to_string());
+        let allowed = "opening_mm and percent_finer; this is the header of a constriction curve, which goes \
+                       to filter.curve (--set filter.curve=FILE)";
+        return Err(grid.refused_heading(line, &header, allowed));
+    }
+    if rows.is_empty() {
+        return Err(TableError::NoRows { file: grid.place(), header: true });
+    }
+    let too_wide = |row: &&GridRow| row.cells.len() > heads.len() && !is_text(row) && !begins_with_words(row);
+    if let Some(row) = rows.iter().find(too_wide).filter(|_| grid.sheet.is_none()) {
+        return Err(fields(grid, row));
+    }
+    let columns = Columns::of(rows, heads.len());
+    let sizes = sizes(&heads, &roles, &columns);
+    let Some(&size) = sizes.first() else {
+        return Err(TableError::NoRows { file: grid.place(), header: true });
+    };
+    let unit = unit(&heads[size]).map_err(|()| {
+        grid.refused_heading(line, &heads[size], "openings in mm (opening_mm), or in cm, um, inches or phi")
+    })?;
+    let mut layout = Layout {
+        size,
+        other_size: sizes.get(1).copied(),
+        unit,
+        soils: Vec::new(),
+        at,
+        first,
+        headed: true,
+        accounted: Vec::new(),
+        notes: Vec::new(),
+    };
+    let values = value_columns(&roles, &columns);
+    if values.is_empty() {
+        return match rows.iter().find(|row| row.filled().count() != 2) {
+            Some(row) if grid.sheet.is_none() => Err(fields(grid, row)),
+            _ if heads.len() == 2 => Ok(layout.with_one(&heads)),
+            _ => Err(TableError::NoRows { file: grid.place(), header: true }),
+        };
+    }
+    if let Some(&c) = values.iter().find(|&&c| roles[c] == Role::Other && is_weighing(&heads[c])) {
+        let allowed = "the mass retained on each sieve: subtract what the empty sieve weighs from what it \
+                       weighs with the soil";
+        return Err(grid.refused_heading(line, &heads[c], allowed));
+    }
+    // A specification is two soils.
+    if rows.len().saturating_mul(2 * values.len()) > MOST_PLACES {
+        let is = format!("a table of {} rows for {} soils, most of it empty", rows.len(), values.len());
+        return Err(TableError::Format { file: grid.place(), is });
+    }
+    for pair in values.windows(2) {
+        refuse_unnamed_openings(grid, &heads, &columns, first, [pair[0], pair[1]])?;
+    }
+    for &column in &values {
+        let (heading, role) = (heads[column].clone(), roles[column]);
+        if role == Role::Finer && words(&heading).iter().any(|word| word == "number") {
+            return Err(grid.refused_heading(line, &heading, "percent finer by mass (percent_finer)"));
+        }
+        let soil = SoilColumn { column, heading, role, end: None };
+        if columns.with_ranges[column] && !matches!(role, Role::Retained(_)) {
+            for (end, word) in [(End::Least, "min"), (End::Most, "max")] {
+                let heading = format!("{} {word}", soil.heading).trim().to_owned();
+                layout.soils.push(SoilColumn { heading, end: Some(end), ..soil.clone() });
+            }
+        } else {
+            layout.soils.push(soil);
+        }
+    }
+    let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
+    layout.accounted =
+        (0..columns.with_values.len()).filter(|&c| columns.with_values[c]).filter(|c| !is_used(c)).collect();
+    layout.notes.extend(not_used(grid, &heads, &layout.accounted));
+    Ok(layout)
+}
+
+/// The columns of openings or of their names, the one to be read first.
+fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
+    let mut sizes: Vec<usize> = (0..heads.len()).filter(|&c| roles[c] == Role::Size).collect();
+    let rank = |c: usize| match unit(&heads[c]) {
+        Ok(Some(Unit::Mm)) => 0,
+        Ok(Some(Unit::Micrometre | Unit::Cm | Unit::Phi)) => 1,
+        Ok(Some(Unit::Inch)) => 2,
+        Ok(None) if columns.with_numbers[c] => 3,
+        _ => 4,
+    };
+    sizes.sort_by_key(|&c| rank(c));
+    sizes
+}
+
+/// The columns that are read as soils: what is finer, or else what is retained, or else the other numbers.
+fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
+    let with_values = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
+        (0..roles.len()).filter(|&c| columns.with_values[c] && wanted(c)).collect()
+    };
+    let retained = |percent: bool, cumulative: bool| {
+        with_values(&|c| match roles[c] {
+            Role::Retained(r) => r.percent == percent && (r.cumulative == Some(true)) == cumulative,
+            _ => false,
+        })
+    };
+    [
+        with_values(&|c| roles[c] == Role::Finer),
+        retained(true, true),
+        retained(true, false),
+        retained(false, true),
+        retained(false, false),
+        with_values(&|c| roles[c] == Role::Other && columns.mostly_values[c]),
+    ]
+    .into_iter()
+    .find(|columns| !columns.is_empty())
+    .unwrap_or_default()
+}
+
+/// Numbers that rise or fall all the way, between two columns of percents, may be the openings of the second.
+fn refuse_unnamed_openings(
+    grid: &Grid,
+    heads: &[String],
+    columns: &Columns,
+    first: usize,
+    [left, right]: [usize; 2],
+) -> Result<(), TableError> {
+    let rows = &grid.rows[first..];
+    let Some(column) = (left + 1..right).rev().find(|&c| columns.with_values[c]) else { return Ok(()) };
+    if role(&heads[column]) != Role::Other {
+        return Ok(());
+    }
+    let sizes: Vec<f64> = rows
+        .iter()
+        .filter(|row| is_value(row.cell(right)))
+        .filter_map(|row| match opening(row.cell(column)) {
+            Some((Opening::Mm(size) | Opening::Bare(size), _)) if size > 0.0 => Some(size),
+            _ => None,
+        })
+        .collect();
+    let one_way = sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1]);
+    if sizes.len() < 2 || !one_way {
+        return Ok(());
+    }
+    let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the \
+                   percents to their right, or percents (% passing) of a soil";
+    let line = grid.rows[first.saturating_sub(1)].line;
+    Err(grid.refused(line, column, "heading", &heads[column], allowed))
+}
+
+/// Says which columns hold numbers and are not read.
+fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
+    const MOST: usize = 6;
+    let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
+        "" => format!("{} (no heading)", grid.column_said(c)),
+        head => format!("{} (\"{}\")", grid.column_said(c), shortened(head)),
+    };
+    let mut named: Vec<String> = unused.iter().take(MOST).map(name).collect();
+    if unused.len() > MOST {
+        named.push(format!("and {} more", unused.len() - MOST));
+    }
+    (!named.is_empty()).then(|| format!("not used: {}", named.join(", ")))
+}
+
+/// Whether a table has the header of a constriction curve: percents by number of constrictions, not by mass.
+fn is_constriction_curve(heads: &[String]) -> bool {
+    let named = |name: &str| heads.iter().any(|head| words(head).join("_") == name);
+    let is_diameter = named("diameter_mm") || named("diameter_over_d0f");
+    heads.len() == 2 && named("percent_smaller") && is_diameter
+}
+
+/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a
+/// row of samples above.
+fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
+    let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
+    let (top, below) = (&rows[0], &rows[1..]);
+    for column in 1..heads.len() {
+        let before = roles[column - 1];
+        if !top.cell(column).is_empty()
+            || roles[column] != Role::Other
+            || !matches!(before, Role::Finer | Role::Retained(_))
+        {
+            continue;
+        }
+        let in_both = |row: &GridRow| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty();
+        if below.iter().any(in_both) {
+            roles[column] = before;
+            for named in [column - 1, column] {
+                heads[named] = head(below, named);
+            }
+        } else if samples.is_some_and(in_both) && heads[column].is_empty() {
+            roles[column] = before;
+            heads[column] = heads[column - 1].clone();
+        }
+    }
+    for column in 1..heads.len() {
+        if is_sample_d(&heads, &roles, column) {
+            roles[column] = Role::Other;
+        }
+    }
+    (heads, roles)
+}
+
+/// Whether a `D` is the name of a sample: behind the openings, and beside a `C` or an `E`.
+fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
+    let is = |at: usize, name: &str| {
+        heads.get(at).is_some_and(|head| head.trim().eq_ignore_ascii_case(name)) && roles[at] != Role::Size
+    };
+    let openings = |at: usize| roles[at] == Role::Size && !heads[at].trim().eq_ignore_ascii_case("d");
+    heads[column].trim().eq_ignore_ascii_case("d")
+        && (0..column).any(openings)
+        && (is(column - 1, "c") || is(column + 1, "e"))
+}
+
+impl Layout {
+    /// With the column that is not that of the openings as its only soil.
+    fn with_one(mut self, heads: &[String]) -> Layout {
+        let column = usize::from(self.size == 0);
+        let heading = heads[column].clone();
+        self.soils.push(SoilColumn { column, heading, role: Role::Finer, end: None });
+        self
+    }
+}
+
+fn is_number(cell: &str) -> bool {
+    percentage(cell).is_some()
+}
+
+/// No row names the openings: the first row of numbers begins the table, by place.
+fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
+    let begins = |row: &GridRow| {
+        row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)))
+            || whole_row(row, false).is_some()
+    };
+    let start = grid.rows.iter().position(begins);
+    let start = match (start, data) {
+        // Titles hold numbers too; but a title looks like a row that is broken only where it has two cells.
+        (Some(start), Some(data))
+            if grid.rows[start..data].iter().all(|row| {
+                row.filled().count() == 1 && !is_number(row.cell(0)) && whole_row(row, false).is_none()
+            }) =>
+        {
+            data
+        }
+        (Some(start), _) => start,
+        (None, _) => {
+            let header = grid.rows.last().is_some_and(|row| row.filled().count() == 2);
+            return Err(match grid.rows.iter().find(|row| row.filled().count() != 2) {
+                Some(row) if grid.sheet.is_none() => fields(grid, row),
+                _ => TableError::NoRows { file: grid.place(), header },
+            });
+        }
+    };
+    let rows = &grid.rows[start..];
+    let headings = grid.rows[..start].last().filter(|row| row.filled().count() >= 2);
+    let heads: Vec<String> = headings.map(|row| row.cells.clone()).unwrap_or_default();
+    let head = |c: usize| heads.get(c).cloned().unwrap_or_default();
+    let first_row = data.map_or(&rows[0], |data| &grid.rows[data]);
+    let columns: Vec<usize> = first_row.filled().collect();
+    let (size, other, value) = match columns[..] {
+        [a, b] => {
+            let percent = role(&head(a)) == Role::Finer && role(&head(b)) != Role::Finer;
+            if percent { (b, None, a) } else { (a, None, b) }
+        }
+        [a, b, c] if !is_number(first_row.cell(a)) && opening(first_row.cell(a)).is_some() => (b, Some(a), c),
+        _ => return Err(fields(grid, first_row)),
+    };
+    let most = columns.len();
+    if let Some(row) = rows
+        .iter()
+        .find(|row| row.cells.len() > most.max(heads.len()) && grid.sheet.is_none() && !is_text(row))
+    {
+        return Err(fields(grid, row));
+    }
+    let said = role(&head(value));
+    let role = if matches!(said, Role::Retained(_)) { said } else { Role::Finer };
+    let unit = unit(&head(size)).map_err(|()| {
+        grid.refused_heading(
+            grid.rows[start - 1].line,
+            &head(size),
+            "openings in mm (opening_mm), or in cm, um, inches or phi",
+        )
+    })?;
+    let soils = vec![SoilColumn { column: value, heading: head(value), role, end: None }];
+    let (headed, at) = (headings.is_some(), start.saturating_sub(1));
+    let (accounted, notes) = (Vec::new(), Vec::new());
+    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, accounted, notes })
+}
+
+/// A row with another number of cells than the table has columns.
+pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
+    let found = row.cells.len();
+    let allowed = if found > 2 && grid.delimiter == ',' {
+        "two columns (with decimal commas, a semicolon or a tab between them)"
+    } else {
+        "two columns, with a comma, a semicolon or a tab between them"
+    };
+    let separator = if grid.sheet.is_some() { " | ".to_owned() } else { grid.delimiter.to_string() };
+    let value = match &row.text {
+        Some(line) => shortened(&line.text),
+        None => shortened(&row.cells.join(&separator)),
+    };
+    TableError::Fields { file: grid.place(), line: row.line, found, value, allowed }
+}

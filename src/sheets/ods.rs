@@ -1,0 +1,216 @@
+//! Sheets of OpenDocument: `content.xml`.
+
+use std::collections::{HashMap, HashSet};
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use super::cells::{Budget, Cells, tidy};
+use super::grid::Grid;
+use super::literals::{around, as_shown};
+use super::runs::{Kind, Runs};
+use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
+use voidwalk_core::gradation::TableError;
+
+/// A filled cell or row may stand for this many equal ones.
+const MOST_REPEATS: usize = 1000;
+
+/// Its sheets.
+pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
+    let text = zipped.text("content.xml")?;
+    let mut reader = Reader::from_str(&text);
+    reader.config_mut().expand_empty_elements = true;
+    let (mut sheets, mut budget) = (Vec::new(), Budget::new());
+    // Styles stand before the sheets; one that is not shown hides the sheets that have it.
+    let (mut hidden, mut style) = (HashSet::new(), String::new());
+    let mut kinds = HashMap::new();
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "style:style" => {
+                style = attribute(&e, "style:name").unwrap_or_default();
+            }
+            Event::Start(e)
+                if e.name().as_ref() == "style:table-properties"
+                    && attribute(&e, "table:display").is_some_and(|display| display == "false") =>
+            {
+                hidden.insert(style.clone());
+            }
+            Event::Start(e) if e.name().as_ref() == "style:text-properties" => {
+                kinds.extend(kind_of(&e).map(|kind| (style.clone(), kind)));
+            }
+            Event::Start(e) if e.name().as_ref() == "table:table" => {
+                let name = attribute(&e, "table:name").unwrap_or_default();
+                let is_hidden =
+                    attribute(&e, "table:style-name").is_some_and(|style| hidden.contains(&style));
+                sheets.push(sheet(file, &name, is_hidden, &kinds, &mut reader, &mut budget)?);
+            }
+            Event::Eof => return Ok(sheets),
+            _ => {}
+        }
+    }
+}
+
+fn broken(file: &str) -> TableError {
+    unreadable(file, "its content.xml is broken")
+}
+
+/// Kind of the text that has these properties, where it is no ordinary one.
+fn kind_of(properties: &BytesStart) -> Option<Kind> {
+    let has = |name: &str| attribute(properties, name).is_some_and(|value| value != "none");
+    let position = attribute(properties, "style:text-position").unwrap_or_default();
+    match () {
+        () if has("style:text-line-through-style") || has("style:text-line-through-type") => {
+            Some(Kind::Struck)
+        }
+        () if position.starts_with("super") || position.starts_with(|c: char| ('1'..='9').contains(&c)) => {
+            Some(Kind::Raised)
+        }
+        () => None,
+    }
+}
+
+fn repeats(element: &BytesStart, name: &str) -> usize {
+    attribute(element, name).and_then(|n| n.parse().ok()).unwrap_or(1).max(1)
+}
+
+fn sheet(
+    file: &str,
+    name: &str,
+    hidden: bool,
+    kinds: &HashMap<String, Kind>,
+    reader: &mut Reader<&[u8]>,
+    budget: &mut Budget,
+) -> Result<Grid, TableError> {
+    let mut cells = Cells::new(file, name, budget);
+    let (mut row, mut columns) = (0usize, 0usize);
+    let is_collapsed =
+        |e: &BytesStart| attribute(e, "table:visibility").is_some_and(|visibility| visibility != "visible");
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.name().as_ref() == "table:table-column" => {
+                let end = columns.saturating_add(repeats(&e, "table:number-columns-repeated"));
+                if is_collapsed(&e) {
+                    cells.hide_columns(columns..end);
+                }
+                columns = end;
+            }
+            Event::Start(e) if e.name().as_ref() == "table:table-row" => {
+                let times = repeats(&e, "table:number-rows-repeated");
+                let collapsed = is_collapsed(&e);
+                let filled = read_row(file, kinds, reader)?;
+                if !filled.is_empty() && times > MOST_REPEATS {
+                    return Err(too_large(file, &format!("a row that is repeated {times} times")));
+                }
+                let kept = if filled.is_empty() { 0 } else { times };
+                for again in 0..kept {
+                    if collapsed {
+                        cells.hide_row(row.saturating_add(again));
+                    }
+                    for (column, text) in &filled {
+                        cells.put(row.saturating_add(again), *column, text)?;
+                    }
+                }
+                row = row.saturating_add(times);
+            }
+            Event::End(e) if e.name().as_ref() == "table:table" => return Ok(cells.done(hidden)),
+            Event::Eof => return Err(broken(file)),
+            _ => {}
+        }
+    }
+}
+
+/// The filled cells of a row, with their columns.
+fn read_row(
+    file: &str,
+    kinds: &HashMap<String, Kind>,
+    reader: &mut Reader<&[u8]>,
+) -> Result<Vec<(usize, String)>, TableError> {
+    let mut filled = Vec::new();
+    let mut column = 0usize;
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e)
+                if ["table:table-cell", "table:covered-table-cell"].contains(&e.name().as_ref()) =>
+            {
+                let times = repeats(&e, "table:number-columns-repeated");
+                let end = e.name().as_ref().to_owned();
+                let kind = attribute(&e, "office:value-type").unwrap_or_default();
+                let value = attribute(&e, "office:value");
+                let formula = attribute(&e, "table:formula").is_some();
+                let is_error = attribute(&e, "calcext:value-type").is_some_and(|kind| kind == "error");
+                let shown = paragraphs(file, kinds, reader, &end)?;
+                // Of a formula that failed, the value is 0.
+                let failed = is_error || shown.starts_with('#') || shown.starts_with("Err:");
+                let text = match (kind.as_str(), value) {
+                    ("percentage" | "float" | "currency", Some(_)) if failed => shown,
+                    ("percentage", Some(value)) => percents(&value).unwrap_or(value),
+                    ("float", Some(value)) => {
+                        let (before, after) = around(&shown);
+                        as_shown(before, &value, after)
+                    }
+                    ("currency", Some(value)) => value,
+                    ("date" | "time", _) => format!("{shown} (a date)"),
+                    ("", _) if formula && shown.is_empty() => "a formula without its value".to_owned(),
+                    _ => shown,
+                };
+                let text = tidy(&text);
+                if !text.is_empty() {
+                    if times > MOST_REPEATS {
+                        return Err(too_large(file, &format!("a cell that is repeated {times} times")));
+                    }
+                    filled.extend((0..times).map(|again| (column.saturating_add(again), text.clone())));
+                    if filled.len() > 4 * MOST_REPEATS {
+                        return Err(too_large(file, "a row of more than 4000 cells"));
+                    }
+                }
+                column = column.saturating_add(times);
+            }
+            Event::End(e) if e.name().as_ref() == "table:table-row" => return Ok(filled),
+            Event::Eof => return Err(broken(file)),
+            _ => {}
+        }
+    }
+}
+
+/// A fraction as the percents that the sheet shows.
+fn percents(value: &str) -> Option<String> {
+    let percent = value.parse::<f64>().ok()? * 100.0;
+    Some(format!("{}%", (percent * 1e9).round() / 1e9))
+}
+
+/// The text of a cell, without its comments.
+fn paragraphs(
+    file: &str,
+    kinds: &HashMap<String, Kind>,
+    reader: &mut Reader<&[u8]>,
+    end: &str,
+) -> Result<String, TableError> {
+    const SPACES: [&str; 4] = ["text:p", "text:s", "text:tab", "text:line-break"];
+    let (mut runs, mut spans) = (Runs::default(), Vec::new());
+    let mut within_comment = 0u32;
+    loop {
+        let event = reader.read_event().map_err(|_| broken(file))?;
+        match &event {
+            Event::Start(e) if e.name().as_ref() == "office:annotation" => within_comment += 1,
+            Event::End(e) if e.name().as_ref() == "office:annotation" => {
+                within_comment = within_comment.saturating_sub(1);
+            }
+            Event::Start(e) if e.name().as_ref() == "text:span" => {
+                spans.push(attribute(e, "text:style-name").unwrap_or_default());
+            }
+            Event::End(e) if e.name().as_ref() == "text:span" => drop(spans.pop()),
+            Event::Start(e) if e.name().as_ref() == "table:table" => {
+                return Err(unreadable(file, "a cell holds a table of its own"));
+            }
+            Event::Start(e) if SPACES.contains(&e.name().as_ref()) => runs.push(" ", Kind::Plain, ""),
+            Event::End(e) if e.name().as_ref() == end => return Ok(runs.text().trim().to_owned()),
+            Event::Eof => return Err(broken(file)),
+            _ => {
+                if let Some(more) = characters(&event).filter(|_| within_comment == 0) {
+                    let kind = spans.iter().filter_map(|style| kinds.get(style)).max();
+                    runs.push(&more, kind.copied().unwrap_or(Kind::Plain), &spans.join(" "));
+                }
+            }
+        }
+    }
+}

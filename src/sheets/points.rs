@@ -1,0 +1,333 @@
+//! From a column of a table to openings in mm and percents finer.
+
+use std::collections::HashMap;
+
+use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range};
+use super::extent::Extent;
+use super::grid::Grid;
+use super::heading::Role;
+use super::layout::{End, Layout, SoilColumn, fields};
+use super::lines::listed;
+use super::marks::unmarked;
+use super::retained::{Weighed, percents_finer, says_fraction, says_percent};
+use super::size::{Entry, Opening, Said, Unit, opening};
+use super::table::{Kind, Soil};
+use super::{account, commas, contradiction, roles, torn, units};
+use voidwalk_core::gradation::FIELDS;
+use voidwalk_core::gradation::TableError;
+use voidwalk_core::gradation::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
+
+/// Percents from here on at the coarsest size are 100 % as a laboratory rounds it.
+const ALL_PERCENT: f64 = 99.9;
+/// A percent below a bound of so much is read as the bound: no more of the mass is uncertain.
+const LEAST_BOUND: f64 = 1.0;
+
+/// The soils of a table, column by column.
+///
+/// # Errors
+/// Rows, openings or numbers that cannot be those of a table, whichever soil is read.
+pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, TableError>>, TableError> {
+    let extent = Extent::of(grid, layout)?;
+    let last = last_column(grid, layout, &extent);
+    for row in extent.rows(grid, layout) {
+        torn::refuse_short(grid, row, row.cell(extent.column_of_size(layout, row)), last)?;
+    }
+    let soils: Vec<_> = layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect();
+    contradiction::refuse(grid, layout, &extent, &soils)?;
+    account::refuse_lost(grid, layout, &extent, &soils)?;
+    Ok(soils)
+}
+
+/// The last column that holds a value in most of the rows.
+fn last_column(grid: &Grid, layout: &Layout, extent: &Extent) -> usize {
+    let mut values: Vec<usize> = Vec::new();
+    let mut rows = 0;
+    for row in extent.rows(grid, layout) {
+        rows += 1;
+        values.resize(values.len().max(row.cells.len()), 0);
+        row.filled().filter(|&c| is_value(row.cell(c))).for_each(|c| values[c] += 1);
+    }
+    let first = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
+    values.iter().rposition(|&n| 2 * n > rows).unwrap_or(0).max(layout.size).max(first)
+}
+
+/// The soil in one column of a grid.
+fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
+    let mut notes = grid.notes.clone();
+    notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
+    let (mut entries, missing) = entries(grid, layout, extent, column, &mut notes)?;
+    let unit = units::of_bare(grid, layout, column.role, &entries, &mut notes)?;
+    for entry in &mut entries {
+        entry.opening = match entry.opening {
+            Opening::Bare(value) => in_mm(grid, entry, value, unit)?,
+            Opening::Mm(mm) => in_mm(grid, entry, mm, Unit::Mm)?,
+            Opening::Below(value) => {
+                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                match in_mm(grid, entry, value, unit)? {
+                    Opening::Mm(mm) => Opening::Below(mm),
+                    other => other,
+                }
+            }
+            Opening::Class(one, other) => {
+                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                let mm = |value: f64| match value {
+                    f64::INFINITY => Ok(value),
+                    value => match in_mm(grid, entry, value, unit)? {
+                        Opening::Mm(mm) => Ok(mm),
+                        _ => Ok(0.0),
+                    },
+                };
+                let (one, other) = (mm(one)?, mm(other)?);
+                Opening::Class(one.max(other), one.min(other))
+            }
+            other => other,
+        };
+    }
+    units::say_names(&entries, unit, &mut notes);
+    let role = roles::settle(grid, layout, column, &mut entries, &mut notes)?;
+    let mut rows = match role {
+        Role::Retained(retained) => {
+            let below = &extent.below;
+            let heading = &column.heading;
+            let at = column.column;
+            let weighed = Weighed { grid, column: at, heading, retained, below, missing: &missing };
+            weighed.scale_fractions(&mut entries, &mut notes)?;
+            percents_finer(&weighed, &entries, &mut notes)?
+        }
+        _ => finer(grid, column, &entries, &mut notes)?,
+    };
+    let Some(top) = rows.iter_mut().max_by(|a, b| a.size.total_cmp(&b.size)) else {
+        return Err(TableError::NoRows { file: grid.place(), header: layout.headed });
+    };
+    if top.percent < 100.0 && top.percent >= ALL_PERCENT {
+        notes.push(format!("{} % at the coarsest size read as 100 %", top.percent));
+        top.percent = 100.0;
+    }
+    let largest = top.size;
+    if largest > 500.0 && unit == Unit::Mm && layout.unit != Some(Unit::Inch) {
+        notes.push(format!("its largest opening is {largest} mm: is the column in micrometres?"));
+    }
+    if let Some(end) = column.end {
+        let which = if end == End::Least { "least" } else { "most" };
+        notes.push(format!(
+            "ranges such as 95-100 are two curves; this is that of the {which} that is allowed"
+        ));
+    }
+    let elsewhere: HashMap<usize, usize> =
+        entries.iter().filter(|e| e.column != layout.size).map(|e| (e.line, e.column)).collect();
+    let place = |row: &Row| {
+        let of_size = elsewhere.get(&row.line).copied().unwrap_or(layout.size);
+        [grid.place_of(row.line, of_size), grid.place_of(row.line, column.column)]
+    };
+    let places = rows.iter().map(place).collect();
+    let (name, file, kind) = (column.heading.clone(), grid.place(), Kind::of(grid));
+    Ok(Soil { name, file, rows, places, kind, notes })
+}
+
+/// The rows of the table as they are written, and the lines of the openings whose cell for a value is empty.
+fn entries(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    column: &SoilColumn,
+    notes: &mut Vec<String>,
+) -> Result<(Vec<Entry>, Vec<usize>), TableError> {
+    let single = layout.soils.len() == 1;
+    let retained = matches!(column.role, Role::Retained(_));
+    let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
+    let mut marked: Option<String> = None;
+    let (mut with_sign, mut plain) = (false, None);
+    for row in extent.rows(grid, layout) {
+        let line = row.line;
+        let value = row.cell(column.column);
+        let at = extent.column_of_size(layout, row);
+        let size = row.cell(at);
+        let read = opening(size);
+        if is_blank(value) {
+            match read {
+                Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Below(_), _)) => {
+                    without.push(line);
+                    missing.push(line);
+                    continue;
+                }
+                None if is_words(size) => {
+                    without.push(line);
+                    continue;
+                }
+                Some((Opening::Pan | Opening::Total, _)) => continue,
+                None if size.is_empty() && !single => continue,
+                _ => {}
+            }
+        }
+        if grid.sheet.is_none()
+            && row.cells.len() == 1
+            && !layout.headed
+            && layout.size + column.column > 0
+            && read.is_none()
+        {
+            return Err(fields(grid, row));
+        }
+        let Some((opening, said)) = read else {
+            return Err(grid.refused(line, at, FIELDS[0], size, allowed_opening(size)));
+        };
+        if matches!(opening, Opening::Bare(value) if !value.is_finite()) {
+            return Err(grid.refused(line, at, FIELDS[0], size, allowed_size()));
+        }
+        let allowed = if retained { "a number from 0".to_owned() } else { allowed_percent() };
+        let of_range = |(least, most): (f64, f64)| if column.end == Some(End::Least) { least } else { most };
+        let bound = bound(value).filter(|_| !retained);
+        if let Some(most) = bound.filter(|&most| most > LEAST_BOUND) {
+            let allowed = format!("a number: below {most} it may be anything from 0 to {most}");
+            return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
+        }
+        if let Some(most) = bound {
+            notes.push(format!("{value} in {} read as {most} %, the most that it may be", grid.said(line)));
+        }
+        let value_read = percentage(value)
+            .or(bound)
+            .or_else(|| range(value).filter(|_| column.end.is_some()).map(of_range));
+        let mark = [size, value].into_iter().find(|cell| unmarked(cell) != *cell);
+        marked = marked.or_else(|| mark.map(str::to_owned));
+        let number =
+            value_read.filter(|&v| if retained { v >= 0.0 && v.is_finite() } else { percent_is_allowed(v) });
+        let Some(number) = number else {
+            return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
+        };
+        match value.contains('%') {
+            true => with_sign = true,
+            false if number > 0.0 && number < 1.0 => plain = plain.or(Some((line, value))),
+            false => {}
+        }
+        let text = size.to_owned();
+        entries.push(Entry { line, column: at, opening, text, said, value: number + 0.0 });
+    }
+    if let Some((line, value)) = plain.filter(|_| with_sign) {
+        let allowed = "a number with %, as other cells of the column have: this may be a fraction of 1";
+        return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
+    }
+    if !without.is_empty() {
+        let have = if without.len() == 1 { "has" } else { "have" };
+        notes.push(format!(
+            "{} {have} no percent: left out",
+            listed(grid.row_word(), &without, |&line| grid.row_name(line))
+        ));
+    }
+    notes.extend(marked.map(|cell| format!("marks of footnotes, as in {cell}, left out")));
+    commas::check(grid, layout, extent, column, notes)?;
+    Ok((entries, missing))
+}
+
+/// What an opening may be; spreadsheets turn `3/8` into a date.
+fn allowed_opening(found: &str) -> String {
+    match is_date(found) {
+        true => {
+            "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in"
+                .into()
+        }
+        false => allowed_size(),
+    }
+}
+
+fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, TableError> {
+    if value == 0.0 && unit != Unit::Phi {
+        // Nothing passes the pan.
+        return Ok(Opening::Pan);
+    }
+    let allowed = match unit {
+        Unit::SieveNumber => "the number of a US sieve (4, 10, 40, 200 ...), as the heading says".to_owned(),
+        Unit::Phi => "a size in phi, from -40 to 40".to_owned(),
+        _ => allowed_size(),
+    };
+    let mm = unit.mm(value).filter(|&mm| size_is_allowed(mm) && (unit == Unit::Phi || value > 0.0));
+    mm.map(Opening::Mm).ok_or_else(|| grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
+}
+
+/// Rows of a column that is in percent finer, or in fractions.
+fn finer(
+    grid: &Grid,
+    column: &SoilColumn,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<Vec<Row>, TableError> {
+    let factor = fractions(grid, column, entries, notes)?;
+    let sieves = entries.iter().filter_map(|entry| match entry.opening {
+        Opening::Mm(size) => Some((size, entry.value)),
+        _ => None,
+    });
+    let finest = sieves.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, value)| value);
+    let mut rows = Vec::new();
+    for entry in entries {
+        let size = match entry.opening {
+            Opening::Mm(size) | Opening::Below(size) => size,
+            Opening::Total => {
+                notes.push(format!("the total in {} was left out", grid.said(entry.line)));
+                continue;
+            }
+            Opening::Pan if entry.value == 0.0 => {
+                notes.push("the pan was left out".into());
+                continue;
+            }
+            Opening::Pan if Some(entry.value) == finest => {
+                notes.push("the percent of the pan, that of the finest sieve again, was left out".into());
+                continue;
+            }
+            Opening::Pan | Opening::Bare(_) | Opening::Class(..) => {
+                let allowed = "0, or nothing: the pan lets nothing pass (or a heading that says retained)";
+                let value = entry.value.to_string();
+                return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
+            }
+        };
+        rows.push(Row { line: entry.line, size, percent: entry.value * factor });
+    }
+    let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
+    let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
+    if !falls(&rows) && !rises && entries.iter().all(|entry| entry.said > Said::Plain) {
+        notes.push(
+            "rows in no order of their sizes, each with its unit or the name of its sieve, sorted".into(),
+        );
+        rows.sort_by(|a, b| b.size.total_cmp(&a.size));
+    }
+    Ok(rows)
+}
+
+/// 100 where the values are fractions of 1.
+fn fractions(
+    grid: &Grid,
+    column: &SoilColumn,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<f64, TableError> {
+    let of_sieves = || entries.iter().filter(|entry| !matches!(entry.opening, Opening::Total));
+    let Some(top) = of_sieves().max_by(|a, b| a.value.total_cmp(&b.value)) else { return Ok(1.0) };
+    let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
+    let broken = of_sieves().filter(is_broken).count();
+    let rest_is_below_1 = || of_sieves().all(|entry| entry.value <= 1.0 || entry.value == 100.0);
+    if top.value == 100.0
+        && broken > 1
+        && rest_is_below_1()
+        && let Some(entry) = of_sieves().find(is_broken)
+    {
+        let allowed = "percents from 0 to 100; these look like fractions from 0 to 1 below a 100: write them \
+                       in percent, or 1 for 100";
+        let value = entry.value.to_string();
+        return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
+    }
+    if top.value > 1.0 || broken == 0 {
+        return Ok(1.0);
+    }
+    let (says_percent, says_fraction) = (says_percent(&column.heading), says_fraction(&column.heading));
+    if top.value == 1.0 && (says_fraction || !says_percent || grid.sheet.is_some()) {
+        notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
+        return Ok(100.0);
+    }
+    let allowed = match says_percent && top.value == 1.0 {
+        true => {
+            "100 at the coarsest size; these look like fractions from 0 to 1 under a heading of percents: \
+                 write percents, or `fraction` in the heading"
+        }
+        false => {
+            "100 at the coarsest size; these look like fractions from 0 to 1, of which the coarsest must be 1"
+        }
+    };
+    Err(grid.refused(top.line, column.column, FIELDS[1], &top.value.to_string(), allowed))
+}

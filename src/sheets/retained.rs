@@ -1,0 +1,349 @@
+//! What stays on the sieves, by mass or in percent, turned into percent finer.
+
+use super::content::{is_words, percentage};
+use super::extent::Below;
+use super::grid::Grid;
+use super::heading::{Retained, Role, role, words};
+use super::size::{Entry, Opening, is_washed, opening};
+use voidwalk_core::gradation::FIELDS;
+use voidwalk_core::gradation::Row;
+use voidwalk_core::gradation::TableError;
+
+/// Percents that are weighed one by one sum to 100 within this.
+const ROUNDED: f64 = 0.6;
+
+/// Percents retained that end below this, under a heading that does not say percent, may be grams.
+const NEARLY_ALL: f64 = 95.0;
+
+/// Whether a heading says percent.
+pub(super) fn says_percent(heading: &str) -> bool {
+    let small = heading.to_lowercase();
+    ["%", "percent", "pct", "prozent"].iter().any(|word| small.contains(word))
+}
+
+/// Whether a heading says that its values are fractions of 1.
+pub(super) fn says_fraction(heading: &str) -> bool {
+    let small = heading.to_lowercase();
+    small.contains("fraction") || small.contains("ratio")
+}
+
+/// A column of what is retained.
+pub(super) struct Weighed<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) column: usize,
+    pub(super) heading: &'a str,
+    pub(super) retained: Retained,
+    /// The rows below the table.
+    pub(super) below: &'a [Below],
+    /// The lines of openings without a value.
+    pub(super) missing: &'a [usize],
+}
+
+impl Weighed<'_> {
+    fn refused(&self, line: usize, value: f64, allowed: &str) -> TableError {
+        self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
+    }
+
+    /// Brings fractions of 1 to percents where the heading says that they are.
+    pub(super) fn scale_fractions(
+        &self,
+        entries: &mut [Entry],
+        notes: &mut Vec<String>,
+    ) -> Result<(), TableError> {
+        let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
+        let (true, Some(broken)) = (self.retained.percent, entries.iter().find(is_broken)) else {
+            return Ok(());
+        };
+        if entries.iter().any(|entry| entry.value > 1.0) {
+            return Ok(());
+        }
+        if !says_fraction(self.heading) || says_percent(self.heading) {
+            let allowed = "percents up to 100, with the pan; these look like fractions from 0 to 1: write \
+                           percents, or `fraction` in the heading";
+            return Err(self.refused(broken.line, broken.value, allowed));
+        }
+        notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
+        entries.iter_mut().for_each(|entry| entry.value = tidy(100.0 * entry.value));
+        Ok(())
+    }
+
+    /// Refuses values without a pan that end far below 100 under `Retained` alone: they may be grams.
+    fn refuse_unsaid(&self, line: usize, end: f64) -> Result<(), TableError> {
+        let is_said = |cell: &str| says_percent(cell) || says_fraction(cell);
+        let any_cell = || self.grid.rows.iter().any(|row| is_said(row.cell(self.column)));
+        let is_retained = matches!(role(self.heading), Role::Retained(_));
+        if !self.retained.percent || end >= NEARLY_ALL || !is_retained || any_cell() {
+            return Ok(());
+        }
+        let allowed = "% or g in the heading, or what is retained in the pan: these may be percents or grams";
+        Err(self.refused(line, end, allowed))
+    }
+
+    /// What was washed out or lost is a part of the whole; a mass above, beside or below the table that is
+    /// another than that of all in it is refused or said.
+    fn check_stated(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
+        const LOST: [&str; 12] = [
+            "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
+            "silt", "clay",
+        ];
+        const MASS: [&str; 6] = ["mass", "weight", "masse", "gewicht", "wt", "total"];
+        const ALL: [&str; 8] =
+            ["total", "initial", "dry", "sample", "specimen", "start", "original", "before"];
+        const TARE: [&str; 7] = ["tare", "container", "dish", "can", "pan", "wet", "with"];
+        const PART: [&str; 12] = [
+            "after",
+            "washed",
+            "retained",
+            "water",
+            "sieve",
+            "unit",
+            "density",
+            "subsample",
+            "passing",
+            "fines",
+            "minimum",
+            "required",
+        ];
+        for row in self.below.iter().chain(&self.stated()) {
+            let Some((first, value)) = row.value else { continue };
+            let of_row = words(&row.words);
+            let any = |list: &[&str]| of_row.iter().any(|word| list.contains(&word.as_str()));
+            let is_below = self.below.iter().any(|below| below.line == row.line);
+            if is_below && value > 0.0 && any(&LOST) {
+                let allowed = "the pan as the last row of what is retained, with all that was washed out or \
+                               lost: it is a part of the whole";
+                return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
+            }
+            // A row of masses has one for each column of masses behind its words.
+            let is_before = row.column < self.column;
+            let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
+            let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
+            let (column, value) = in_column.map_or((first, value), |value| (self.column, value));
+            let is_all = any(&ALL) && !any(&TARE) && !any(&PART);
+            let is_near = |value: f64| (value - whole).abs() <= 0.01 * whole;
+            let is_same = [value, 1000.0 * value, value / 1000.0].into_iter().any(is_near);
+            let is_mass = any(&MASS[..if is_below { 6 } else { 5 }]);
+            if self.retained.percent || value <= 0.0 || !is_mass || is_same {
+                continue;
+            }
+            if !is_all && (value < whole || !is_below) {
+                continue;
+            }
+            let sum = tidy(whole);
+            if any(&["dry"]) && !any(&TARE) {
+                let allowed = match value > whole {
+                    true => format!(
+                        "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
+                         washed out"
+                    ),
+                    false => format!("at least the {sum} to which the masses of the table come"),
+                };
+                return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
+            }
+            let place = if is_below { "below it" } else { "beside it" };
+            notes.push(format!(
+                "the masses of the table come to {sum}, and \"{}\" {place} is {value}: was anything washed \
+                     out or lost?",
+                row.words
+            ));
+        }
+        Ok(())
+    }
+
+    /// Words and the number behind them, above the table or beside it.
+    fn stated(&self) -> Vec<Below> {
+        let mut stated = Vec::new();
+        for row in self.grid.rows.iter().filter(|row| self.below.iter().all(|below| below.line != row.line)) {
+            let says = |cell: &str| is_words(cell) || matches!(opening(cell), Some((Opening::Total, _)));
+            for column in row.filled().filter(|&c| says(row.cell(c))) {
+                let cell = row.cell(column);
+                let (words, inside) = cell.rsplit_once([':', '=']).unwrap_or((cell, ""));
+                let next = || row.filled().find(|&c| c > column);
+                let behind = || next().and_then(|c| Some((c, mass(row.cell(c))?)));
+                let value = mass(inside).map(|value| (column, value)).or_else(behind);
+                stated.push(Below { line: row.line, column, words: words.trim().to_owned(), value });
+            }
+        }
+        stated
+    }
+}
+
+/// A mass with its unit or without.
+fn mass(cell: &str) -> Option<f64> {
+    percentage(cell.trim_end_matches("kg").trim_end_matches('g').trim())
+}
+
+/// A sum of decimals as it was meant to be.
+fn tidy(sum: f64) -> f64 {
+    (sum * 1e6).round() / 1e6
+}
+
+/// The rows in percent finer.
+pub(super) fn percents_finer(
+    weighed: &Weighed,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<Vec<Row>, TableError> {
+    let mut sieves: Vec<(usize, f64, f64)> = Vec::new();
+    if let Some((line, text)) = weighed.grid.commented.first() {
+        let allowed = "every row of what is retained, as each is a part of the whole: take away this row or \
+                       the # before it";
+        return Err(weighed.grid.refused(*line, 0, FIELDS[0], text, allowed));
+    }
+    let (mut pans, mut total) = (Vec::new(), None);
+    for entry in entries {
+        match entry.opening {
+            Opening::Mm(size) => sieves.push((entry.line, size, entry.value)),
+            Opening::Total if total.is_some_and(|total| total != entry.value) => {
+                return Err(weighed.refused(entry.line, entry.value, "one total"));
+            }
+            Opening::Total => total = Some(entry.value),
+            _ => pans.push(entry),
+        }
+    }
+    let pan = pans.first().map(|first| (first.line, pans.iter().map(|entry| entry.value).sum::<f64>()));
+    let sum = sieves.iter().map(|sieve| sieve.2).sum::<f64>() + pan.map_or(0.0, |pan| pan.1);
+    let is_whole = total.is_some_and(|total: f64| (sum - total).abs() <= ROUNDED / 100.0 * total);
+    let washed = pans.iter().find(|entry| is_washed(&entry.text));
+    if let Some(part) = washed.or(pans.get(1)).filter(|_| !is_whole) {
+        let allowed = "one row for the pan, the last, with all that was washed out or lost, as it is a \
+                       part of \
+                       the whole; or a row for the total, to which all of them sum";
+        return Err(weighed.grid.refused(part.line, part.column, FIELDS[0], &part.text, allowed));
+    }
+    let is_turn = |w: &[(usize, f64, f64)]| (w[0].1 - w[1].1) * (w[1].1 - w[2].1) < 0.0;
+    if let Some(turn) = sieves.windows(3).find(|three| is_turn(three)) {
+        let allowed = "sizes all ascending or all descending";
+        return Err(weighed.grid.refused(
+            turn[2].0,
+            weighed.column,
+            FIELDS[0],
+            &turn[2].1.to_string(),
+            allowed,
+        ));
+    }
+    sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
+    if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
+        let allowed = format!("every size once (it is also in {})", weighed.grid.said(pair[0].0));
+        return Err(weighed.grid.refused(
+            pair[1].0,
+            weighed.column,
+            FIELDS[0],
+            &pair[1].1.to_string(),
+            allowed,
+        ));
+    }
+    let on_sieves: f64 = sieves.iter().map(|sieve| sieve.2).sum();
+    let all = on_sieves + pan.map_or(0.0, |(_, mass)| mass);
+    let last = pan.map_or(sieves[sieves.len() - 1].2, |(_, mass)| mass);
+    let rises = sieves.windows(2).all(|w| w[0].2 <= w[1].2)
+        && pan.is_none_or(|(_, mass)| mass >= sieves[sieves.len() - 1].2);
+    let percent = weighed.retained.percent;
+    let near = |a: f64, b: f64| (a - b).abs() <= ROUNDED / 100.0 * b.abs().max(1e-12);
+    let whole = if percent { Some(100.0) } else { total };
+    let can_be_single = match whole {
+        Some(whole) if pan.is_some() => near(all, whole),
+        Some(whole) => all <= whole * (1.0 + ROUNDED / 100.0),
+        None => pan.is_some(),
+    };
+    let can_be_cumulative = rises
+        && match whole {
+            Some(whole) if pan.is_some() => near(last, whole),
+            Some(whole) => last <= whole * (1.0 + ROUNDED / 100.0),
+            None => pan.is_some(),
+        };
+    let cumulative = match (weighed.retained.cumulative, can_be_single, can_be_cumulative) {
+        (Some(true), _, true) | (None, false, true) => true,
+        (Some(false), true, _) | (None, true, false) => false,
+        (None, true, true) => {
+            let allowed =
+                "a heading that says whether each value is `cumulative` or `individual`: both would do";
+            return Err(weighed.refused(first_line, first, allowed));
+        }
+        _ if whole.is_none() && pan.is_none() => {
+            let allowed = "masses with that in the pan, or their total, without which percents are not known";
+            return Err(weighed.refused(sieves[sieves.len() - 1].0, last, allowed));
+        }
+        (Some(true), _, false) => {
+            let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the \
+                           heading says cumulative";
+            return Err(weighed.refused(first_line, first, allowed));
+        }
+        _ => {
+            let allowed = format!(
+                "values retained that sum to the whole with the pan (these sum to {}), or cumulative ones \
+                 that rise towards the finer sieves",
+                tidy(all)
+            );
+            return Err(weighed.refused(first_line, first, &allowed));
+        }
+    };
+    if !cumulative
+        && let Some(&line) = weighed.missing.first()
+        && !whole.is_some_and(|whole| near(all, whole))
+    {
+        let allowed =
+            "what is retained on every sieve, 0 where nothing is; leave out a sieve that was not used";
+        return Err(weighed.grid.refused(line, weighed.column, FIELDS[1], "", allowed));
+    }
+    if percent && let Some(total) = total.filter(|&total| !near(total, 100.0) && !near(total, all)) {
+        let allowed = format!("the sum of the percents ({}) or 100 as their total", tidy(all));
+        return Err(weighed.refused(first_line, total, &allowed));
+    }
+    let whole = match (cumulative, pan) {
+        (false, Some(_)) => all,
+        (true, Some(_)) if whole.is_none() || percent => last,
+        _ => whole.unwrap_or(all),
+    };
+    if whole <= 0.0 {
+        return Err(weighed.refused(first_line, first, "masses of which any is above 0"));
+    }
+    weighed.check_stated(whole, notes)?;
+    if pan.is_none() && total.is_none() {
+        let end = if cumulative { last } else { all };
+        weighed.refuse_unsaid(sieves[sieves.len() - 1].0, end)?;
+    }
+    let mut coarser = 0.0;
+    let mut rows = Vec::new();
+    for (line, size, value) in sieves {
+        coarser = if cumulative { value } else { coarser + value };
+        // A sum of decimals is rounded to what it was meant to be.
+        let finer = (100.0 * (1.0 - coarser / whole) * 1e9).round() / 1e9;
+        rows.push(Row { line, size, percent: finer.clamp(0.0, 100.0) + 0.0 });
+    }
+    let what = if percent { "percents" } else { "masses" };
+    let how = if cumulative { "cumulative " } else { "" };
+    notes.push(format!("{how}{what} retained turned into percent finer"));
+    let rest = rows.last().map_or(0.0, |row| row.percent);
+    if percent && !cumulative && pan.is_none() && rest > ROUNDED {
+        notes.push(format!(
+            "the percents retained sum to {}, without the pan: the missing {} % were taken as finer than the \
+             finest sieve",
+            tidy(all),
+            tidy(rest)
+        ));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Soil;
+
+    #[test]
+    fn percents_without_a_pan_say_what_they_were_taken_to_leave() {
+        let notes = |rows: &str| {
+            let text = format!("Sieve (mm),% Retained\n{rows}");
+            Soil::all("a.csv", text.as_bytes()).unwrap()[0].notes().join("; ")
+        };
+        let short = notes("9.5,0\n4.75,30\n1.18,40\n0.075,5\n");
+        let said = "the percents retained sum to 75, without the pan: the missing 25 % were taken as finer \
+                    than the finest sieve";
+        assert!(short.contains(said), "{short}");
+        for whole in ["9.5,0\n4.75,30\n1.18,40\n0.075,5\nPan,25\n", "9.5,0\n4.75,30\n1.18,64\n0.075,6\n"] {
+            let notes = notes(whole);
+            assert!(notes.contains("turned into percent finer") && !notes.contains("missing"), "{notes}");
+        }
+    }
+}

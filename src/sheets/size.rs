@@ -1,0 +1,468 @@
+//! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
+
+use super::languages::{is_pan, is_total};
+use super::marks::unmarked;
+use voidwalk_core::gradation::number;
+use voidwalk_core::schema::length::fraction;
+
+/// US sieves by number, and their openings in mm (ASTM E11).
+const BY_NUMBER: [(&str, f64); 34] = [
+    ("3 1/2", 5.6),
+    ("3.5", 5.6),
+    ("4", 4.75),
+    ("5", 4.0),
+    ("6", 3.35),
+    ("7", 2.8),
+    ("8", 2.36),
+    ("10", 2.0),
+    ("12", 1.7),
+    ("14", 1.4),
+    ("16", 1.18),
+    ("18", 1.0),
+    ("20", 0.85),
+    ("25", 0.71),
+    ("30", 0.6),
+    ("35", 0.5),
+    ("40", 0.425),
+    ("45", 0.355),
+    ("50", 0.3),
+    ("60", 0.25),
+    ("70", 0.212),
+    ("80", 0.18),
+    ("100", 0.15),
+    ("120", 0.125),
+    ("140", 0.106),
+    ("170", 0.09),
+    ("200", 0.075),
+    ("230", 0.063),
+    ("270", 0.053),
+    ("325", 0.045),
+    ("400", 0.038),
+    ("450", 0.032),
+    ("500", 0.025),
+    ("635", 0.02),
+];
+
+/// US sieves by inches, and their openings in mm (ASTM E11).
+const BY_INCHES: [(f64, f64); 19] = [
+    (5.0, 125.0),
+    (4.0, 100.0),
+    (3.5, 90.0),
+    (3.0, 75.0),
+    (2.5, 63.0),
+    (2.0, 50.0),
+    (1.75, 45.0),
+    (1.5, 37.5),
+    (1.25, 31.5),
+    (1.0, 25.0),
+    (0.875, 22.4),
+    (0.75, 19.0),
+    (0.625, 16.0),
+    (0.5, 12.5),
+    (0.4375, 11.2),
+    (0.375, 9.5),
+    (0.3125, 8.0),
+    (0.25, 6.3),
+    (12.0, 300.0),
+];
+
+/// Millimetres of an inch.
+const INCH_MM: f64 = 25.4;
+
+/// What numbers without a unit mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unit {
+    Mm,
+    Cm,
+    Micrometre,
+    Inch,
+    Phi,
+    /// Numbers of US sieves.
+    SieveNumber,
+}
+
+/// What an opening's cell says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Opening {
+    /// An opening in mm.
+    Mm(f64),
+    /// A number whose unit is the column's.
+    Bare(f64),
+    /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the share that passes it.
+    Below(f64),
+    /// Between two openings, as in `9.5-4.75`: the larger, infinite for `> 9.5`, and the smaller.
+    Class(f64, f64),
+    /// What passed the finest sieve.
+    Pan,
+    /// The sum of all.
+    Total,
+}
+
+/// A row of the table, not yet in percent finer.
+pub(super) struct Entry {
+    pub(super) line: usize,
+    /// The column that the opening stands in.
+    pub(super) column: usize,
+    pub(super) opening: Opening,
+    /// The opening as it is written.
+    pub(super) text: String,
+    pub(super) said: Said,
+    pub(super) value: f64,
+}
+
+/// What was understood of an opening beyond its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Said {
+    /// A number.
+    Plain,
+    /// A number with a unit that is not inches.
+    WithUnit,
+    /// A US sieve by its number.
+    UsNumber,
+    /// Inches.
+    Inches,
+}
+
+/// Whether a text names what was washed out of a sample before it was sieved.
+pub(super) fn is_washed(text: &str) -> bool {
+    const NAMES: [&str; 6] = [
+        "fines washed out",
+        "washed out",
+        "loss by washing",
+        "loss on washing",
+        "lost by washing",
+        "washing loss",
+    ];
+    let small = text.to_lowercase();
+    let name = small.trim_end_matches([' ', ':', '.']);
+    NAMES.contains(&name.strip_suffix("(g)").unwrap_or(name).trim())
+}
+
+/// `Total`, `Total dry mass before washing`.
+fn is_sum(text: &str) -> bool {
+    const MORE: [&str; 8] = ["mass", "weight", "dry", "sample", "of", "soil", "before", "washing"];
+    let mut words = text.split_whitespace();
+    ["total", "totals", "sum"].contains(&words.next().unwrap_or_default())
+        && words.all(|word| MORE.contains(&word))
+}
+
+/// What a cell says of an opening; `None` for anything else.
+pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
+    if let Some(value) = number(text) {
+        return Some((Opening::Bare(value), Said::Plain));
+    }
+    let text = text.to_lowercase().replace('\u{a0}', " ");
+    let text = text.trim();
+    let (before, within) = text.split_once('(').unwrap_or((text, ""));
+    let is_unit = |word: &str| ["g", "kg", "gr", "grams"].contains(&word.trim_matches([')', ' ']));
+    let plain = if within.contains('%') || is_unit(within) { text } else { before };
+    let plain = plain.trim_end_matches([' ', ':', '.', ',']);
+    const PAN: [&str; 7] = ["pan", "the pan", "bottom", "receiver", "rest", "tray", "base pan"];
+    if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) {
+        return Some((Opening::Pan, Said::Plain));
+    }
+    if is_washed(text) {
+        return Some((Opening::Pan, Said::Plain));
+    }
+    if is_sum(plain) || is_total(plain) {
+        return Some((Opening::Total, Said::Plain));
+    }
+    if let Some(rest) =
+        ["<", "≤", "pass ", "passing ", "finer than ", "minus "].iter().find_map(|p| text.strip_prefix(p))
+    {
+        return match opening(rest.trim())? {
+            (Opening::Mm(mm) | Opening::Bare(mm), said) => Some((Opening::Below(mm), said)),
+            _ => None,
+        };
+    }
+    let minus = text.strip_prefix('-').and_then(us).filter(|(_, said)| *said == Said::UsNumber);
+    if let Some((Opening::Mm(mm), said)) = minus {
+        return Some((Opening::Below(mm), said));
+    }
+    let read = metric(text).map(|mm| (Opening::Mm(mm), Said::WithUnit)).or_else(|| us(text));
+    read.or_else(|| class(text)).or_else(|| {
+        let bare = unmarked(text);
+        if bare == text { None } else { opening(bare) }
+    })
+}
+
+/// `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`: what lies between two sieves.
+fn class(text: &str) -> Option<(Opening, Said)> {
+    let sieve = |text: &str| match opening(text.trim())? {
+        (Opening::Mm(size) | Opening::Bare(size), said) if size >= 0.0 => Some((size, said)),
+        _ => None,
+    };
+    if let Some(rest) = [">=", ">", "≥", "coarser than "].iter().find_map(|sign| text.strip_prefix(sign)) {
+        return sieve(rest).map(|(lower, said)| (Opening::Class(f64::INFINITY, lower), said));
+    }
+    let passed = text.strip_prefix('-').and_then(|rest| rest.split_once('+'));
+    let ends = passed.or_else(|| {
+        const SIGNS: [&str; 7] = ["-", "–", "—", "~", " to ", " bis ", " à "];
+        SIGNS.iter().find_map(|sign| text.split_once(sign))
+    });
+    let (first, second) = ends?;
+    let (lower, said) = sieve(second)?;
+    // The unit may stand once, at the end.
+    let unit = second.trim_start_matches(|c: char| !c.is_alphabetic());
+    let with_unit = || if said > Said::Plain { sieve(&format!("{first} {unit}")) } else { None };
+    let is_bare = |said: Said| said == Said::Plain;
+    let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(said)).or_else(with_unit)?;
+    (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), said))
+}
+
+/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
+const NEAR: f64 = 0.07;
+
+/// Whether two openings (mm) are those of one sieve.
+pub(super) fn near(one: f64, other: f64) -> bool {
+    (one - other).abs() <= NEAR * one.max(other)
+}
+
+/// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
+const LONGEST_NAME: usize = 32;
+
+/// `9.5 mm`, also within `No. 4 (4.75 mm)`, where both names are those of one sieve; `75 um`.
+fn metric(text: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 14] = [
+        ("mm", 1.0),
+        ("мм", 1.0),
+        ("мкм", 1e3),
+        ("millimet", 1.0),
+        ("um", 1e3),
+        ("µm", 1e3),
+        ("μm", 1e3),
+        ("micron", 1e3),
+        ("micromet", 1e3),
+        ("mikrom", 1e3),
+        ("mym", 1e3),
+        ("µ", 1e3),
+        ("μ", 1e3),
+        ("cm", 0.1),
+    ];
+    UNITS.iter().find_map(|(unit, per_mm)| {
+        let (before, after) = text.split_once(unit)?;
+        let digits_from = before.trim_end().rfind(|c: char| !(c.is_ascii_digit() || ".,".contains(c)));
+        let from = digits_from.map_or(0, |at| at + before[at..].chars().next().map_or(1, char::len_utf8));
+        let lead = before[..from].trim();
+        let good_lead = lead.is_empty() || lead.ends_with('(') || lead.ends_with('=') || lead.ends_with('/');
+        let rest = after.trim_start_matches(|c: char| c.is_alphabetic()).trim();
+        let good_rest = rest.is_empty() || rest == ")" || rest.starts_with('(') || rest == "sieve";
+        if !good_lead || !good_rest {
+            return None;
+        }
+        let mm = number(before[from..].trim())? / per_mm;
+        let others = [lead, rest].map(|other| other.trim_matches(['(', ')', '=', '/', ' ']));
+        let disagrees = |other: &str| {
+            other.len() > LONGEST_NAME
+                || matches!(opening(other), Some((Opening::Mm(named), _)) if !near(named, mm))
+        };
+        (!others.into_iter().any(disagrees)).then_some(mm)
+    })
+}
+
+/// `No. 4`, `#200`, `200 mesh`, `3/8"`, `1 1/2 in`.
+fn us(text: &str) -> Option<(Opening, Said)> {
+    let mut text = text;
+    let mut is_us = false;
+    for lead in ["u.s. ", "us ", "uss ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. ", "sieve "] {
+        let rest = text.strip_prefix(lead).map(str::trim);
+        is_us |= rest.is_some() && lead.starts_with('u');
+        text = rest.unwrap_or(text);
+    }
+    for end in ["sieve", "(us)", "(u.s.)"] {
+        let rest = text.strip_suffix(end).map(str::trim);
+        is_us |= rest.is_some() && end.starts_with('(');
+        text = rest.unwrap_or(text);
+    }
+    if let Some(mm) = us_sieve_number(text).filter(|_| is_us) {
+        return Some((Opening::Mm(mm), Said::UsNumber));
+    }
+    for lead in ["no.", "no ", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "] {
+        if let Some(mm) = text.strip_prefix(lead).and_then(|rest| us_sieve_number(rest.trim())) {
+            return Some((Opening::Mm(mm), Said::UsNumber));
+        }
+    }
+    for (lead, end) in [("no", ""), ("", "mesh"), ("", "#")] {
+        let inner = text.strip_prefix(lead).and_then(|rest| rest.strip_suffix(end)).map(str::trim);
+        if let Some(mm) = inner.filter(|inner| *inner != text).and_then(us_sieve_number) {
+            return Some((Opening::Mm(mm), Said::UsNumber));
+        }
+    }
+    const MARKS: [&str; 13] =
+        ["\"", "''", "″", "”", "“", "’’", "inches", "inch", "in.", "in", "zoll", "pouces", "-in."];
+    let marked =
+        MARKS.iter().find_map(|mark| text.strip_suffix(mark)).map(|rest| rest.trim_end_matches('-').trim());
+    let inches = match marked {
+        Some(rest) => inches_of(rest)?,
+        None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => inches_of(text)?,
+        None => return None,
+    };
+    Some((Opening::Mm(of_inches(inches)), Said::Inches))
+}
+
+/// Inches as decimals or a fraction; `11/2` may be 1 1/2 without its space.
+fn inches_of(text: &str) -> Option<f64> {
+    let is_run_together = text.split_once('/').is_some_and(|(above, _)| {
+        let above = above.trim_start_matches(['-', ' ']);
+        above.len() > 1 && above.bytes().all(|b| b.is_ascii_digit())
+    });
+    fraction(text, number).filter(|&inches| !is_run_together || inches < 1.0)
+}
+
+/// The name of the US sieve with this opening (mm), by ASTM E11: `No. 4`, `3/8 in`; `None` for any other.
+///
+/// ```
+/// use voidwalk_sheets::us_sieve;
+/// assert_eq!([4.75, 9.5, 37.5].map(|mm| us_sieve(mm).unwrap()), ["No. 4", "3/8 in", "1 1/2 in"]);
+/// assert_eq!(us_sieve(4.0001), None);
+/// ```
+pub fn us_sieve(mm: f64) -> Option<String> {
+    let is_it = |opening: f64| (opening - mm).abs() < 1e-9 * mm;
+    if let Some((name, _)) = BY_NUMBER.iter().find(|(_, opening)| is_it(*opening)) {
+        return Some(format!("No. {name}"));
+    }
+    let (inches, _) = BY_INCHES.iter().find(|(_, opening)| is_it(*opening))?;
+    let (whole, mut above, mut below) = (inches.floor(), inches.fract() * 16.0, 16.0);
+    while above > 0.0 && above % 2.0 == 0.0 {
+        (above, below) = (above / 2.0, below / 2.0);
+    }
+    Some(match (whole > 0.0, above > 0.0) {
+        (true, true) => format!("{whole} {above}/{below} in"),
+        (true, false) => format!("{whole} in"),
+        (false, _) => format!("{above}/{below} in"),
+    })
+}
+
+/// Opening (mm) of the US sieve of this number.
+pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
+    BY_NUMBER.iter().find(|(name, _)| *name == text).map(|(_, mm)| *mm)
+}
+
+/// Opening (mm) of a sieve named by inches: the standard one where there is one.
+fn of_inches(inches: f64) -> f64 {
+    let standard = BY_INCHES.iter().find(|(named, _)| (named - inches).abs() < 1e-9);
+    standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
+}
+
+/// Whether an opening (mm) is that of a US sieve.
+pub(super) fn is_us_sieve(mm: f64) -> bool {
+    us_sieve(mm).is_some()
+}
+
+/// Whether an opening (mm) that was given in inches is that of a US sieve.
+pub(super) fn is_us_sieve_of_inches(mm: f64) -> bool {
+    BY_INCHES.iter().any(|(_, opening)| *opening == mm)
+}
+
+impl Unit {
+    /// What a number without a unit is in mm.
+    pub(super) fn mm(self, value: f64) -> Option<f64> {
+        match self {
+            Unit::Mm => Some(value),
+            Unit::Cm => Some(value * 10.0),
+            Unit::Micrometre => Some(value / 1e3),
+            Unit::Inch => Some(of_inches(value)),
+            Unit::Phi => Some(libm::exp2(-value)),
+            Unit::SieveNumber => us_sieve_number(&value.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn openings_are_read_as_laboratories_write_them() {
+        for (text, mm) in [
+            ("No. 4", 4.75),
+            ("No.200", 0.075),
+            ("no 40", 0.425),
+            ("#200", 0.075),
+            ("# 10", 2.0),
+            ("200 mesh", 0.075),
+            ("US No. 60", 0.25),
+            ("3\"", 75.0),
+            ("1 1/2\"", 37.5),
+            ("1-1/2 in.", 37.5),
+            ("1½\"", 37.5),
+            ("¾ in", 19.0),
+            ("3/8", 9.5),
+            ("3/8 inch", 9.5),
+            ("3/8-in.", 9.5),
+            ("0.375\"", 9.5),
+            ("6 in", 152.39999999999998),
+            ("9.5 mm", 9.5),
+            ("9,5mm", 9.5),
+            ("75 µm", 0.075),
+            ("75um", 0.075),
+            ("63 microns", 0.063),
+            ("No. 4 (4.75 mm)", 4.75),
+            ("4.75 mm (No. 4)", 4.75),
+            ("No. 4 (4.76 mm)", 4.76),
+            ("No. 40 (0.42 mm)", 0.42),
+            ("425 um (0.425 mm)", 0.425),
+            ("3/4 in. (19.0 mm)", 19.0),
+            ("2 cm", 20.0),
+            ("US 4", 4.75),
+            ("US Sieve No. 200", 0.075),
+            ("US Standard Sieve 40", 0.425),
+            ("USS #200", 0.075),
+            ("Sieve 200 (US)", 0.075),
+            ("No. 200*", 0.075),
+            ("0.075 mm (1)", 0.075),
+        ] {
+            assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
+        }
+        assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Said::Plain)));
+        for pan in ["Pan", "Pan (dry)", "bottom pan", "Receptáculo", "Siebpfanne:", "底盘", "受け皿"] {
+            assert_eq!(opening(pan), Some((Opening::Pan, Said::Plain)), "{pan}");
+        }
+        assert_eq!(opening("0.075*"), Some((Opening::Bare(0.075), Said::Plain)));
+        assert_eq!(opening("-#200"), Some((Opening::Below(0.075), Said::UsNumber)));
+        for (class, bounds, said) in [
+            ("9.5-4.75", (9.5, 4.75), Said::Plain),
+            ("9.5 - 4.75 mm", (9.5, 4.75), Said::WithUnit),
+            ("3/4 in - 3/8 in", (19.0, 9.5), Said::Inches),
+            ("-3/8 in +No. 4", (9.5, 4.75), Said::UsNumber),
+            ("> 9.5", (f64::INFINITY, 9.5), Said::Plain),
+        ] {
+            assert_eq!(opening(class), Some((Opening::Class(bounds.0, bounds.1), said)), "{class}");
+        }
+        assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Said::WithUnit)));
+        for text in [
+            "Rest (%)",
+            "US 199",
+            "2026-03-14",
+            "BH-1",
+            "No. 3",
+            "#",
+            "project no. 4",
+            "mm",
+            "sixty",
+            "3/0\"",
+            "8-Mar",
+            "1 3/2\"",
+            "x9.5 mm",
+            "No. 40 (0.245 mm)",
+            "No. 30 (0.06 mm)",
+            "0.6 mm (No. 40)",
+            "3/8 in (19 mm)",
+            "425 um (0.245 mm)",
+            "",
+        ] {
+            assert_eq!(opening(text), None, "{text}");
+        }
+        for (inches, mm) in BY_INCHES {
+            let name = us_sieve(mm).unwrap();
+            assert_eq!(opening(&name), Some((Opening::Mm(mm), Said::Inches)), "{name}: {inches}");
+        }
+        for (_, mm) in BY_NUMBER {
+            assert_eq!(opening(&us_sieve(mm).unwrap()), Some((Opening::Mm(mm), Said::UsNumber)), "{mm}");
+        }
+        assert_eq!(us_sieve(7.0), None);
+        assert_eq!(Unit::Phi.mm(-2.0), Some(4.0));
+        assert_eq!(Unit::SieveNumber.mm(200.0), Some(0.075));
+        assert_eq!(Unit::SieveNumber.mm(4.75), None);
+    }
+}

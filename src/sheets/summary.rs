@@ -1,0 +1,84 @@
+//! What there is to say of a soil: its sizes, its shape, its class.
+
+use serde::Serialize;
+
+use super::table::Soil;
+use voidwalk_core::gradation::CurvePoint;
+use voidwalk_core::gradation::GradationError;
+use voidwalk_core::gradation::{FINES_MM, GRAVEL_MM};
+
+/// What was understood of a soil, and what follows from its curve.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct SoilSummary {
+    /// What its sheet or column calls it, or the file.
+    pub name: String,
+    /// Opening (mm) and percent finer by mass; sizes rise.
+    #[cfg_attr(feature = "schemas", schemars(with = "Vec<[f64; 2]>"))]
+    pub points: Vec<CurvePoint>,
+    /// D5 (mm); this and the others are `None` where they lie below the finest opening.
+    pub d5_mm: Option<f64>,
+    /// D10 (mm).
+    pub d10_mm: Option<f64>,
+    /// D15 (mm).
+    pub d15_mm: Option<f64>,
+    /// D30 (mm).
+    pub d30_mm: Option<f64>,
+    /// D50 (mm).
+    pub d50_mm: Option<f64>,
+    /// D60 (mm).
+    pub d60_mm: Option<f64>,
+    /// D85 (mm).
+    pub d85_mm: Option<f64>,
+    /// D90 (mm).
+    pub d90_mm: Option<f64>,
+    /// D95 (mm).
+    pub d95_mm: Option<f64>,
+    /// D100 (mm).
+    pub d100_mm: Option<f64>,
+    /// D60 / D10.
+    pub cu: Option<f64>,
+    /// D30^2 / (D60 D10).
+    pub cc: Option<f64>,
+    /// Percent finer than 0.075 mm.
+    pub fines_percent: Option<f64>,
+    /// Percent coarser than 4.75 mm.
+    pub gravel_percent: Option<f64>,
+    /// Group of ASTM D2487, as far as a sieve curve tells it.
+    pub class: Option<String>,
+    /// What was assumed when it was read.
+    pub notes: Vec<String>,
+}
+
+impl SoilSummary {
+    /// What there is to say of `soil`, whose open finest tail ends at `d0_mm`.
+    ///
+    /// # Errors
+    /// A table that is no sieve curve.
+    pub fn of(soil: &Soil, d0_mm: Option<f64>) -> Result<SoilSummary, GradationError> {
+        let curve = soil.gradation(d0_mm)?;
+        let d = |percent| curve.d(percent);
+        let fines_percent = curve.percent_finer_if_known(FINES_MM);
+        let gravel_percent = curve.percent_finer_if_known(GRAVEL_MM).map(|percent| 100.0 - percent);
+        Ok(SoilSummary {
+            name: soil.name().to_owned(),
+            points: curve.points(),
+            d5_mm: d(5.0),
+            d10_mm: d(10.0),
+            d15_mm: d(15.0),
+            d30_mm: d(30.0),
+            d50_mm: d(50.0),
+            d60_mm: d(60.0),
+            d85_mm: d(85.0),
+            d90_mm: d(90.0),
+            d95_mm: d(95.0),
+            d100_mm: d(100.0),
+            cu: curve.cu(),
+            cc: curve.cc(),
+            fines_percent,
+            gravel_percent,
+            class: curve.group_in_words(),
+            notes: soil.notes().to_vec(),
+        })
+    }
+}

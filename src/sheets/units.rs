@@ -1,0 +1,352 @@
+//! What openings without a unit of their own mean.
+
+use super::grid::Grid;
+use super::heading::{Retained, Role};
+use super::layout::Layout;
+use super::size::{Entry, Opening, Said, Unit, is_us_sieve_of_inches};
+use super::stated;
+use voidwalk_core::gradation::FIELDS;
+use voidwalk_core::gradation::TableError;
+
+/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The
+/// first few may be chosen in mm, too: one of them alone says nothing.
+const ONLY_INCHES: [f64; 70] = [
+    3.5, 1.75, 1.5, 0.75, 0.875, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
+    0.265, 0.223, 0.187, 0.1870, 0.1875, 0.19, 0.157, 0.132, 0.1319, 0.111, 0.1102, 0.1110, 0.0937, 0.0938,
+    0.094, 0.0929, 0.093, 0.0787, 0.079, 0.0661, 0.0669, 0.0555, 0.0551, 0.0469, 0.047, 0.0465, 0.0394,
+    0.0331, 0.0335, 0.0278, 0.0234, 0.0236, 0.0232, 0.0197, 0.0165, 0.0167, 0.0139, 0.0138, 0.0117, 0.0118,
+    0.0116, 0.0098, 0.0083, 0.007, 0.0059, 0.0058, 0.0049, 0.0041, 0.0035, 0.0029, 0.0025, 0.0021, 0.0017,
+    0.0015,
+];
+/// US sieves in decimals of an inch that could be metric ones as well.
+const ALSO_MM: [f64; 22] = [
+    12.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.25, 1.0, 0.5, 0.25, 0.033, 0.028, 0.023, 0.017, 0.012, 0.006,
+    0.003, 0.01, 0.004, 0.002, 0.125,
+];
+
+/// What is said of bare openings for which no unit is found.
+pub(super) const TAKEN_AS_MM: &str = "openings without a unit taken as mm";
+
+/// The unit of openings that are bare numbers: the heading's; mm where nothing else has inches; else the one
+/// in which the openings go one way.
+pub(super) fn of_bare(
+    grid: &Grid,
+    layout: &Layout,
+    role: Role,
+    entries: &[Entry],
+    notes: &mut Vec<String>,
+) -> Result<Unit, TableError> {
+    stated::refuse_other_series(grid, layout, entries)?;
+    let stated = stated::beside(grid, layout, entries)?;
+    if matches!(stated, None | Some(Unit::Mm)) {
+        refuse_micrometres(grid, entries)?;
+    }
+    let is_no_sieve = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
+        _ => false,
+    };
+    stated::refuse_other_unit(grid, layout, entries, stated)?;
+    match stated {
+        // Headings say `Sieve no.` of openings in mm too.
+        Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
+        Some(unit) => return Ok(unit),
+        None => {}
+    }
+    let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
+    let is_sieve_number = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) => value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some(),
+        _ => false,
+    };
+    let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
+    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
+    let refused =
+        |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
+    if let Some(entry) = first_sieve_number(entries, role) {
+        if layout.unit == Some(Unit::SieveNumber) {
+            // The opening that is none is refused as such.
+            return Ok(Unit::SieveNumber);
+        }
+        let text = &entry.text;
+        let allowed = format!(
+            "No. {text} or {text} mm: no unit is given, and these look like US sieve numbers; write No. \
+             {text}, or head the column Sieve No.; sizes in mm need mm in the heading, as Sieve (mm)"
+        );
+        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+    }
+    if any(Said::Inches) || any(Said::UsNumber) {
+        match (goes_one_way(entries, Unit::Mm), goes_one_way(entries, Unit::Inch)) {
+            (false, true) => {
+                notes.push("openings without a unit read as inches, as those around them are".into());
+                return Ok(Unit::Inch);
+            }
+            (true, false) => {
+                let is_either = |entry: &&Entry| any(Said::Inches) && is_sieve_number(entry);
+                if let Some(entry) = entries.iter().find(is_either) {
+                    let text = &entry.text;
+                    let allowed = format!("No. {text} or {text} mm, as other rows are in inches");
+                    return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+                }
+            }
+            (false, false) if !any(Said::Inches) => {}
+            (true, true) if !any(Said::Inches) && !is_series_of_inches(entries) => {}
+            _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
+        }
+    } else if is_series_of_inches(entries) {
+        let text = &first.text;
+        return refused(&format!(
+            "{text} in or {text} mm: no unit is given, and all openings are those of US sieves in inches; \
+             write the unit in the heading, as Sieve (in) or Sieve (mm)"
+        ));
+    }
+    notes.push(TAKEN_AS_MM.into());
+    Ok(Unit::Mm)
+}
+
+/// No sieve is finer, and larger openings in mm are few.
+const LEAST_MICROMETRES: f64 = 25.0;
+
+/// Refuses openings of which the finer ones seem to be in micrometres and the coarser ones in mm: they go one
+/// way only if these are a thousandth.
+fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> {
+    let sizes: Vec<(f64, &Entry)> = entries
+        .iter()
+        .filter_map(|entry| match entry.opening {
+            Opening::Mm(mm) => Some((mm, entry)),
+            Opening::Bare(value) if value > 0.0 => Some((value, entry)),
+            _ => None,
+        })
+        .collect();
+    let may_be = |(value, entry): &(f64, &Entry)| {
+        matches!(entry.opening, Opening::Bare(_)) && value.fract() == 0.0 && *value >= LEAST_MICROMETRES
+    };
+    let goes_one_way = |fine: std::ops::Range<usize>| {
+        let mm = |at: usize| if fine.contains(&at) { sizes[at].0 / 1e3 } else { sizes[at].0 };
+        let pairs = || (1..sizes.len()).map(|at| mm(at - 1) - mm(at));
+        pairs().all(|step| step > 0.0) || pairs().all(|step| step < 0.0)
+    };
+    let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
+    // One step against the others is where the unit changes.
+    let alone = |falls: bool| {
+        let mut places = (0..steps.len()).filter(|&at| steps[at] == falls);
+        places.next().filter(|_| places.next().is_none() && steps.len() > 1)
+    };
+    let places = [alone(true), alone(false)].into_iter().flatten();
+    for fine in places.flat_map(|at| [at + 1..sizes.len(), 0..at + 1]) {
+        if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(fine.clone()) {
+            continue;
+        }
+        let beside = if fine.start > 0 { &sizes[fine.start - 1] } else { &sizes[fine.end] };
+        let (value, entry) = if fine.start > 0 { sizes[fine.start] } else { sizes[fine.end - 1] };
+        let (text, other) = (&entry.text, &beside.1.text);
+        let allowed = format!(
+            "{text} um ({} mm) beside {other}, if these are micrometres: write the unit in each cell",
+            value / 1e3
+        );
+        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+    }
+    Ok(())
+}
+
+/// Whether the openings rise or fall all the way where those without a unit are in this one.
+fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
+    let sizes: Vec<f64> = entries
+        .iter()
+        .filter_map(|entry| match entry.opening {
+            Opening::Mm(mm) => Some(mm),
+            Opening::Bare(value) if value > 0.0 => unit.mm(value),
+            _ => None,
+        })
+        .collect();
+    sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
+}
+
+/// How many of the openings that are only in inches are round numbers.
+const ROUND: usize = 4;
+
+/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of
+/// no metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
+fn is_series_of_inches(entries: &[Entry]) -> bool {
+    let (mut only, mut round) = (false, 0);
+    for entry in entries {
+        let (Opening::Bare(value) | Opening::Below(value)) = entry.opening else { continue };
+        if value == 0.0 || entry.said != Said::Plain {
+            continue;
+        }
+        let place = |list: &[f64]| list.iter().position(|inches| (inches - value).abs() < 1e-9);
+        match (place(&ONLY_INCHES), place(&ALSO_MM)) {
+            (Some(place), _) if place < ROUND => round += 1,
+            (Some(_), _) => only = true,
+            (None, Some(_)) => {}
+            (None, None) => return false,
+        }
+    }
+    only || round > 1
+}
+
+/// Fewer numbers of sieves may be anything.
+const LEAST_NUMBERS: usize = 3;
+
+/// Numbers of US sieves that are the openings (mm) of no metric sieve.
+const NO_METRIC_SIEVE: [f64; 12] =
+    [7.0, 18.0, 30.0, 35.0, 60.0, 70.0, 120.0, 140.0, 170.0, 230.0, 270.0, 325.0];
+
+/// The first opening of a table whose bare openings are US sieves by number: whole ones, up to No. 100 or
+/// more, of which the larger is the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
+fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
+    let is_number = |value: f64| value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some();
+    let is_inches =
+        |value: f64| ONLY_INCHES.iter().chain(&ALSO_MM).any(|inches| (inches - value).abs() < 1e-9);
+    let (mut numbers, mut all) = (Vec::new(), true);
+    for entry in entries {
+        match entry.opening {
+            Opening::Bare(value) if is_number(value) => numbers.push((value, entry)),
+            Opening::Bare(value) if value == 0.0 || is_inches(value) => all &= value == 0.0,
+            Opening::Bare(_) => return None,
+            _ => {}
+        }
+    }
+    let first = numbers.first()?.1;
+    numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    numbers.dedup_by(|a, b| a.0 == b.0);
+    let largest = numbers.last()?.0;
+    if numbers.len() < LEAST_NUMBERS || largest < 100.0 {
+        return None;
+    }
+    let values: Vec<f64> = numbers.iter().map(|(_, entry)| entry.value).collect();
+    let rises = values.is_sorted() && values[0] < values[values.len() - 1];
+    let falls = values.is_sorted_by(|a, b| a >= b) && values[0] > values[values.len() - 1];
+    let is_it = match role {
+        Role::Retained(Retained { cumulative: Some(true), .. }) => rises,
+        Role::Retained(Retained { cumulative: None, .. }) if rises => true,
+        // What is on each sieve alone goes neither way: the pan stands beside the finest.
+        Role::Retained(_) => match beside_pan(entries) {
+            Some(value) => value == largest,
+            None => all && numbers.iter().any(|(n, _)| *n >= 200.0 || NO_METRIC_SIEVE.contains(n)),
+        },
+        _ => falls,
+    };
+    is_it.then_some(first)
+}
+
+/// The bare opening that stands beside the pan.
+fn beside_pan(entries: &[Entry]) -> Option<f64> {
+    let is_pan = |entry: &Entry| match entry.opening {
+        Opening::Pan | Opening::Below(_) => true,
+        Opening::Bare(value) => value == 0.0,
+        _ => false,
+    };
+    let pan = entries.iter().position(is_pan)?;
+    let beside = [pan.checked_sub(1), Some(pan + 1)].into_iter().flatten();
+    beside.filter_map(|at| entries.get(at)).find_map(|entry| match entry.opening {
+        Opening::Bare(value) if value > 0.0 => Some(value),
+        _ => None,
+    })
+}
+
+/// Says which names of openings were translated.
+pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
+    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
+    let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
+    let of_inches = entries
+        .iter()
+        .filter(|entry| entry.said == Said::Inches || entry.said == Said::Plain && unit == Unit::Inch);
+    let (mut standard, mut exact) = (false, false);
+    for entry in of_inches {
+        if let Opening::Mm(mm) | Opening::Below(mm) = entry.opening {
+            let is_us = is_us_sieve_of_inches(mm);
+            (standard, exact) = (standard || is_us, exact || !is_us);
+        }
+    }
+    if number || standard {
+        let example = if number { "No. 200 = 0.075 mm" } else { "3/8 in = 9.5 mm" };
+        notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
+    }
+    if exact {
+        let which = if standard { "other openings in inches" } else { "openings in inches" };
+        notes.push(format!("{which} converted exactly: 1 in = 25.4 mm"));
+    }
+    match unit {
+        Unit::Micrometre => notes.push("openings in micrometres".into()),
+        Unit::Cm => notes.push("openings in cm".into()),
+        Unit::Phi => notes.push("openings in phi: size = 2^-phi mm".into()),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Soil, read_gradation};
+    use voidwalk_core::gradation::Gradation;
+
+    fn read(heading: &str, rows: &[&str], backwards: bool) -> Result<Gradation, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let mut rows = rows.to_vec();
+        if backwards {
+            rows.reverse();
+        }
+        std::fs::write(&path, format!("{heading}\n{}\n", rows.join("\n"))).unwrap();
+        read_gradation(&path, None).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn bare_numbers_of_us_sieves_are_refused_in_either_order() {
+        for (heading, rows) in [
+            ("Sieve,% Passing", &["4,100", "16,68", "50,17", "200,1.5"][..]),
+            ("US Sieve,% Passing", &["0.375,100", "4,97", "16,68", "50,17", "200,1.5"]),
+            ("Sieve,% Passing", &["#4,100", "16,68", "50,17", "200,1.5"]),
+            ("US Sieve,% Retained", &["16,0", "30,20", "50,60", "100,20", "200,0"]),
+            ("Sieve,% Retained", &["4,10", "8,25", "16,40", "50,25", "100,0", "Pan,0"]),
+            ("Sieve,Mass retained (g)", &["3/8,0", "4,15", "40,300", "200,17.5", "Pan,7.5"]),
+            ("Sieve,Cumulative % retained", &["4,0", "10,20", "40,60", "100,98"]),
+        ] {
+            for backwards in [false, true] {
+                let said = read(heading, rows, backwards).unwrap_err();
+                assert!(said.contains("look like US sieve numbers"), "{heading}: {said}");
+                assert!(said.contains("line ") && said.contains("sizes in mm need mm"), "{said}");
+                let in_mm = heading.replace("Sieve", "Sieve (mm)");
+                let said = read(&in_mm, rows, backwards);
+                assert!(!said.is_err_and(|said| said.contains("US sieve numbers")), "{in_mm}");
+            }
+        }
+        let bare = read("4,100", &["10,68", "40,17", "200,1.5"], false).unwrap_err();
+        assert!(bare.contains("a.csv, line 1, ") && bare.contains("US sieve numbers"), "{bare}");
+        let beside = read("Sieve,% Passing", &["1 1/2,100", "3/4,60", "10,7"], false).unwrap_err();
+        assert!(beside.contains("No. 10 or 10 mm"), "{beside}");
+        let numbered = read("Sieve No.,% Passing", &["4,100", "16,68", "50,17", "200,1.5"], false);
+        assert_eq!(numbered.unwrap().largest_mm(), 4.75);
+    }
+
+    #[test]
+    fn whole_sizes_in_mm_are_read_without_a_unit() {
+        for (heading, rows, largest) in [
+            ("Sieve,% Passing", &["4,10", "8,30", "16,60", "31.5,100"][..], 31.5),
+            ("Sieve,% Passing", &["4,10", "8,30", "20,60", "100,100"], 100.0),
+            ("Sieve,% Passing", &["5,10", "20,30", "50,60", "200,100"], 200.0),
+            ("Sieve,% Retained", &["100,0", "50,30", "20,40", "10,20", "5,10"], 100.0),
+            ("Sieve,Mass retained (g)", &["200,0", "50,30", "30,40", "10,20", "Pan,10"], 200.0),
+            ("Sieve,Cumulative % retained", &["200,0", "50,30", "30,70", "10,100"], 200.0),
+            ("Sieve,% Retained", &["80,0", "40,30", "20,40", "10,20", "5,10"], 80.0),
+        ] {
+            for backwards in [false, true] {
+                let curve = read(heading, rows, backwards);
+                assert_eq!(curve.map(|curve| curve.largest_mm()), Ok(largest), "{heading} {rows:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_us_sieves_are_said_to_be_read_as_such() {
+        let notes = |text: &str| {
+            let soils = Soil::all("a.csv", text.as_bytes()).unwrap();
+            soils[0].notes().join("; ")
+        };
+        let exact = notes("in,percent finer\n9.5,100\n4.75,90\n1.18,50\n0.3,2\n");
+        assert!(exact.contains("openings in inches converted exactly: 1 in = 25.4 mm"), "{exact}");
+        assert!(!exact.contains("US sieves"), "{exact}");
+        let standard = notes("in,percent finer\n1,100\n0.75,90\n0.375,50\n");
+        assert!(standard.contains("ASTM E11 (3/8 in = 9.5 mm)") && !standard.contains("25.4"), "{standard}");
+        let both = notes("Sieve,% finer\n6 in,100\n3/4 in,50\n3/8 in,2\n");
+        assert!(both.contains("ASTM E11") && both.contains("other openings in inches converted exactly"));
+    }
+}

@@ -1,0 +1,24 @@
+//! A workbook to its sheets.
+
+use super::grid::Grid;
+use super::zipped::{Zipped, unreadable};
+use super::{ods, xlsx};
+use voidwalk_core::gradation::TableError;
+
+/// Whether a file is a zip, as workbooks are.
+pub(super) fn is_zip(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
+}
+
+/// The sheets that hold anything.
+pub(super) fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
+    let mut zipped = Zipped::open(file, bytes)?;
+    let sheets = if zipped.has("xl/workbook.xml") {
+        xlsx::sheets(file, &mut zipped)?
+    } else if zipped.has("content.xml") {
+        ods::sheets(file, &mut zipped)?
+    } else {
+        return Err(unreadable(file, "it is a zip, but no workbook (.xlsx or .ods)"));
+    };
+    Ok(sheets.into_iter().filter(|sheet| !sheet.rows.is_empty()).collect())
+}

@@ -1,0 +1,359 @@
+//! Sheets of Office Open XML: the workbook's list, its shared strings, its number formats and its sheets.
+
+use std::collections::HashMap;
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use super::cells::{Budget, Cells, tidy};
+use super::grid::Grid;
+use super::literals::{as_shown, parts_of};
+use super::runs::{Kind, Runs};
+use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
+use voidwalk_core::gradation::{Position, TableError};
+
+/// Most shared strings, and most sheets.
+const MOST_STRINGS: usize = 200_000;
+const MOST_SHEETS: usize = 200;
+
+/// Its sheets.
+pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
+    let book = zipped.text("xl/workbook.xml")?;
+    let mut targets = HashMap::new();
+    each(file, &zipped.text("xl/_rels/workbook.xml.rels")?, "Relationship", |e| {
+        let (id, target) = (attribute(e, "Id"), attribute(e, "Target"));
+        targets.extend(id.zip(target));
+    })?;
+    let mut names = Vec::new();
+    each(file, &book, "sheet", |e| {
+        let hidden = attribute(e, "state").is_some_and(|state| state != "visible");
+        let named = attribute(e, "name").zip(attribute(e, "r:id").or(attribute(e, "id")));
+        names.extend(named.map(|(name, id)| (name, id, hidden)));
+    })?;
+    if names.len() > MOST_SHEETS {
+        return Err(too_large(file, &format!("{} sheets", names.len())));
+    }
+    let strings = match zipped.has("xl/sharedStrings.xml") {
+        true => shared_strings(file, &zipped.text("xl/sharedStrings.xml")?)?,
+        false => Vec::new(),
+    };
+    let styles = match zipped.has("xl/styles.xml") {
+        true => styles(file, &zipped.text("xl/styles.xml")?)?,
+        false => Vec::new(),
+    };
+    let (mut sheets, mut budget) = (Vec::new(), Budget::new());
+    for (name, id, hidden) in names {
+        let Some(target) = targets.get(&id) else { continue };
+        let path = match target.strip_prefix('/') {
+            Some(absolute) => absolute.to_owned(),
+            None => format!("xl/{target}"),
+        };
+        // A chart's sheet holds no cells.
+        if path.contains("worksheets/") {
+            let context = Context { file, sheet: &name, hidden, strings: &strings, styles: &styles };
+            sheets.push(context.sheet(&zipped.text(&path)?, &mut budget)?);
+        }
+    }
+    Ok(sheets)
+}
+
+fn broken(file: &str) -> TableError {
+    unreadable(file, "its XML is broken")
+}
+
+/// Calls `found` for each element of this name.
+fn each(
+    file: &str,
+    text: &str,
+    name: &str,
+    mut found: impl FnMut(&quick_xml::events::BytesStart),
+) -> Result<(), TableError> {
+    let mut reader = Reader::from_str(text);
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) | Event::Empty(e) if e.local_name().as_ref() == name => found(&e),
+            Event::Eof => return Ok(()),
+            _ => {}
+        }
+    }
+}
+
+fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
+    let mut reader = Reader::from_str(text);
+    reader.config_mut().expand_empty_elements = true;
+    let (mut strings, mut rich, mut phonetic) = (Vec::new(), Rich::default(), false);
+    loop {
+        let event = reader.read_event().map_err(|_| broken(file))?;
+        match &event {
+            Event::Start(e) if e.local_name().as_ref() == "rPh" => phonetic = true,
+            Event::End(e) if e.local_name().as_ref() == "rPh" => phonetic = false,
+            Event::End(e) if e.local_name().as_ref() == "si" => {
+                // Shortened once: a sheet may name one long text many times.
+                strings.push(tidy(&rich.runs.text()));
+                if strings.len() > MOST_STRINGS {
+                    return Err(too_large(file, &format!("more than {MOST_STRINGS} texts")));
+                }
+            }
+            Event::Eof => return Ok(strings),
+            Event::Start(e) => rich.start(e),
+            _ => {
+                if let Some(more) = characters(&event).filter(|_| !phonetic) {
+                    rich.push(&more);
+                }
+            }
+        }
+    }
+}
+
+/// A text in runs of different formats.
+#[derive(Default)]
+struct Rich {
+    runs: Runs,
+    kind: Kind,
+    format: String,
+}
+
+impl Rich {
+    /// Takes an element: a run, its text, or one of the properties between them.
+    fn start(&mut self, element: &BytesStart) {
+        let value = attribute(element, "val").unwrap_or_default();
+        match element.local_name().as_ref() {
+            "r" | "si" | "is" => (self.kind, self.format) = (Kind::Plain, String::new()),
+            "t" => {}
+            "strike" if !["0", "false"].contains(&value.as_str()) => self.kind = Kind::Struck,
+            "vertAlign" if value == "superscript" => self.kind = self.kind.max(Kind::Raised),
+            _ => self.format.push_str(element),
+        }
+    }
+
+    fn push(&mut self, more: &str) {
+        self.runs.push(more, self.kind, &self.format);
+    }
+}
+
+/// How a number is shown.
+#[derive(Clone, Debug, PartialEq)]
+enum Style {
+    /// With what stands before it and behind it.
+    Number(String, String),
+    Percent,
+    Date,
+}
+
+/// The styles of cells, by their numbers.
+fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
+    let mut formats: HashMap<u32, Style> = HashMap::new();
+    each(file, text, "numFmt", |e| {
+        let id = attribute(e, "numFmtId").and_then(|id| id.parse().ok());
+        let code = attribute(e, "formatCode").unwrap_or_default();
+        formats.extend(id.map(|id| (id, of_format(&code))));
+    })?;
+    let mut reader = Reader::from_str(text);
+    let (mut within, mut styles) = (false, Vec::new());
+    loop {
+        match reader.read_event().map_err(|_| broken(file))? {
+            Event::Start(e) if e.local_name().as_ref() == "cellXfs" => within = true,
+            Event::End(e) if e.local_name().as_ref() == "cellXfs" => return Ok(styles),
+            Event::Start(e) | Event::Empty(e) if within && e.local_name().as_ref() == "xf" => {
+                let id = attribute(&e, "numFmtId").and_then(|id| id.parse::<u32>().ok()).unwrap_or(0);
+                styles.push(match id {
+                    9 | 10 => Style::Percent,
+                    14..=22 | 27..=36 | 45..=47 | 50..=58 => Style::Date,
+                    id => formats.get(&id).cloned().unwrap_or_else(|| of_format("")),
+                });
+            }
+            Event::Eof => return Ok(styles),
+            _ => {}
+        }
+    }
+}
+
+/// The style of a format's code: quoted text and conditions in brackets say nothing of dates, an elapsed time
+/// in brackets (`[h]`) does.
+fn of_format(code: &str) -> Style {
+    let (before, after, plain) = parts_of(code);
+    let plain = plain.to_lowercase().replace("general", "");
+    match () {
+        () if plain.contains('%') => Style::Percent,
+        () if plain.contains(['d', 'y', 'h', 'm', 's']) || counts_time(code) => Style::Date,
+        () => Style::Number(before, after),
+    }
+}
+
+/// Whether a format's code has hours, minutes or seconds that go on counting: `[h]`, `[mm]`, `[ss]`.
+fn counts_time(code: &str) -> bool {
+    let within = code.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
+    within.map(|(unit, _)| unit.to_lowercase()).any(|unit| {
+        ["h", "m", "s"].iter().any(|letter| !unit.is_empty() && unit.replace(letter, "").is_empty())
+    })
+}
+
+struct Context<'a> {
+    file: &'a str,
+    sheet: &'a str,
+    hidden: bool,
+    strings: &'a [String],
+    styles: &'a [Style],
+}
+
+impl Context<'_> {
+    fn sheet(&self, text: &str, budget: &mut Budget) -> Result<Grid, TableError> {
+        let mut reader = Reader::from_str(text);
+        reader.config_mut().expand_empty_elements = true;
+        let mut cells = Cells::new(self.file, self.sheet, budget);
+        let (mut row, mut column) = (0usize, 0usize);
+        let is_hidden = |e: &BytesStart| attribute(e, "hidden").is_some_and(|h| h == "1" || h == "true");
+        let (mut before, mut within) = (None, false);
+        loop {
+            match reader.read_event().map_err(|_| broken(self.file))? {
+                Event::Start(e) if e.local_name().as_ref() == "sheetData" => within = true,
+                Event::End(e) if e.local_name().as_ref() == "sheetData" => within = false,
+                Event::Start(e) if e.local_name().as_ref() == "col" && is_hidden(&e) => {
+                    let end = |name| attribute(&e, name).and_then(|n| n.parse::<usize>().ok());
+                    if let (Some(first), Some(last)) = (end("min"), end("max")) {
+                        cells.hide_columns(first.saturating_sub(1)..last);
+                    }
+                }
+                Event::Start(e) if e.local_name().as_ref() == "row" => {
+                    let given = attribute(&e, "r").and_then(|r| r.parse::<usize>().ok());
+                    row = given.map_or(row, |r| r.saturating_sub(1));
+                    column = 0;
+                    if before.replace(row) == Some(row) {
+                        let why = format!("its row {} stands in sheet \"{}\" twice", row + 1, self.sheet);
+                        return Err(unreadable(self.file, &why));
+                    }
+                    if is_hidden(&e) {
+                        cells.hide_row(row);
+                    }
+                }
+                Event::End(e) if e.local_name().as_ref() == "row" => row = row.saturating_add(1),
+                Event::Start(e) if e.local_name().as_ref() == "c" => {
+                    if let Some((r, c)) = attribute(&e, "r").and_then(|place| place_of(&place)) {
+                        (row, column) = (r, c);
+                    }
+                    let style = attribute(&e, "s").and_then(|s| s.parse::<usize>().ok()).unwrap_or(0);
+                    let kind = attribute(&e, "t").unwrap_or_default();
+                    let text = self.value(&mut reader, &kind, style, row, column)?;
+                    cells.put(row, column, &text)?;
+                    column += 1;
+                }
+                // A part that was cut off lacks rows.
+                Event::Eof if within => return Err(broken(self.file)),
+                Event::Eof => return Ok(cells.done(self.hidden)),
+                _ => {}
+            }
+        }
+    }
+
+    /// The text of a cell.
+    fn value(
+        &self,
+        reader: &mut Reader<&[u8]>,
+        kind: &str,
+        style: usize,
+        row: usize,
+        column: usize,
+    ) -> Result<String, TableError> {
+        let (mut value, mut inline, mut formula) = (String::new(), Rich::default(), false);
+        let mut within = String::new();
+        loop {
+            let event = reader.read_event().map_err(|_| broken(self.file))?;
+            match &event {
+                Event::Start(e) => {
+                    within = e.local_name().as_ref().to_owned();
+                    formula |= within == "f";
+                    inline.start(e);
+                }
+                Event::End(e) if e.local_name().as_ref() == "c" => break,
+                Event::End(_) => within.clear(),
+                Event::Eof => return Err(broken(self.file)),
+                _ => {
+                    if let Some(more) = characters(&event) {
+                        match within.as_str() {
+                            "v" => value.push_str(&more),
+                            "t" => inline.push(&more),
+                            _ => {}
+                        }
+                    }
+                }
+            }
+        }
+        if formula && value.is_empty() && kind != "str" {
+            let at = Position {
+                file: format!("{}, sheet \"{}\"", self.file, self.sheet),
+                line: row + 1,
+                field: "formula",
+                column: Some(column as u32),
+            };
+            let allowed = "a formula with its value: open the workbook in a spreadsheet program and save it";
+            return Err(TableError::Value { at, value: String::new(), allowed: allowed.into() });
+        }
+        Ok(match kind {
+            "s" => {
+                let text = value.parse().ok().and_then(|n: usize| self.strings.get(n)).cloned();
+                text.ok_or_else(|| unreadable(self.file, "a cell names a text that is not there"))?
+            }
+            "inlineStr" => inline.runs.text(),
+            "str" | "e" => value,
+            "d" => format!("{value} (a date)"),
+            "b" => if value == "1" { "TRUE" } else { "FALSE" }.to_owned(),
+            _ => self.number(&value, style),
+        })
+    }
+
+    /// A number as the sheet shows it: with its percent sign, or as a date.
+    fn number(&self, value: &str, style: usize) -> String {
+        let Ok(number) = value.parse::<f64>() else { return value.to_owned() };
+        // Fifteen digits are what a spreadsheet shows of a number that was summed up.
+        let rounded = format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
+        match self.styles.get(style) {
+            Some(Style::Percent) => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),
+            Some(Style::Date) => format!("day {number} (a date)"),
+            Some(Style::Number(before, after)) => as_shown(before, &rounded, after),
+            None => rounded,
+        }
+    }
+}
+
+/// Row and column of a cell called `B7`, counted from 0.
+fn place_of(name: &str) -> Option<(usize, usize)> {
+    let at = name.find(|c: char| c.is_ascii_digit())?;
+    let (letters, digits) = name.split_at(at);
+    if letters.is_empty() || letters.len() > 3 {
+        return None;
+    }
+    let column = letters.bytes().try_fold(0usize, |sum, b| {
+        b.is_ascii_alphabetic().then(|| sum * 26 + usize::from(b.to_ascii_uppercase() - b'A') + 1)
+    })?;
+    Some((digits.parse::<usize>().ok()?.checked_sub(1)?, column - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_formats_are_read() {
+        assert_eq!(
+            [place_of("A1"), place_of("B7"), place_of("AA10")],
+            [Some((0, 0)), Some((6, 1)), Some((9, 26))]
+        );
+        assert_eq!([place_of("7"), place_of("A0"), place_of("AAAA1"), place_of("")], [None; 4]);
+        assert!(of_format("0.0%") == Style::Percent);
+        for code in ["dd\\-mmm", "m", "m:ss", "[s]", "[hh]:mm", "h AM/PM"] {
+            assert_eq!(of_format(code), Style::Date, "{code}");
+        }
+        for code in [
+            "0.00\" mm\"",
+            "[Red]0.0;General",
+            "[Magenta]0.0",
+            "0.00E+00",
+            "[>=100]0;0.0",
+            "0.0_D_M",
+            "0.0\\d",
+            "0*d",
+        ] {
+            assert!(matches!(of_format(code), Style::Number(..)), "{code}");
+        }
+    }
+}
